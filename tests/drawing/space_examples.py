@@ -11,8 +11,8 @@ from sheet_reading import collisions, page_of, words_of
 from body_examples import BLOCK, TOOLKITS
 from workhold import design
 from workhold.drawing.pdf import svg_to_pdf
-from workhold.drawing.result_sheet import result_sheet
 from workhold.drawing.scene import UNITS_PER_MM
+from workhold.drawing.sheet import result_sheet
 from workhold.model.requirements import Load
 from workhold.model.result import Result
 from workhold.model.solid import SolidOutline

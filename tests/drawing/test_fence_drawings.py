@@ -16,10 +16,10 @@ from workhold import Fence, Result, Workpiece, design
 from workhold.cli.seat_command import seat_table
 from workhold.drawing.bench import contact_of
 from workhold.drawing.fixture_pictures import draw_fixture
-from workhold.drawing.result_sheet import result_sheet
 from workhold.drawing.scene import LengthUnit
 from workhold.drawing.seating_words import SeatingSentences
 from workhold.drawing.seats import draw_seats
+from workhold.drawing.sheet import result_sheet
 from workhold.files.dxf.writer import setup_dxf
 from workhold.files.result.fixture_text import pin_list, result_csv_text
 from workhold.fixels.contacts import ROUND_PIN, WALL_END

@@ -16,8 +16,8 @@ from workhold import Fence, Plate, Program, Query, Vise, answer, load
 from workhold.drawing.fixture_pictures import draw_fixture
 from workhold.drawing.path_drawn import PagePaths, PlannedPath, planned_path
 from workhold.drawing.pdf import svg_to_pdf
-from workhold.drawing.result_sheet import result_sheet
 from workhold.drawing.scene import Box, View
+from workhold.drawing.sheet import result_sheet
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.moves import Moves
 from workhold.model.result import Result

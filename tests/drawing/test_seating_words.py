@@ -12,11 +12,10 @@ from svg_reading import by_class, texts
 
 import workhold
 from workhold import Fence, Plate, Vise, Workpiece
-from workhold.drawing.result_sheet import result_cautions, result_sheet
 from workhold.drawing.scene import UNITS_PER_MM, LengthUnit
 from workhold.drawing.seating_words import SeatingSentences
-from workhold.drawing.sheet import draw_sheet
-from workhold.drawing.sheet_facts import SheetDetails
+from workhold.drawing.sheet import draw_sheet, result_sheet
+from workhold.drawing.sheet_facts import SheetDetails, result_cautions
 from workhold.model.clamps import order_words
 from workhold.model.result import Result
 from workhold.model.seating import CLOSE_READING, SMALL_CAPTURE, Seating

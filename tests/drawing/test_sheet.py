@@ -15,7 +15,7 @@ from svg_reading import by_class, scale_bar_of, texts, to_model
 from fakes import fake_result
 from workhold.conventions import NEAR_EDGE, STRONG_PEG, WEAK_CLOSURE
 from workhold.drawing.scene import UNITS_PER_MM, Box, LengthUnit
-from workhold.drawing.sheet import draw_sheet
+from workhold.drawing.sheet import draw_sheet, standard_scale
 from workhold.drawing.sheet_facts import (
     PAPERS,
     SheetDetails,
@@ -23,7 +23,6 @@ from workhold.drawing.sheet_facts import (
     cautions_of,
     edge_distances,
 )
-from workhold.drawing.sheet_layout import standard_scale
 from workhold.fixels.carrier import Holes
 from workhold.fixels.vise import Vise
 from workhold.model.fixture import Fixture, Peg

@@ -20,9 +20,8 @@ from workhold.listing.identity import entries
 from workhold.model.quality import RANKED
 from workhold.model.requirements import Restrictions
 from workhold.presenting.figure_words import figure_text
-from workhold.presenting.further_html import MOST_SEATS
 from workhold.presenting.markup import MOST_SVG, Markup, compact, image, table
-from workhold.presenting.notebook import MOST_ROWS
+from workhold.presenting.notebook import MOST_ROWS, MOST_SEATS
 from workhold.units import MILLIMETRE
 
 RECTANGLE = [[[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]]]

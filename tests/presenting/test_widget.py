@@ -11,7 +11,7 @@ import pytest
 import workhold
 from workhold.errors import InputError
 from workhold.model.support_triples import ChosenSupports
-from workhold.presenting import further_html
+from workhold.presenting import notebook
 
 WEDGE = workhold.Workpiece.from_loops("wedge", [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]])
 RESULT = workhold.design(WEDGE, workhold.Vise(pitch=15, columns=1, peg_radius=2))
@@ -144,7 +144,7 @@ def test_values_that_cannot_be_are_refused(asked: dict[str, Any], words: str) ->
 
 def test_without_the_library_there_is_a_picture(monkeypatch: pytest.MonkeyPatch) -> None:
     """It shows the fixture and how to get one that moves; a rank of none is refused as well."""
-    monkeypatch.setattr(further_html, "find_spec", lambda name: None)
+    monkeypatch.setattr(notebook, "find_spec", lambda name: None)
     still = RESULT.widget(2)
     html = still._repr_html_()
     assert html.startswith(str(RESULT[1]._repr_html_())) and "anywidget" in html

@@ -15,7 +15,7 @@ from workhold.errors import InputError
 from workhold.model.support_request import SupportRequest
 from workhold.supports import choosing, listing
 from workhold.supports.choosing import coarse, digits_of
-from workhold.supports.listing import supports_of, supports_of_best
+from workhold.supports.listing import supports_of, supports_one_by_one
 
 
 @pytest.mark.parametrize("few", [0, 48])
@@ -74,7 +74,7 @@ def test_a_search_is_followed_and_stopped(monkeypatch: pytest.MonkeyPatch) -> No
     plate = Workpiece.from_loops("plate", [[[0, 0, 0], [100, 0, 0], [100, 60, 0], [0, 60, 0]]])
     result = design(plate, Vise(pitch=20, columns=5, peg_radius=3), best=3)
     request, seen, cancel = SupportRequest.of(plate, 20, toolkit=result.toolkit), list[float](), Event()
-    found = supports_of_best(result, result.query, request, each=2, progress=seen.append)
+    found = list(supports_one_by_one(result, result.query, request, each=2, progress=seen.append))
     assert len(found) == 3 and seen == sorted(seen) and seen[-1] == 1.0 and len(seen) > 10
     assert not any(one.stopped for one in found)
 
@@ -82,6 +82,6 @@ def test_a_search_is_followed_and_stopped(monkeypatch: pytest.MonkeyPatch) -> No
         if fraction > 0.5:
             cancel.set()
 
-    stopped = supports_of_best(result, result.query, request, each=2, cancel=cancel, progress=stop)
+    stopped = list(supports_one_by_one(result, result.query, request, each=2, cancel=cancel, progress=stop))
     assert [one.stopped for one in stopped] == [False, True]
     assert stopped[1].count is None and stopped[0].triples == found[0].triples

@@ -14,7 +14,7 @@ from workhold.model.cutting_tool import CuttingData, Cylinder, Tool
 from workhold.model.moves import Moves
 from workhold.model.program import Program
 from workhold.model.support_request import SpatialLoad
-from workhold.supports.acting import acting_on, cutting_loads
+from workhold.supports.program import acting_on, cutting_loads
 
 PART = Workpiece.from_loops("part", [[[0, 0, 0], [100, 0, 0], [96, 60, 0], [4, 55, 0]]])
 VISE = Vise(pitch=20, columns=5, peg_radius=3)

@@ -18,7 +18,7 @@ from workhold.model.requirements import circle_zone, zone_of
 from workhold.model.support_request import SupportRequest
 from workhold.supports.faces import FaceBorders, TouchableFace
 from workhold.supports.listing import supports_of
-from workhold.supports.program_zones import FINEST, MOST_ABOVE, capsule, with_program
+from workhold.supports.program import FINEST, MOST_ABOVE, capsule, with_program
 
 Array = NDArray[np.float64]
 PART = Workpiece.from_points("plate", [(0, 0), (60, 0), (60, 40), (0, 40)])

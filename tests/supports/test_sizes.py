@@ -10,8 +10,8 @@ from workhold.fixels.support_hardware import SupportPads, TopClamp
 from workhold.model.query import Query
 from workhold.model.support_request import SpatialLoad
 from workhold.model.support_triples import Supports
-from workhold.supports.acting import WeakJawError
 from workhold.supports.asking import SMALLER, requests_by_size, supported_by_size
+from workhold.supports.forces import WeakJawError
 
 
 def sizes(query: Query) -> list[tuple[float, float]]:

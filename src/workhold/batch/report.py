@@ -328,7 +328,7 @@ def sheet_of(row: JobRow, store: Store, folder: Path) -> Path | None:
     path = folder / f"{name}_{row.job.name[:LETTERS]}.pdf"
     if not path.exists():
         from workhold.drawing.pdf import svg_to_pdf
-        from workhold.drawing.result_sheet import result_sheet
+        from workhold.drawing.sheet import result_sheet
 
         with plain_errors(folder):
             folder.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""Annotation of drawings: dimensions, scale bars and angles, and labels placed where they hide nothing.
+"""Annotation of drawings: dimensions, scale bars, and labels placed where they hide nothing.
 
 Dimensions are in the manner of ISO 129: thin lines, text on top, arrows outside when tight. Each label takes
 the cheapest of its candidate places.
@@ -14,14 +14,14 @@ wall : a short straight piece of an outline that leaders had better not cross.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import cos, floor, hypot, log10, pi, radians, sin
+from math import dist, floor, hypot, log10
 from typing import Literal
 
 import numpy as np
 from attrs import frozen
 from numpy.typing import ArrayLike, NDArray
 
-from workhold.drawing.scene import BLACK, GREY, Box, LengthUnit, Scene, number, text_width
+from workhold.drawing.scene import BLACK, Box, LengthUnit, Scene, text_width
 from workhold.geometry.segment import Point
 
 __all__ = [
@@ -29,12 +29,11 @@ __all__ = [
     "Label",
     "LabelPlacer",
     "Place",
-    "angle_mark",
     "around",
     "dimension",
     "dimension_box",
+    "dimension_line",
     "joined",
-    "leader_end",
     "scale_bar",
 ]
 
@@ -43,6 +42,38 @@ TIGHT = 34.0
 OUTSIDE_ARROW, HEAD = 24.0, 5.0
 # How far past the end of a line a text too long for it stands, page units.
 PAST_END = 8.0
+
+
+def dimension_line(
+    scene: Scene,
+    start: Point,
+    end: Point,
+    tight: float = TIGHT,
+    outside: float = OUTSIDE_ARROW,
+    head: float = 11.0,
+) -> Point:
+    """Draws a dimension line between two page points; returns its unit direction.
+
+    Parameters
+    ----------
+    tight : of a shorter line the arrows are outside, page units.
+    outside : how far these reach past the ends, page units.
+    head : length of the heads, page units.
+    """
+    length = dist(start, end)
+    ux, uy = ((end[0] - start[0]) / length, (end[1] - start[1]) / length) if length > 0 else (1.0, 0.0)
+    if length >= tight:
+        middle = ((start[0] + end[0]) / 2, (start[1] + end[1]) / 2)
+        tails = (middle, middle)
+    else:
+        scene.line([start, end], BLACK, 1.0)
+        tails = (
+            (start[0] - outside * ux, start[1] - outside * uy),
+            (end[0] + outside * ux, end[1] + outside * uy),
+        )
+    for tail, tip in zip(tails, (start, end), strict=True):
+        scene.arrow(tail, tip, BLACK, 1.0, head)
+    return ux, uy
 
 
 def dimension(
@@ -62,27 +93,19 @@ def dimension(
 
     Returns the box of the text.
     """
-    dx, dy = end[0] - start[0], end[1] - start[1]
-    length = hypot(dx, dy)
-    ux, uy = (dx / length, dy / length) if length > 0 else (1.0, 0.0)
-    if length >= TIGHT:
-        scene.arrow(((start[0] + end[0]) / 2, (start[1] + end[1]) / 2), start, BLACK, 1.0, 11)
-        scene.arrow(((start[0] + end[0]) / 2, (start[1] + end[1]) / 2), end, BLACK, 1.0, 11)
-    else:
-        scene.line([start, end], BLACK, 1.0)
-        scene.arrow((start[0] - OUTSIDE_ARROW * ux, start[1] - OUTSIDE_ARROW * uy), start, BLACK, 1.0, 11)
-        scene.arrow((end[0] + OUTSIDE_ARROW * ux, end[1] + OUTSIDE_ARROW * uy), end, BLACK, 1.0, 11)
-    middle = ((start[0] + end[0]) / 2 + 0.75 * size * uy, (start[1] + end[1]) / 2 - 0.85 * size * abs(ux))
-    if abs(ux) < abs(uy):
-        middle = (min(start[0], end[0]) - 0.75 * size, (start[1] + end[1]) / 2)
-        if past is not None and text_width(text, size, bold) > length:
-            away = text_width(text, size, bold) / 2 + PAST_END
-            y = min(start[1], end[1]) - away if past == "upper" else max(start[1], end[1]) + away
-            middle = (middle[0], y)
-        scene.text(middle, text, size, "middle", bold, halo=3, turned=90)
-        return Box.about(middle, size, text_width(text, size, bold))
-    scene.text(middle, text, size, "middle", bold, halo=3)
-    return Box.about(middle, text_width(text, size, bold), size)
+    ux, uy = dimension_line(scene, start, end)
+    width = text_width(text, size, bold)
+    x, y = (start[0] + end[0]) / 2, (start[1] + end[1]) / 2
+    if abs(ux) >= abs(uy):
+        middle = (x + 0.75 * size * uy, y - 0.85 * size * abs(ux))
+        scene.text(middle, text, size, "middle", bold, halo=3)
+        return Box.about(middle, width, size)
+    if past is not None and width > dist(start, end):
+        away = width / 2 + PAST_END
+        y = min(start[1], end[1]) - away if past == "upper" else max(start[1], end[1]) + away
+    middle = (min(start[0], end[0]) - 0.75 * size, y)
+    scene.text(middle, text, size, "middle", bold, halo=3, turned=90)
+    return Box.about(middle, size, width)
 
 
 def dimension_box(start: Point, end: Point) -> Box:
@@ -132,38 +155,12 @@ def scale_bar(
     part = length * scale / 4
     bar = scene.group("scale")
     for k in range(4):
-        corners = [
-            (x + k * part, y - 6),
-            (x + (k + 1) * part, y - 6),
-            (x + (k + 1) * part, y),
-            (x + k * part, y),
-        ]
+        left, right = x + k * part, x + (k + 1) * part
+        corners = [(left, y - 6), (right, y - 6), (right, y), (left, y)]
         bar.polygon(corners, BLACK if k % 2 == 0 else "#ffffff", BLACK, 0.8)
     text = f"{length:g} {lengths.sign}{more}"
     bar.text((x + 4 * part + 8, y - 3), text, size)
     return 4 * part + 8 + text_width(text, size)
-
-
-def angle_mark(scene: Scene, center: Point, theta_deg: float, radius: float, reach: float) -> None:
-    """Draws the turn from the vise's x axis (a dashed line) to the part's (an arrow) around a page point."""
-    x, y = center
-    theta = radians(theta_deg % 360.0)
-    mark = scene.group("pose")
-    mark.line([(x, y), (x + reach, y)], GREY, 1.0, stroke_dasharray="5 3")
-    mark.arrow((x, y), (x + reach * cos(theta), y - reach * sin(theta)), GREY, 1.4, 9)
-    mark.circle(center, 2.2, GREY)
-    if theta * radius < 10.0:
-        return
-    end = theta - 7.0 / radius  # leave room for the head
-    pieces = max(1, floor(end / (pi / 2)) + 1)
-    d = f"M{number(x + radius)} {number(y)}"
-    for k in range(1, pieces + 1):
-        a = end * k / pieces
-        end_x, end_y = number(x + radius * cos(a)), number(y - radius * sin(a))
-        d += f"A{number(radius)} {number(radius)} 0 0 0 {end_x} {end_y}"
-    mark.path(d, GREY, 1.0)
-    tip = (x + radius * cos(theta), y - radius * sin(theta))
-    mark.arrow_head(tip, -(theta + pi / 2) + 3.5 / radius, GREY, 7.5)
 
 
 Array = NDArray[np.float64]
@@ -219,6 +216,15 @@ class Place:
 
     box: Box
     anchor: Point
+
+    def leader(self, radius: float = 0.0) -> list[Point]:
+        """The ends of the straight leader, from a sign of a radius about the anchor to the rim of the box."""
+        (x, y), (cx, cy) = self.anchor, self.box.center
+        dx, dy = x - cx, y - cy
+        share = min(self.box.width / 2 / max(abs(dx), 1e-9), self.box.height / 2 / max(abs(dy), 1e-9), 1.0)
+        end = (cx + share * dx, cy + share * dy)
+        off = min(radius / max(dist(self.anchor, end), 1e-9), 1.0)
+        return [(x + off * (end[0] - x), y + off * (end[1] - y)), end]
 
 
 def around(
@@ -311,13 +317,9 @@ class LabelPlacer:
         costs += STRIKE * entries(label.anchors, label.centers, self.boxes).sum(axis=1)
         # A leader begins on the outline itself, hence not quite at its anchor.
         starts = label.anchors + 0.1 * (label.centers - label.anchors)
-        walls = np.hstack(
-            [np.minimum(self.wall_starts, self.wall_ends), np.maximum(self.wall_starts, self.wall_ends)]
-        )
-        near = meeting(reach, walls)
-        costs += WALL * crossings(starts, label.centers, self.wall_starts[near], self.wall_ends[near]).sum(
-            axis=1
-        )
+        first, last = self.wall_starts, self.wall_ends
+        near = meeting(reach, np.hstack([np.minimum(first, last), np.maximum(first, last)]))
+        costs += WALL * crossings(starts, label.centers, first[near], last[near]).sum(axis=1)
         return costs
 
     def place(self, labels: Sequence[Label], sweeps: int = 4) -> list[Place]:
@@ -386,11 +388,3 @@ def entries(starts: Array, ends: Array, boxes: Array) -> NDArray[np.bool_]:
     enter = np.maximum(np.minimum(one, two).max(axis=2), 0.0)
     leave = np.minimum(np.maximum(one, two).min(axis=2), 1.0)
     return np.asarray(enter < leave)
-
-
-def leader_end(anchor: Point, box: Box) -> Point:
-    """Where the straight line from an anchor to a box's middle enters the box."""
-    cx, cy = box.center
-    dx, dy = anchor[0] - cx, anchor[1] - cy
-    share = min(box.width / 2 / max(abs(dx), 1e-9), box.height / 2 / max(abs(dy), 1e-9), 1.0)
-    return cx + share * dx, cy + share * dy

@@ -7,6 +7,7 @@ turn in the vise can be seen.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import reduce
 from math import ceil, hypot, pi
 
 import numpy as np
@@ -59,9 +60,8 @@ def segment_path(segment: Segment, view: View, moved: bool = True) -> str:
         return start + "L{} {}".format(*map(number, view(segment.end)))
     pieces = ceil(2 * segment.half_sweep / LONGEST_SWEEP - 1e-9)
     radius = number(segment.radius * view.scale)
-    sweep = (
-        "0" if segment.sign > 0 else "1"
-    )  # y is turned over, so counter-clockwise is SVG's negative direction
+    # y is turned over, so counter-clockwise is SVG's negative direction.
+    sweep = "0" if segment.sign > 0 else "1"
     for k in range(1, pieces + 1):
         parameter = segment.sign * segment.half_sweep * (2 * k / pieces - 1)
         x, y = map(number, view(segment.at(parameter)))
@@ -343,11 +343,8 @@ def number_holes(scene: Scene, view: View, workpiece: Workpiece) -> None:
     for count, (loop, center) in enumerate(
         zip(workpiece.hole_segments, hole_centers(workpiece), strict=True), 1
     ):
-        boxes = [bounding_box(segment) for segment in loop]
-        room = (
-            min(max(box[k + 2] for box in boxes) - min(box[k] for box in boxes) for k in (0, 1)) * view.scale
-        )
-        if room >= NUMBER + 2:
+        extent = reduce(Box.union, (Box(*bounding_box(segment)) for segment in loop))
+        if min(extent.width, extent.height) * view.scale >= NUMBER + 2:
             scene.text(view(center), str(count), NUMBER, "middle", fill=GREY)
 
 

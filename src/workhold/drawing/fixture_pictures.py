@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from attrs import frozen
-
 from workhold.drawing.annotation import scale_bar
 from workhold.drawing.bench import Bench, bench_of, draw_bench, draw_inset
 from workhold.drawing.carriers import most_holes
@@ -40,36 +38,27 @@ from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
 from workhold.units import MILLIMETRE, Unit
 
-__all__ = ["MOST_THUMBNAILS", "best_at_a_glance", "draw_fixture", "draw_thumbnail", "draw_thumbnails"]
+__all__ = [
+    "MOST_THUMBNAILS",
+    "best_at_a_glance",
+    "cells_of",
+    "draw_fixture",
+    "draw_heading",
+    "draw_thumbnail",
+    "draw_thumbnails",
+]
 
 EDGE = 32.0
-PANEL = 326.0
+PANEL, GUTTER = 326.0, 24.0
 SCALE_BAR = 36.0
 HIGHEST_INSET = 320.0
 
 
-@frozen
-class Layout:
-    """Where the drawing and the panel go on a page."""
-
-    page: tuple[float, float]
-    drawing: Box
-    panel: Box
-
-    def view(self, extent: Box) -> View:
-        """The largest view of an extent (mm) that leaves room for the lettering."""
-        box = self.drawing
-        inner = Box(box.x0 + LEFT, box.y0 + TOP, box.x1 - RIGHT, box.y1 - BOTTOM - SCALE_BAR)
-        return View.fitting(extent, inner)
-
-
-def layout_on(page: tuple[float, float]) -> Layout:
-    """A page with the panel at the right."""
-    width, height = page
-    split = width - EDGE - PANEL
-    return Layout(
-        page, Box(EDGE, EDGE, split - 24, height - EDGE), Box(split, EDGE, width - EDGE, height - EDGE)
-    )
+def drawing_on(page: tuple[float, float], extent: Box) -> tuple[Box, View]:
+    """The box beside the panel of a page, and the largest view of an extent (mm) with its lettering in it."""
+    box = Box(EDGE, EDGE, page[0] - EDGE - PANEL - GUTTER, page[1] - EDGE)
+    inner = Box(box.x0 + LEFT, box.y0 + TOP, box.x1 - RIGHT, box.y1 - BOTTOM - SCALE_BAR)
+    return box, View.fitting(extent, inner)
 
 
 def draw_fixture(
@@ -100,13 +89,15 @@ def draw_fixture(
     bench = bench_of(fixture, workpiece, toolkit)
     extent = bench.extent if path is None else path.grown(bench.extent)
     lengths = LengthUnit.suiting(unit, bench.shown.pitch)
-    landscape, portrait = layout_on(LANDSCAPE), layout_on(PORTRAIT)
-    layout = portrait if portrait.view(extent).scale > 1.15 * landscape.view(extent).scale else landscape
-    view = layout.view(extent)
-    scene = Scene.page(layout.page, f"{workpiece.name}: {title or 'Fixture'}")
-    draw_plan(scene, bench, view, workpiece, layout.drawing, lengths, path=path)
-    scale_bar(scene, (layout.drawing.x0, layout.drawing.y1), view.scale, lengths)
-    draw_panel(scene, layout.panel, bench, view, workpiece, title, lengths, path)
+    page, (drawing, view) = LANDSCAPE, drawing_on(LANDSCAPE, extent)
+    upright, upright_view = drawing_on(PORTRAIT, extent)
+    if upright_view.scale > 1.15 * view.scale:
+        page, drawing, view = PORTRAIT, upright, upright_view
+    scene = Scene.page(page, f"{workpiece.name}: {title or 'Fixture'}")
+    draw_plan(scene, bench, view, workpiece, drawing, lengths, path=path)
+    scale_bar(scene, (drawing.x0, drawing.y1), view.scale, lengths)
+    panel = Box(drawing.x1 + GUTTER, drawing.y0, page[0] - EDGE, drawing.y1)
+    draw_panel(scene, panel, bench, view, workpiece, title, lengths, path)
     return scene.svg()
 
 
@@ -156,9 +147,8 @@ def draw_thumbnail(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> 
         SVG text.
     """
     bench = bench_of(fixture, workpiece, toolkit)
-    width, height = ALONE
     scene = Scene.page(ALONE, workpiece.name)
-    view = View.fitting(bench.extent, Box(RIM, RIM, width - RIM, height - RIM))
+    view = View.fitting(bench.extent, Box(0.0, 0.0, *ALONE).grown(-RIM))
     draw_bench(scene, bench, view, weight=0.7, longest=26.0, axes=False)
     return scene.svg()
 
@@ -197,19 +187,30 @@ def draw_thumbnails(
         raise InputError(f"{count} fixtures have {len(titles)} titles: give one title for each.")
     benches = [bench_of(fixture, workpiece, toolkit) for fixture in fixtures]
     lengths = LengthUnit.suiting(unit, benches[0].shown.pitch)
-    cells = grid(count)
-    rooms = [Box(cell.x0 + 8, cell.y0 + 8, cell.x1 - 8, cell.y1 - CAPTION) for cell in cells]
-    scale = min(View.fitting(bench.extent, room).scale for bench, room in zip(benches, rooms, strict=True))
     scene = Scene.page(LANDSCAPE, f"{workpiece.name}: fixtures")
-    width, height = LANDSCAPE
-    words = f"{plural(count, 'fixture')}, all to the same scale"
-    name = shortened(workpiece.name, 24, width - 2 * EDGE - text_width(words, 14) - 20, bold=True)
+    draw_heading(scene, workpiece.name, f"{plural(count, 'fixture')}, all to the same scale")
+    cells = cells_of([bench.extent for bench in benches])
+    for bench, title, (cell, view) in zip(benches, titles, cells, strict=True):
+        draw_cell(scene, bench, title, cell, view, lengths)
+    scale_bar(scene, (EDGE, LANDSCAPE[1] - EDGE + 8), cells[0][1].scale, lengths)
+    return scene.svg()
+
+
+def draw_heading(scene: Scene, name: str, words: str) -> None:
+    """Writes what a page of small pictures is of at its upper left, and words at the right."""
+    width = LANDSCAPE[0]
+    name = shortened(name, 24, width - 2 * EDGE - text_width(words, 14) - 20, bold=True)
     scene.text((EDGE, EDGE + 10), name, 24, bold=True)
     scene.text((width - EDGE, EDGE + 10), words, 14, "end", fill=GREY)
-    for bench, title, cell, room in zip(benches, titles, cells, rooms, strict=True):
-        draw_cell(scene, bench, title, cell, View.fitting(bench.extent, room, scale), lengths)
-    scale_bar(scene, (EDGE, height - EDGE + 8), scale, lengths)
-    return scene.svg()
+
+
+def cells_of(extents: Sequence[Box]) -> list[tuple[Box, View]]:
+    """A cell for each of some extents (mm), and the view of it there above a caption, all to one scale."""
+    cells = grid(len(extents))
+    rooms = [Box(cell.x0 + 8, cell.y0 + 8, cell.x1 - 8, cell.y1 - CAPTION) for cell in cells]
+    scale = min(View.fitting(extent, room).scale for extent, room in zip(extents, rooms, strict=True))
+    views = [View.fitting(extent, room, scale) for extent, room in zip(extents, rooms, strict=True)]
+    return list(zip(cells, views, strict=True))
 
 
 def best_at_a_glance(result: Result, shown: Entries, unit: Unit = MILLIMETRE) -> str:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
-from typing import TypeVar
 
 from attrs import frozen
 
@@ -12,14 +10,13 @@ from workhold.drawing.panel import TextColumn
 from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, SheetHeights, heading
 from workhold.fixels.contacts import CLAMP_TIP, WALL_END
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.dowels import fit_words
 from workhold.model.fixture import Fixture
 
-__all__ = ["HardwareItem", "hardware_items", "hardware_of", "write_hardware"]
+__all__ = ["HardwareItem", "hardware_of", "write_hardware"]
 
+OF_TIP = "diameter of the tip"
 # Pegs that could be shorter by less than this, in mm, are left as they are.
 SHORTER = 2.0
-Key = TypeVar("Key")
 
 
 def hardware_items(sheet: Sheet) -> list[HardwareItem]:
@@ -39,7 +36,7 @@ def hardware_items(sheet: Sheet) -> list[HardwareItem]:
 
 def write_hardware(column: TextColumn, sheet: Sheet) -> None:
     """Writes what to take from the drawer as a table, and how the lengths come about."""
-    lengths, heights, details = sheet.lengths, sheet.heights, sheet.details
+    lengths, heights, details, items = sheet.lengths, sheet.heights, sheet.details, hardware_items(sheet)
     heading(column, "To take from the drawer")
     rows = [
         [
@@ -47,15 +44,14 @@ def write_hardware(column: TextColumn, sheet: Sheet) -> None:
             "–" if item.diameter is None else lengths.short_number(item.diameter),
             "–" if item.length is None else lengths.number(item.length),
         ]
-        for item in hardware_items(sheet)
+        for item in items
     ]
     column.table(["", f"Ø {lengths.sign}", f"length {lengths.sign}"], rows, BODY)
-    if any(item.note.startswith("diameter of the tip") for item in hardware_items(sheet)):
+    if any(item.note == OF_TIP for item in items):
         column.paragraph("Ø of a clamp: that of its tip.", NOTE)
-    fit, plate = details.tolerance.fit, sheet.toolkit.plates[0]
-    kind = details.dowel or (None if fit is None else fit_words(fit, 2 * plate.peg_radius))
-    if kind:
-        column.paragraph(f"{plate.peg.capitalize()}s: {kind}.", NOTE)
+    plate = sheet.toolkit.plates[0]
+    if sheet.dowel:
+        column.paragraph(f"{plate.peg.capitalize()}s: {sheet.dowel}.", NOTE)
     if heights is None or details.peg_length is not None or "peg_top" in heights.assumed:
         return
     parts = [f"{lengths.words(heights.peg_top)} beside the part"]
@@ -103,8 +99,8 @@ class HardwareItem:
 
     count: int
     name: str
-    diameter: float | None
-    length: float | None
+    diameter: float | None = None
+    length: float | None = None
     note: str = ""
 
 
@@ -134,36 +130,23 @@ def hardware_of(
     items: list[HardwareItem] = []
     placed = [(toolkit.carrier(peg.carrier), peg) for peg in fixture.placed]
     pegs = [carrier for carrier, _ in placed if carrier.contact is not CLAMP_TIP]
-    for (name, radius, flat), count in counted((c.peg, c.peg_radius, c.flat is not None) for c in pegs):
+    kinds = Counter((c.peg, c.peg_radius, c.flat is not None) for c in pegs)
+    for (name, radius, flat), count in kinds.items():
         note = "with a flat" if flat else ""
         items.append(HardwareItem(count, plural(name, count), 2 * radius or None, peg_length, note))
     if supports is not None:
         items.append(HardwareItem(3, "supports", *supports))
     clamps = [carrier for carrier, _ in placed if carrier.contact is CLAMP_TIP]
-    for (name, radius), count in counted((c.noun, c.peg_radius) for c in clamps):
-        items.append(
-            HardwareItem(count, plural(name, count), 2 * radius or None, None, "diameter of the tip")
-        )
+    for (name, radius), count in Counter((c.noun, c.peg_radius) for c in clamps).items():
+        items.append(HardwareItem(count, plural(name, count), 2 * radius or None, None, OF_TIP))
     bolted = sum(all(carrier.counted) for carrier in clamps)
     if bolted:
-        items.append(
-            HardwareItem(
-                bolted, f"{plural('bolt', bolted)} for {'a clamp' if bolted == 1 else 'clamps'}", None, None
-            )
-        )
+        words = f"{plural('bolt', bolted)} for {'a clamp' if bolted == 1 else 'clamps'}"
+        items.append(HardwareItem(bolted, words))
     if top_tip is not None:
-        items.append(HardwareItem(1, "clamp on top", top_tip, None, "diameter of the tip"))
-    items += [
-        HardwareItem(1, carrier.noun, None, None)
-        for carrier in toolkit.carriers
-        if carrier.contact is WALL_END
-    ]
-    return items
-
-
-def counted(keys: Iterable[Key]) -> list[tuple[Key, int]]:
-    """Different keys in the order in which they come first, and how many there are of each."""
-    return list(Counter(keys).items())
+        items.append(HardwareItem(1, "clamp on top", top_tip, None, OF_TIP))
+    walls = (carrier for carrier in toolkit.carriers if carrier.contact is WALL_END)
+    return [*items, *(HardwareItem(1, carrier.noun) for carrier in walls)]
 
 
 def plural(noun: str, count: int) -> str:

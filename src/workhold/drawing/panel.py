@@ -30,6 +30,7 @@ __all__ = [
     "draw_peg_table",
     "draw_settings",
     "draw_title",
+    "value_words",
     "fixture_words",
     "holes_words",
     "offset_words",
@@ -76,6 +77,12 @@ class TextColumn:
             self.y += 0.75 * size
             self.scene.text((self.x + indent, self.y), line, size, bold=bold, fill=fill, middle=False)
             self.y += 0.55 * size
+
+    def item(self, mark: str, content: str, size: float) -> None:
+        """Writes a paragraph behind a bold mark, such as the number of a step."""
+        self.scene.text((self.x, self.y + 0.75 * size), mark, size, bold=True, middle=False)
+        self.paragraph(content, size, indent=18)
+        self.y += 2
 
     def fact(self, name: str, value: str, size: float = 14.0, bold: bool = False) -> None:
         """Writes a name at the left and its value at the right of one line, in type that fits."""
@@ -126,9 +133,16 @@ class TextColumn:
 def closure_margin(fixture: Fixture) -> str:
     """The closure margin in words for a picture, or a dash when it is not known."""
     margin = fixture.quality.get("closure_margin")
-    if margin is None:
-        return "–"
-    return f"{margin:.4f}" if margin >= 0.001 else f"{margin:.2e}".replace("-", "−")
+    return "–" if margin is None else value_words(margin)
+
+
+def value_words(value: float) -> str:
+    """A figure without a unit: with four decimals, or as a power of ten where these are too few.
+
+    >>> value_words(0.25), value_words(0.00012)
+    ('0.2500', '1.20e−04')
+    """
+    return f"{value:.4f}" if value >= 0.001 else f"{value:.2e}".replace("-", "−")
 
 
 def arrangement_words(arrangement: Arrangement, toolkit: Toolkit) -> str:
@@ -328,8 +342,10 @@ OF_CONTACTS: Mapping[ContactKind, tuple[tuple[Sign, str], ...]] = {
 }
 
 
-def draw_legend(column: TextColumn, toolkit: Toolkit, fill: str = GREY) -> None:
-    """Explains the signs; ``fill`` is the colour of the words."""
+def draw_legend(
+    column: TextColumn, toolkit: Toolkit, fill: str = GREY, more: Sequence[tuple[Sign, str]] = ()
+) -> None:
+    """Explains the signs, ``more`` of them last; ``fill`` is the colour of the words."""
     first = toolkit.plates[0]
     named = f"{first.noun}, column, row" if first.letter else "column, row"
     signs: list[tuple[Sign, str]] = [
@@ -343,6 +359,7 @@ def draw_legend(column: TextColumn, toolkit: Toolkit, fill: str = GREY) -> None:
         ),
         (force, f"force of the {pegs_words(toolkit)} on the part, longer if larger"),
         (face, "face touched, with its number"),
+        *more,
     ]
     for draw, words in signs:
         y = column.y + 8

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import reduce
 from math import atan2, hypot, pi
 
 import numpy as np
 from numpy.typing import NDArray
 
 from workhold.contact.features import contact_features
-from workhold.drawing.annotation import Label, LabelPlacer, around, dimension, joined, leader_end, scale_bar
+from workhold.drawing.annotation import Label, LabelPlacer, Place, around, dimension, joined, scale_bar
 from workhold.drawing.bench import ARROW, PART_FILL, outline_path, sampled, sampled_loop, segment_path
 from workhold.drawing.panel import plural
 from workhold.drawing.scene import (
@@ -29,11 +30,9 @@ from workhold.geometry.segment import Arc, Segment, bounding_box
 from workhold.model.workpiece import Workpiece
 from workhold.units import MILLIMETRE, Unit
 
-__all__ = ["draw_features", "draw_parts"]
+__all__ = ["EDGE", "FOOTER", "HEADER", "draw_features", "draw_header", "draw_parts"]
 
-EDGE = 32.0
-HEADER = 62.0
-FOOTER = 30.0
+EDGE, HEADER, FOOTER = 32.0, 62.0, 30.0
 # Room around the part for numbers, and outside it for dimensions.
 NUMBERS, MORE_NUMBERS = 54.0, 84.0
 MANY_FACES, VERY_MANY_FACES = 30, 80
@@ -63,11 +62,15 @@ def draw_features(workpiece: Workpiece, *, peg_radius: float | None = None, unit
     room = Box(drawing.x0 + margin, drawing.y0 + numbers, drawing.x1 - numbers, drawing.y1 - margin)
     view = View.fitting(bounds, room)
     scene = Scene.page(page, f"{workpiece.name}: faces")
-    draw_header(scene, workpiece, bounds, peg_radius, lengths)
+    draw_header(scene, page, workpiece.name, part_words(workpiece, bounds, peg_radius, lengths))
     draw_outline(scene, workpiece, view)
+    features = list[Segment]()
     if peg_radius is not None:
-        draw_contact_features(scene, workpiece, view, peg_radius)
-    draw_numbers(scene, workpiece, view, view.box(bounds).grown(numbers - 6), peg_radius)
+        features = [feature.segment for feature in contact_features(workpiece, peg_radius)]
+        group = scene.group("contact-features", view)
+        for segment in features:
+            group.path(segment_path(segment, view), ARROW, 1.4, stroke_dasharray="7 4")
+    draw_numbers(scene, workpiece, view, view.box(bounds).grown(numbers - 6), features)
     draw_overall(scene, bounds, view, numbers, lengths)
     scale_bar(scene, (EDGE, page[1] - EDGE), view.scale, lengths)
     return scene.svg()
@@ -79,13 +82,15 @@ def sheet(faces: int, page: tuple[float, float]) -> tuple[float, float]:
     return round(larger * page[0]), round(larger * page[1])
 
 
-def draw_header(
-    scene: Scene, workpiece: Workpiece, bounds: Box, peg_radius: float | None, lengths: LengthUnit
-) -> None:
-    """Writes what the part is."""
-    group = scene.group("header")
-    width = float(scene.element.attrib["viewBox"].split()[2]) - 2 * EDGE
-    group.text((EDGE, EDGE + 12), shortened(workpiece.name, 26, width, bold=True), 26, bold=True)
+def draw_header(scene: Scene, page: tuple[float, float], name: str, words: str) -> None:
+    """Writes the name of what is drawn on a page, and a line of words below it, each shortened to fit."""
+    group, width = scene.group("header"), page[0] - 2 * EDGE
+    group.text((EDGE, EDGE + 12), shortened(name, 26, width, bold=True), 26, bold=True)
+    group.text((EDGE, EDGE + 40), shortened(words, 14, width), 14, fill=GREY)
+
+
+def part_words(workpiece: Workpiece, bounds: Box, peg_radius: float | None, lengths: LengthUnit) -> str:
+    """What the part is, and what is drawn of it."""
     faces, holes = len(workpiece.faces), len(workpiece.hole_segments)
     words = [plural(faces, "face"), plural(holes, "hole") if holes else "no holes"]
     words.append(f"{lengths.number(bounds.width)} × {lengths.words(bounds.height)}")
@@ -94,8 +99,7 @@ def draw_header(
         words.append(f"dashed: where the centre of a peg of Ø {size} lies when it touches a face")
     if len(workpiece.segments) > faces:
         words.append("a face drawn in pieces has the number of the first")
-    line = " · ".join(words)
-    group.text((EDGE, EDGE + 40), shortened(line, 14, width), 14, fill=GREY)
+    return " · ".join(words)
 
 
 def draw_outline(scene: Scene, workpiece: Workpiece, view: View) -> None:
@@ -122,15 +126,8 @@ def first_parameter(segment: Segment) -> float:
     return -segment.sign * segment.half_sweep if isinstance(segment, Arc) else -segment.half_extent
 
 
-def draw_contact_features(scene: Scene, workpiece: Workpiece, view: View, peg_radius: float) -> None:
-    """Draws the contact features, dashed."""
-    group = scene.group("contact-features", view)
-    for feature in contact_features(workpiece, peg_radius):
-        group.path(segment_path(feature.segment, view), ARROW, 1.4, stroke_dasharray="7 4")
-
-
 def draw_numbers(
-    scene: Scene, workpiece: Workpiece, view: View, bounds: Box, peg_radius: float | None
+    scene: Scene, workpiece: Workpiece, view: View, bounds: Box, features: Sequence[Segment]
 ) -> None:
     """Writes the numbers of all faces on the side away from the material, each with a leader."""
     count = len(workpiece.faces)
@@ -138,23 +135,30 @@ def draw_numbers(
     shares = (0.0, 0.3, -0.3, 0.6, -0.6) if count <= VERY_MANY_FACES else (0.0,)
     placer = LabelPlacer(bounds)
     for loop in workpiece.loop_segments:
-        outline = sampled_loop(loop, view, 3.0)
-        placer.avoid_ink(outline, 5.0)
+        placer.avoid_ink(sampled_loop(loop, view, 3.0), 5.0)
         placer.avoid_walls(sampled_loop(loop, view, 12.0))
-    if peg_radius is not None:
-        features = [feature.segment for feature in contact_features(workpiece, peg_radius)]
-        placer.avoid_ink(sampled(features, view, 3.0), 0.6)
+    placer.avoid_ink(sampled(features, view, 3.0), 0.6)
     outer = workpiece.outer_count
     places = placer.place(
         [number_label(face, view, size, shares, face.number < outer) for face in workpiece.faces]
     )
     group = scene.group("face-numbers")
     for place in places:
-        group.line([place.anchor, leader_end(place.anchor, place.box)], LEADER, 0.9)
-        group.circle(place.anchor, 1.7, LEADER)
+        draw_leader(group, place)
     for face, place in zip(workpiece.faces, places, strict=True):
-        group.rectangle(place.box, "#ffffff", LEADER, 0.9, place.box.height / 2)
-        group.text(place.box.center, str(face.number), size, "middle", bold=True)
+        write_number(group, place, face.number, size)
+
+
+def draw_leader(scene: Scene, place: Place) -> None:
+    """Draws the leader of a number, which begins in a dot."""
+    scene.line(place.leader(), LEADER, 0.9)
+    scene.circle(place.anchor, 1.7, LEADER)
+
+
+def write_number(scene: Scene, place: Place, number: int, size: float) -> None:
+    """Writes a number in a frame with round ends."""
+    scene.rectangle(place.box, "#ffffff", LEADER, 0.9, place.box.height / 2)
+    scene.text(place.box.center, str(number), size, "middle", bold=True)
 
 
 def number_label(face: Face, view: View, size: float, shares: Sequence[float], outer: bool) -> Label:
@@ -217,27 +221,15 @@ def draw_parts(
         SVG text.
     """
     loops = [[loop_segments(vertices) for vertices in part] for part in parts]
-    boxes = [bounding_box(segment) for part in loops for loop in part for segment in loop]
-    bounds = Box(
-        *(min(box[k] for box in boxes) for k in (0, 1)), *(max(box[k] for box in boxes) for k in (2, 3))
-    )
+    segments = (segment for part in loops for loop in part for segment in loop)
+    bounds = reduce(Box.union, (Box(*bounding_box(segment)) for segment in segments))
     lengths = LengthUnit.suiting(unit, max(bounds.width, bounds.height))
     page = LANDSCAPE if bounds.width >= 0.8 * bounds.height else PORTRAIT
-    drawing = Box(
-        EDGE + 30,
-        EDGE + HEADER + 30,
-        page[0] - EDGE - 30,
-        page[1] - EDGE - FOOTER - 30,
-    )
+    drawing = Box(EDGE, EDGE + HEADER, page[0] - EDGE, page[1] - EDGE - FOOTER).grown(-30)
     view = View.fitting(bounds, drawing)
     scene = Scene.page(page, f"{name}: parts")
-    group = scene.group("header")
-    width = page[0] - 2 * EDGE
-    group.text((EDGE, EDGE + 12), shortened(name, 26, width, bold=True), 26, bold=True)
-    words = (
-        f"{plural(len(parts), 'part')}, numbered by decreasing area · part {chosen} is the one that is used"
-    )
-    group.text((EDGE, EDGE + 40), shortened(words, 14, width), 14, fill=GREY)
+    words = f"{plural(len(parts), 'part')}, numbered by decreasing area"
+    draw_header(scene, page, name, f"{words} · part {chosen} is the one that is used")
     for number, part in reversed(list(enumerate(loops, start=1))):
         fill = PART_FILL if number == chosen else OTHER_FILL
         scene.group(f"part-{number}", view).path(
@@ -251,15 +243,11 @@ def draw_parts(
     for number, part in enumerate(loops[:MOST_NUMBERS], start=1):
         size = (max(22.0, text_width(str(number), 15.0, bold=True) + 12), 22.0)
         # A place within the material beside the outline's first segment, or else about there.
-        segment = part[0][0]
-        x, y = view(segment.at(0.0))
-        turns = [k * pi / 6 for k in range(12)]
-        labels.append(around((x, y), 0.0, size, [4.0, 14.0, 26.0, 40.0], turns, turn_cost=0.0))
+        anchor, turns = view(part[0][0].at(0.0)), [k * pi / 6 for k in range(12)]
+        labels.append(around(anchor, 0.0, size, [4.0, 14.0, 26.0, 40.0], turns, turn_cost=0.0))
     group = scene.group("part-numbers")
     for number, place in enumerate(placer.place(labels), start=1):
-        group.line([place.anchor, leader_end(place.anchor, place.box)], LEADER, 0.9)
-        group.circle(place.anchor, 1.7, LEADER)
-        group.rectangle(place.box, "#ffffff", LEADER, 0.9, place.box.height / 2)
-        group.text(place.box.center, str(number), 15.0, "middle", bold=True)
+        draw_leader(group, place)
+        write_number(group, place, number, 15.0)
     scale_bar(scene, (EDGE, page[1] - EDGE), view.scale, lengths)
     return scene.svg()

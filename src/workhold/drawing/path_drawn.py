@@ -10,10 +10,10 @@ from collections.abc import Iterator, Sequence
 from math import hypot, pi
 
 import numpy as np
-from attrs import frozen
+from attrs import astuple, frozen
 from numpy.typing import NDArray
 
-from workhold.drawing.annotation import Label, LabelPlacer, Place, around, leader_end
+from workhold.drawing.annotation import Label, LabelPlacer, Place, around
 from workhold.drawing.scene import GREY, Box, LengthUnit, Scene, View, number, text_width
 from workhold.model.fixture import Fixture
 from workhold.model.moves import Moves, along
@@ -265,11 +265,10 @@ class PlannedPath:
     def grown(self, extent: Box) -> Box:
         """An extent (mm) of the plan with what is cut as well, where that makes it not much larger."""
         program = self.program
-        cut = np.flatnonzero(program.moves.cutting)
-        if not len(cut):
+        moves, cut = program.moves, program.moves.cutting
+        if not cut.any():
             return extent
-        moves = program.moves
-        low, high = tip_box(Moves(*(getattr(moves, name)[cut] for name in COLUMNS)))
+        low, high = tip_box(Moves(*(values[cut] for values in astuple(moves, recurse=False))))
         around_path = max(tool.diameter for tool in program.tools.values()) / 2
         xs, ys = self.fixture.pose.apply(
             np.array([low[0], high[0], high[0], low[0]]), np.array([low[1], low[1], high[1], high[1]])
@@ -333,15 +332,11 @@ class PlannedPath:
         gaps = (8, 16, 28, 44, 64, 90)
         return [around(view(self.place()), -pi / 4, size, gaps, turns, turn_cost=1.0)]
 
-    def draw_name(self, scene: Scene, places: Sequence[Place], lengths: LengthUnit) -> None:
+    def draw_name(self, scene: Scene, place: Place, lengths: LengthUnit) -> None:
         """Writes the label of the nearest move where it was placed, with a leader."""
-        for place in places[:1]:
-            scene.line([place.anchor, leader_end(place.anchor, place.box)], NEAREST, 1.2)
-            scene.rectangle(place.box, "#ffffff", NEAREST, 1.2, 3)
-            scene.text(place.box.center, self.words(lengths), NAME, "middle", bold=True, fill=NEAREST)
-
-
-COLUMNS = ("line", "tool", "cutting", "start", "end", "bulge", "feed", "spindle")
+        scene.line(place.leader(), NEAREST, 1.2)
+        scene.rectangle(place.box, "#ffffff", NEAREST, 1.2, 3)
+        scene.text(place.box.center, self.words(lengths), NAME, "middle", bold=True, fill=NEAREST)
 
 
 def planned_path(result: Result, index: int) -> PlannedPath | None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
+from contextlib import nullcontext
 from datetime import UTC, date, datetime, time
 from math import asin, atan2, cos, hypot, sin, tan
 
@@ -230,23 +231,14 @@ def draw_text(pdf: FPDF, element: ET.Element) -> None:
     )
     pdf.set_font(FONT, "B" if bold else "", size * POINTS_PER_UNIT)
     turn = TURN.fullmatch(attributes.get("transform", ""))
-    if turn:
-        degrees, center_x, center_y = (float(word) for word in turn.groups())
-        with pdf.rotation(-degrees, center_x, center_y):
-            write(pdf, x, y, content, attributes)
-    else:
-        write(pdf, x, y, content, attributes)
-
-
-def write(pdf: FPDF, x: float, y: float, content: str, attributes: dict[str, str]) -> None:
-    """Writes a line of text whose left end is at a page point."""
-    if "stroke" in attributes:
-        width = float(attributes["stroke-width"])
-        with pdf.local_context(
-            text_mode=TextMode.STROKE,
-            draw_color=color_from_hex_string(attributes["stroke"]),
-            line_width=width,
-        ):
-            pdf.text(x, y, content)
-    pdf.set_text_color(color_from_hex_string(attributes["fill"]))
-    pdf.text(x, y, content)
+    degrees, center_x, center_y = (float(word) for word in turn.groups()) if turn else (0.0, 0.0, 0.0)
+    with pdf.rotation(-degrees, center_x, center_y) if turn else nullcontext():
+        if "stroke" in attributes:
+            with pdf.local_context(
+                text_mode=TextMode.STROKE,
+                draw_color=color_from_hex_string(attributes["stroke"]),
+                line_width=float(attributes["stroke-width"]),
+            ):
+                pdf.text(x, y, content)
+        pdf.set_text_color(color_from_hex_string(attributes["fill"]))
+        pdf.text(x, y, content)

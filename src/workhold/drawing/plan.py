@@ -5,20 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import reduce
 from itertools import pairwise
+from math import cos, floor, pi, radians, sin
 from typing import Literal
 
-from workhold.drawing.annotation import PAST_END, angle_mark, dimension, dimension_box
+from workhold.drawing.annotation import PAST_END, dimension, dimension_box
 from workhold.drawing.bench import Bench, draw_bench
 from workhold.drawing.carriers import block_arrow, labelled
 from workhold.drawing.path_drawn import PlannedPath
-from workhold.drawing.plan_labels import (
-    ANGLE_RADIUS,
-    ANGLE_REACH,
-    LONGEST_ARROW,
-    Overlays,
-    draw_labels,
-)
-from workhold.drawing.scene import BLACK, GREY, Box, LengthUnit, Scene, View, text_width
+from workhold.drawing.plan_labels import ANGLE_RADIUS, ANGLE_REACH, LONGEST_ARROW, draw_labels
+from workhold.drawing.scene import BLACK, GREY, Box, LengthUnit, Scene, View, number, text_width
 from workhold.drawing.supports_drawn import PlannedSupports, draw_supports
 from workhold.fixels.carrier import column_letters
 from workhold.geometry.segment import Point
@@ -77,8 +72,7 @@ def draw_plan(
     angle_mark(scene, center, bench.fixture.pose.theta_deg, ANGLE_RADIUS, ANGLE_REACH)
     marks = [(view(point), name) for point, name in marks]
     angle = f"θ = {bench.fixture.pose.theta_deg:.3f}°" if angle is None else angle
-    overlays = Overlays(supports, path)
-    draw_labels(scene, bench, view, workpiece, bounds, names, marks, angle, overlays, lengths)
+    draw_labels(scene, bench, view, workpiece, bounds, names, marks, angle, supports, path, lengths)
 
 
 def draw_hole_names(
@@ -179,9 +173,9 @@ def draw_travel(
     All words are within the bounds. Of two lengths along the same way the second stands farther out.
     """
     group, boxes, lines = scene.group("opening"), [], []
-    for number, measured in enumerate(bench.shown.measured):
+    for place, measured in enumerate(bench.shown.measured):
         upright = measured.is_upright
-        out = FARTHER * sum(one.is_upright == upright for one in bench.shown.measured[:number])
+        out = FARTHER * sum(one.is_upright == upright for one in bench.shown.measured[:place])
         out += BESIDE if upright else ABOVE
         start, end = (
             (frame.x1 + out, y) if upright else (x, frame.y0 - out)
@@ -258,3 +252,25 @@ def side_by_side(lefts: Sequence[float], widths: Sequence[float], right: float) 
         placed[k] = min(placed[k], end - widths[k])
         end = placed[k] - CAPTION_GAP
     return placed
+
+
+def angle_mark(scene: Scene, center: Point, theta_deg: float, radius: float, reach: float) -> None:
+    """Draws the turn from the vise's x axis (a dashed line) to the part's (an arrow) around a page point."""
+    x, y = center
+    theta = radians(theta_deg % 360.0)
+    mark = scene.group("pose")
+    mark.line([(x, y), (x + reach, y)], GREY, 1.0, stroke_dasharray="5 3")
+    mark.arrow((x, y), (x + reach * cos(theta), y - reach * sin(theta)), GREY, 1.4, 9)
+    mark.circle(center, 2.2, GREY)
+    if theta * radius < 10.0:
+        return
+    end = theta - 7.0 / radius  # leave room for the head
+    pieces = max(1, floor(end / (pi / 2)) + 1)
+    d = f"M{number(x + radius)} {number(y)}"
+    for k in range(1, pieces + 1):
+        a = end * k / pieces
+        end_x, end_y = number(x + radius * cos(a)), number(y - radius * sin(a))
+        d += f"A{number(radius)} {number(radius)} 0 0 0 {end_x} {end_y}"
+    mark.path(d, GREY, 1.0)
+    tip = (x + radius * cos(theta), y - radius * sin(theta))
+    mark.arrow_head(tip, -(theta + pi / 2) + 3.5 / radius, GREY, 7.5)

@@ -6,12 +6,11 @@ Each stands where it hides least of the drawing and of the other labels.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import atan2, cos, hypot, pi, radians, sin
+from math import atan2, cos, dist, pi, radians, sin
 
 import numpy as np
-from attrs import frozen
 
-from workhold.drawing.annotation import Label, LabelPlacer, Place, around, joined, leader_end
+from workhold.drawing.annotation import Label, LabelPlacer, Place, around, joined
 from workhold.drawing.bench import PEG_FILL, Bench, draw_zero, force_arrow
 from workhold.drawing.carriers import avoid_clamp
 from workhold.drawing.path_drawn import PlannedPath
@@ -20,7 +19,7 @@ from workhold.drawing.supports_drawn import PlannedSupports
 from workhold.geometry.segment import Point
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["ANGLE_RADIUS", "ANGLE_REACH", "LONGEST_ARROW", "Overlays", "draw_labels"]
+__all__ = ["ANGLE_RADIUS", "ANGLE_REACH", "LONGEST_ARROW", "draw_labels"]
 
 LONGEST_ARROW = 62.0
 LABEL_SIZE, LABEL_HEIGHT = 15.0, 22.0
@@ -29,20 +28,6 @@ ANGLE_RADIUS, ANGLE_REACH = 24.0, 48.0
 MARK_RADIUS = 5.0
 # In denser lattices labels cannot help covering holes.
 MOST_HOLES_AVOIDED = 2000
-
-
-@frozen(eq=False)
-class Overlays:
-    """What a plan shows beside a fixture.
-
-    Parameters
-    ----------
-    supports : below the part, and the clamp on top; None for none.
-    path : of a program's tools; None for none.
-    """
-
-    supports: PlannedSupports | None = None
-    path: PlannedPath | None = None
 
 
 def draw_labels(
@@ -54,7 +39,8 @@ def draw_labels(
     names: list[Box],
     marks: Sequence[tuple[Point, str]],
     angle: str,
-    overlays: Overlays,
+    supports: PlannedSupports | None,
+    path: PlannedPath | None,
     lengths: LengthUnit,
 ) -> None:
     """Labels pegs, touched faces, the part's turn and marked page points, where that hides nothing.
@@ -68,47 +54,35 @@ def draw_labels(
         placer.avoid_box(box)
     for (x, y), _ in marks:
         placer.avoid_box(Box(x, y, x, y).grown(MARK_RADIUS))
-    supports, path = overlays.supports, overlays.path
     if supports is not None:
         supports.avoided(placer, view)
     if path is not None:
         path.avoided(placer, view)
-    labelled_pegs, pegs = bench.placed, bench.fixture.pegs
+    pegs = bench.fixture.pegs
     numbers = list(dict.fromkeys(pegs[index].face for index in bench.touching))
-    direction = -radians(bench.fixture.pose.theta_deg) / 2
-    places = placer.place(
+    direction, angle_size = -radians(bench.fixture.pose.theta_deg) / 2, (text_width(angle, 13) + 4, 16.0)
+    placed = placer.place(
         [
-            *(peg_label(bench, index, view) for index in labelled_pegs),
+            *(peg_label(bench, index, view) for index in bench.placed),
             *(face_tag(bench, face, view) for face in numbers),
-            around(
-                center,
-                direction,
-                (text_width(angle, 13) + 4, 16),
-                (26, 32, 40, 50, 64),
-                spread(24),
-                turn_cost=4,
-            ),
+            around(center, direction, angle_size, (26, 32, 40, 50, 64), spread(24), turn_cost=4),
             *(mark_label(point, name) for point, name in marks),
             *([] if path is None else path.labels(view, lengths)),
             *([] if supports is None else supports.labels(view)),
         ]
     )
-    group = scene.group("labels")
-    for index, place in zip(labelled_pegs, places, strict=False):
-        draw_flag(group, place, bench.radius(view, index), pegs[index].hole)
-    rest = places[len(labelled_pegs) :]
-    for face, place in zip(numbers, rest, strict=False):
-        draw_tag(group, place, str(face))
-    group.text(rest[len(numbers)].box.center, angle, 13, "middle", fill=GREY, halo=3)
-    last = rest[1 + len(numbers) :]
-    for (_, name), place in zip(marks, last, strict=False):
-        draw_mark(group, place, name)
-    last = last[len(marks) :]
+    group, places = scene.group("labels"), iter(placed)
+    for index in bench.placed:
+        draw_flag(group, next(places), bench.radius(view, index), pegs[index].hole)
+    for face in numbers:
+        draw_tag(group, next(places), str(face))
+    group.text(next(places).box.center, angle, 13, "middle", fill=GREY, halo=3)
+    for _, name in marks:
+        draw_mark(group, next(places), name)
     if path is not None and path.passing is not None:
-        path.draw_name(group, last[:1], lengths)
-        last = last[1:]
+        path.draw_name(group, next(places), lengths)
     if supports is not None:
-        supports.draw_names(group, last, view)
+        supports.draw_names(group, list(places), view)
 
 
 def avoid_drawing(placer: LabelPlacer, bench: Bench, view: View, center: Point) -> None:
@@ -179,25 +153,22 @@ def face_tag(bench: Bench, face_number: int, view: View) -> Label:
 
 def draw_flag(scene: Scene, place: Place, radius: float, name: str) -> None:
     """Draws the label of a peg: a framed name, and a leader when it stands off."""
-    peg = place.anchor
-    x, y = leader_end(peg, place.box)
-    gap = hypot(x - peg[0], y - peg[1])
-    if gap > radius + 2:
-        share = radius / gap
-        scene.line([(peg[0] + share * (x - peg[0]), peg[1] + share * (y - peg[1])), (x, y)], PEG_FILL, 1.4)
+    leader = place.leader(radius)
+    if dist(*leader) > 2:
+        scene.line(leader, PEG_FILL, 1.4)
     scene.rectangle(place.box, "#ffffff", PEG_FILL, 1.4, 4)
     scene.text(place.box.center, name, LABEL_SIZE, "middle", bold=True)
 
 
 def draw_mark(scene: Scene, place: Place, name: str) -> None:
     """Draws the sign of a zero point, a quartered disc, and its name with a leader."""
-    scene.line([place.anchor, leader_end(place.anchor, place.box)], BLACK, 0.8)
+    scene.line(place.leader(), BLACK, 0.8)
     draw_zero(scene, place.anchor, MARK_RADIUS)
     scene.text(place.box.center, name, TAG_SIZE, "middle", halo=2.5)
 
 
 def draw_tag(scene: Scene, place: Place, name: str) -> None:
     """Draws the number of a face in a rounded frame with a short leader to the face."""
-    scene.line([place.anchor, leader_end(place.anchor, place.box)], BLACK, 0.8)
+    scene.line(place.leader(), BLACK, 0.8)
     scene.rectangle(place.box, "#ffffff", BLACK, 0.9, TAG_HEIGHT / 2)
     scene.text(place.box.center, name, TAG_SIZE, "middle")

@@ -10,6 +10,7 @@ from math import inf
 from workhold.drawing.annotation import scale_bar
 from workhold.drawing.bench import outline_path
 from workhold.drawing.panel import TextColumn, plural
+from workhold.drawing.part_pictures import EDGE, FOOTER, HEADER, draw_header
 from workhold.drawing.path_drawn import (
     COLOURS,
     NEAREST,
@@ -20,26 +21,17 @@ from workhold.drawing.path_drawn import (
     heights_cut,
     shaded,
 )
-from workhold.drawing.scene import (
-    BLACK,
-    GREY,
-    LANDSCAPE,
-    Box,
-    LengthUnit,
-    Scene,
-    View,
-    shortened,
-)
+from workhold.drawing.scene import BLACK, GREY, LANDSCAPE, Box, LengthUnit, Scene, View, shortened
 from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, heading
 from workhold.errors import listed
 from workhold.model.program import Program
-from workhold.model.program_figures import ToolFigures, tip_box, tool_figures
+from workhold.model.program_figures import tip_box, tool_figures
 from workhold.model.workpiece import Workpiece
 from workhold.units import MILLIMETRE, Unit
 
 __all__ = ["draw_program", "passing_sentence", "write_path", "write_program"]
 
-EDGE, HEADER, FOOTER, SIDE = 32.0, 62.0, 30.0, 268.0
+SIDE = 268.0
 PART = "#eceff2"
 LEGEND_ROW = 62.0
 MOST_LISTED = 8
@@ -70,25 +62,14 @@ def draw_program(program: Program, *, workpiece: Workpiece | None = None, unit: 
     room = Box(EDGE, EDGE + HEADER, width - EDGE - SIDE, height - EDGE - FOOTER)
     view = View.fitting(bounds, room.grown(-8))
     scene = Scene.page(LANDSCAPE, f"{program.name}: paths of the tools")
-    group = scene.group("header")
-    group.text((EDGE, EDGE + 12), shortened(program.name, 26, width - 2 * EDGE, bold=True), 26, bold=True)
     words = f"{plural(len(program.moves), 'move')} of {plural(len(figures), 'tool')}, seen from above"
-    group.text((EDGE, EDGE + 40), words, 14, fill=GREY)
+    draw_header(scene, LANDSCAPE, program.name, words)
     if workpiece is not None:
         d = outline_path(workpiece.loop_segments, view)
         scene.group("part", view).path(d, BLACK, 1.2, PART, fill_rule="evenodd")
-    paths = scene.group("paths", view)
-    draw_paths(paths, program, PagePaths.of(program.moves, view))
-    levels = heights_cut(program)
+    draw_paths(scene.group("paths", view), program, PagePaths.of(program.moves, view))
     draw_zero(scene, view(program.zero))
-    draw_legend(
-        scene,
-        program,
-        figures,
-        levels,
-        lengths,
-        Box(width - EDGE - SIDE + 20, room.y0, width - EDGE, room.y1),
-    )
+    draw_legend(scene, program, lengths, Box(width - EDGE - SIDE + 20, room.y0, width - EDGE, room.y1))
     scale_bar(scene, (EDGE, height - EDGE), view.scale, lengths)
     return scene.svg()
 
@@ -97,16 +78,9 @@ def bounds_of(program: Program, workpiece: Workpiece | None) -> Box:
     """What is shown, in mm: all that the flutes sweep at their paths, the zero and the part."""
     low, high = tip_box(program.moves)
     around = max(tool.diameter for tool in program.tools.values()) / 2
-    corners = [
-        (low[0] - around, low[1] - around),
-        (high[0] + around, high[1] + around),
-        program.zero,
-    ]
-    if workpiece is not None:
-        x0, y0, x1, y1 = workpiece.bounds
-        corners += [(x0, y0), (x1, y1)]
-    xs, ys = zip(*corners, strict=True)
-    return Box(float(min(xs)), float(min(ys)), float(max(xs)), float(max(ys)))
+    swept = Box(*low[:2].tolist(), *high[:2].tolist()).grown(around)
+    bounds = swept.union(Box(*program.zero, *program.zero))
+    return bounds if workpiece is None else bounds.union(Box(*workpiece.bounds))
 
 
 def draw_zero(scene: Scene, at: tuple[float, float]) -> None:
@@ -120,17 +94,9 @@ def draw_zero(scene: Scene, at: tuple[float, float]) -> None:
     group.text((x, y - 43), "Y", 12, "middle", halo=2)
 
 
-def draw_legend(
-    scene: Scene,
-    program: Program,
-    figures: tuple[ToolFigures, ...],
-    levels: tuple[float, float],
-    lengths: LengthUnit,
-    box: Box,
-) -> None:
+def draw_legend(scene: Scene, program: Program, lengths: LengthUnit, box: Box) -> None:
     """Lists the tools with their colours, and says what shades and dashes mean."""
-    group = scene.group("legend")
-    y = box.y0 + 8
+    group, figures, y = scene.group("legend"), tool_figures(program), box.y0 + 8
     for place, one in enumerate(figures[:MOST_LISTED]):
         tool = program.tools[one.tool]
         group.line([(box.x0, y), (box.x0 + 26, y)], COLOURS[place % len(COLOURS)], 8, stroke_linecap="round")
@@ -150,7 +116,7 @@ def draw_legend(
     for level in range(SHADES):
         x = box.x0 + 22 * level
         group.rectangle(Box(x, y - 6, x + 22, y + 6), shaded(COLOURS[0], level))
-    low, high = (lengths.number(level) for level in levels)
+    low, high = map(lengths.number, heights_cut(program))
     group.text((box.x0, y + 20), f"dark at z {low}, light at z {high} {lengths.sign}", 12, fill=GREY)
     y += 52
     group.line([(box.x0, y), (box.x0 + 34, y)], GREY, 1.2, stroke_dasharray="6 5")

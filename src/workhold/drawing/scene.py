@@ -224,25 +224,27 @@ class Scene:
             + "\n"
         )
 
-    def add(self, tag: str, attributes: Attributes) -> ET.Element:
-        """Adds any element."""
+    def add(
+        self, tag: str, attributes: Attributes, stroke: str = "none", width: float = 1.0, **more: str
+    ) -> ET.Element:
+        """Adds any element; further attributes are named with ``_`` for ``-``."""
+        if stroke != "none":
+            attributes |= {"stroke": stroke, "stroke-width": number(width)}
+        attributes |= {key.replace("_", "-"): value for key, value in more.items()}
         return ET.SubElement(self.element, tag, attributes)
 
     def group(self, name: str, view: View | None = None, **attributes: str) -> Scene:
         """Adds a group of the class ``name``; with a view, ``data-model-to-page`` holds the map from mm."""
-        found = {"class": name, **{key.replace("_", "-"): value for key, value in attributes.items()}}
+        element = self.add("g", {"class": name}, "none", 1.0, **attributes)
         if view is not None:
-            found["data-model-to-page"] = view.matrix
-        return Scene(self.add("g", found))
+            element.set("data-model-to-page", view.matrix)
+        return Scene(element)
 
     def path(
         self, d: str, stroke: str = "none", width: float = 1.0, fill: str = "none", **more: str
     ) -> ET.Element:
         """Adds a path."""
-        attributes = {"d": d, "fill": fill}
-        if stroke != "none":
-            attributes |= {"stroke": stroke, "stroke-width": number(width)}
-        return self.add("path", attributes | {key.replace("_", "-"): value for key, value in more.items()})
+        return self.add("path", {"d": d, "fill": fill}, stroke, width, **more)
 
     def line(
         self, points: Sequence[Point], stroke: str = BLACK, width: float = 1.0, **more: str
@@ -270,9 +272,7 @@ class Scene:
         }
         if round_by:
             attributes["rx"] = number(round_by)
-        if stroke != "none":
-            attributes |= {"stroke": stroke, "stroke-width": number(width)}
-        return self.add("rect", attributes)
+        return self.add("rect", attributes, stroke, width)
 
     def circle(
         self,
@@ -285,9 +285,7 @@ class Scene:
     ) -> ET.Element:
         """Adds a circle."""
         attributes = {"cx": number(center[0]), "cy": number(center[1]), "r": number(radius), "fill": fill}
-        if stroke != "none":
-            attributes |= {"stroke": stroke, "stroke-width": number(width)}
-        return self.add("circle", attributes | {key.replace("_", "-"): value for key, value in more.items()})
+        return self.add("circle", attributes, stroke, width, **more)
 
     def text(
         self,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import cached_property
 from math import asin, ceil, degrees, floor, inf, log10
 
@@ -17,7 +17,7 @@ from workhold.model.workpiece import Workpiece
 from workhold.seating.clamping import Gauge
 from workhold.seating.part_features import Silhouette
 
-__all__ = ["SeatingSentences", "down"]
+__all__ = ["SeatingSentences", "down", "sentence"]
 
 # A larger turn has no bound, in degrees.
 ANY_TURN = 180.0
@@ -123,10 +123,8 @@ class SeatingSentences:
     def steps(self, workpiece: Workpiece) -> list[str]:
         """What to do and what to read, one step each."""
         seating, right = self.seating, self.reads(self.reading(self.own))
-        ways, (most, more) = (
-            self.gauge.ways,
-            ("at most", "more") if self.gauge.grows else ("at least", "less"),
-        )
+        ways = self.gauge.ways
+        most, more = ("at most", "more") if self.gauge.grows else ("at least", "less")
         capture, room = seating.capture_opening, seating.drop_room
         widest = inf if seating.most is None else seating.most
         if seating.is_untold:
@@ -165,25 +163,20 @@ class SeatingSentences:
         if seating.opening is not None:
             reach = f", {self.gauge.ways.done.lower()} by no more than {self.bound(seating.opening)},"
         wrong, over = self.wrong, sum(seat.mirrored for seat in self.wrong)
-        turned = (
-            "" if not over else ", turned over" if over == len(wrong) else f", {over} of them turned over"
-        )
+        turned = "" if not over else f", {f'{over} of them ' if over < len(wrong) else ''}turned over"
         places = "one wrong place" if len(wrong) == 1 else f"{len(wrong)} wrong places"
         words = [f"The same pegs{reach} hold the part in no wrong place."]
         if wrong:
-            plain = abs(wrong[0].difference) >= CLOSE_READING
-            hint = (
-                "the reading shows it"
-                if plain
-                else "see how the part lies, the reading alone does not show it"
-            )
+            hint = "see how the part lies, the reading alone does not show it"
+            if abs(wrong[0].difference) >= CLOSE_READING:
+                hint = "the reading shows it"
             words = [f"The same pegs{reach} can hold the part in {places}{turned}: {hint}."]
         if self.alike:
             words.append(
                 f"In {self.alike} more it lies turned round or over and covers its place all the same, which "
                 "no reading shows it: mark the part."
             )
-        return [*words, *in_sentences(seating.unsettled)]
+        return [*words, *map(sentence, seating.unsettled)]
 
     def ended(self, ending: str, seat: Seat | None, travelled: float) -> str:
         """A sentence on how a closing ended, see ``seating.closing_simulation.ENDINGS``, with the reading."""
@@ -194,9 +187,8 @@ class SeatingSentences:
             way = "turned over" if seat.mirrored else "turned round"
             return f"It covers its place, but {way}: {read}, which shows nothing. Mark the part."
         if seat is not None:
-            kind = {"loose": " that does not locate it", "unsettled": " that is not settled"}.get(
-                seat.kind, ""
-            )
+            unsure = {"loose": " that does not locate it", "unsettled": " that is not settled"}
+            kind = unsure.get(seat.kind, "")
             off = self.difference(seat)
             read_as = "as when it is right" if off == "the same" else f"{off} than when it is right"
             return f"It comes to rest in a wrong place{kind}: {read}, {read_as}."
@@ -210,30 +202,23 @@ class SeatingSentences:
         """The cautions: of each its kind, "capture" or "reading", and a sentence."""
         seating, found = self.seating, list[tuple[str, str]]()
         if seating.is_untold:
-            found.append(
-                ("capture", "From where on the part is caught is not known: hold it in its place meanwhile.")
-            )
+            words = "From where on the part is caught is not known: hold it in its place meanwhile."
+            found.append(("capture", words))
         elif seating.capture_opening is not None and seating.is_hardly_caught:
-            found.append(
-                (
-                    "capture",
-                    f"The part is caught from next to nothing: {self.gauge.ways.done.lower()} by "
-                    f"{self.bound(seating.capture_opening)} it may come to rest elsewhere. Hold it in its "
-                    "place meanwhile, and compare the reading.",
-                )
+            words = (
+                f"The part is caught from next to nothing: {self.gauge.ways.done.lower()} by "
+                f"{self.bound(seating.capture_opening)} it may come to rest elsewhere. Hold it in its "
+                "place meanwhile, and compare the reading."
             )
-        near = self.wrong[0] if self.wrong else None
-        if near is not None and abs(near.difference) < CLOSE_READING:
-            off = "no different" if self.difference(near) == "the same" else f"only {self.difference(near)}"
-            found.append(
-                (
-                    "reading",
-                    f"In a wrong place the reading is {off}: see by the picture that the part lies right.",
-                )
-            )
+            found.append(("capture", words))
+        if self.wrong and abs(self.wrong[0].difference) < CLOSE_READING:
+            off = self.difference(self.wrong[0])
+            off = "no different" if off == "the same" else f"only {off}"
+            words = f"In a wrong place the reading is {off}: see by the picture that the part lies right."
+            found.append(("reading", words))
         return found
 
 
-def in_sentences(words: Sequence[str]) -> list[str]:
-    """Sentences that begin with a capital letter."""
-    return [f"{sentence[:1].upper()}{sentence[1:]}" for sentence in words]
+def sentence(words: str) -> str:
+    """Words that begin with a capital letter."""
+    return f"{words[:1].upper()}{words[1:]}"

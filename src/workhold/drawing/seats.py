@@ -7,15 +7,18 @@ the part ends up where it should, and how it looks where it does not.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import reduce
+
+from attrs import frozen
 
 from workhold.drawing.bench import ARROW, PART_FILL, PEG_FILL, outline_path
-from workhold.drawing.fixture_pictures import CAPTION, EDGE, MOST_THUMBNAILS, grid
+from workhold.drawing.fixture_pictures import MOST_THUMBNAILS, cells_of, draw_heading
 from workhold.drawing.panel import TextColumn
-from workhold.drawing.scene import BLACK, GREY, LANDSCAPE, Box, Scene, View, shortened, text_width
+from workhold.drawing.scene import BLACK, GREY, LANDSCAPE, Box, Scene, View, text_width
 from workhold.drawing.seating_words import SeatingSentences
 from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, heading
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.segment import Segment
+from workhold.geometry.segment import Point, Segment
 from workhold.model.fixture import Fixture
 from workhold.model.seating import Seat
 from workhold.model.workpiece import Workpiece
@@ -54,28 +57,19 @@ def draw_seats(
     str
         SVG text.
     """
-    shown = seats[:MOST_THUMBNAILS]
+    placed = [Placed.of(seat, fixture, workpiece, toolkit) for seat in seats[:MOST_THUMBNAILS]]
     scene = Scene.page(LANDSCAPE, f"{workpiece.name}: seats")
-    width = LANDSCAPE[0]
-    more = len(seats) - len(shown)
+    more = len(seats) - len(placed)
     words = "all to the same scale" if not more else f"{more} more not drawn; all to the same scale"
-    room = width - 2 * EDGE - text_width(words, 14) - 20
-    scene.text(
-        (EDGE, EDGE + 10),
-        shortened(f"{workpiece.name}: {title} and its seats", 24, room, bold=True),
-        24,
-        bold=True,
-    )
-    scene.text((width - EDGE, EDGE + 10), words, 14, "end", fill=GREY)
-    cells = grid(len(shown))
-    rooms = [Box(cell.x0 + 8, cell.y0 + 8, cell.x1 - 8, cell.y1 - CAPTION) for cell in cells]
-    placed = [Placed.of(seat, fixture, workpiece, toolkit) for seat in shown]
-    scale = min(View.fitting(one.extent, box).scale for one, box in zip(placed, rooms, strict=True))
-    for k, (one, cell, box) in enumerate(zip(placed, cells, rooms, strict=True)):
-        draw_seat(scene.group("seat"), one, k + 1, cell, View.fitting(one.extent, box, scale), unit)
+    draw_heading(scene, f"{workpiece.name}: {title} and its seats", words)
+    for number, (one, (cell, view)) in enumerate(
+        zip(placed, cells_of([one.extent for one in placed]), strict=True), 1
+    ):
+        draw_seat(scene.group("seat"), one, number, cell, view, unit)
     return scene.svg()
 
 
+@frozen(eq=False)
 class Placed:
     """A seat with its part and pegs where they are, in mm in the vise frame.
 
@@ -90,18 +84,13 @@ class Placed:
     touching : how the part lies in the fixture, in two words.
     """
 
-    def __init__(
-        self,
-        seat: Seat,
-        loops: list[list[Segment]],
-        pegs: list[tuple[tuple[float, float], float, bool]],
-        reading: tuple[float, float],
-        extent: Box,
-        walls: int,
-        touching: str,
-    ) -> None:
-        self.seat, self.loops, self.pegs, self.reading, self.extent = seat, loops, pegs, reading, extent
-        self.walls, self.touching = walls, touching
+    seat: Seat
+    loops: Sequence[Sequence[Segment]]
+    pegs: list[tuple[Point, float, bool]]
+    reading: tuple[float, float]
+    extent: Box
+    walls: int
+    touching: str
 
     @classmethod
     def of(cls, seat: Seat, fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Placed:
@@ -115,17 +104,11 @@ class Placed:
             if toolkit.carrier(peg.carrier).contact.is_placed
         ]
         reading = gauge.at(seat.jaw_separation), gauge.setting.length
-        x0, y0, x1, y1 = lying.bounds
-        boxes = [(x0, y0, x1, y1), *((x - r, y - r, x + r, y + r) for (x, y), r, _ in pegs)]
-        walls = len(toolkit.ends_on_walls)
-        boxes += [(x0, -WALL, x1, 0.0)] * walls
-        lows, highs = zip(*((box[:2], box[2:]) for box in boxes), strict=True)
-        extent = Box(
-            *(min(ends) for ends in zip(*lows, strict=True)),
-            *(max(ends) for ends in zip(*highs, strict=True)),
-        )
-        loops = [list(loop) for loop in lying.loop_segments]
-        return cls(seat, loops, pegs, reading, extent, walls, toolkit.setup_words.touching)
+        bounds, walls = Box(*lying.bounds), len(toolkit.ends_on_walls)
+        boxes = [bounds, *(Box(*at, *at).grown(radius) for at, radius, _ in pegs)]
+        boxes += [Box(bounds.x0, -WALL, bounds.x1, 0.0)] * walls
+        extent, lies = reduce(Box.union, boxes), toolkit.setup_words.touching
+        return cls(seat, lying.loop_segments, pegs, reading, extent, walls, lies)
 
 
 def draw_lying(scene: Scene, placed: Placed, view: View, weight: float = 1.2) -> None:
@@ -184,9 +167,7 @@ def write_seating(column: TextColumn, sheet: Sheet) -> None:
     else:
         column.paragraph(sheet.details.not_seated, BODY)
     for number, step in enumerate(steps, 1):
-        column.scene.text((column.x, column.y + 0.75 * BODY), f"{number}.", BODY, bold=True, middle=False)
-        column.paragraph(step, BODY, indent=18)
-        column.y += 2
+        column.item(f"{number}.", step, BODY)
 
 
 def write_wrong_seats(column: TextColumn, sheet: Sheet) -> None:

@@ -5,20 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from workhold.drawing.hardware_table import write_hardware
-from workhold.drawing.panel import TextColumn, draw_legend, fixture_words, pegs_words
+from workhold.drawing.panel import TextColumn, draw_legend, fixture_words, pegs_words, value_words
 from workhold.drawing.program_picture import write_program
 from workhold.drawing.scene import BLACK, LengthUnit, shortened, text_width, wrapped
 from workhold.drawing.seats import write_seating, write_wrong_seats
 from workhold.drawing.sheet_setting import CLAMPS, OPENING, write_counting, write_pegs
-from workhold.drawing.sheet_writing import (
-    BODY,
-    NOTE,
-    Block,
-    MovingBlocks,
-    Sheet,
-    Writer,
-    heading,
-)
+from workhold.drawing.sheet_writing import BODY, NOTE, Block, MovingBlocks, Sheet, Writer, heading
 from workhold.drawing.supports_drawn import draw_pad, draw_tip, support_steps, write_heights, write_supports
 from workhold.drawing.upper_side import write_part, write_side, write_side_up
 from workhold.fixels.carrier import Measure
@@ -65,7 +57,7 @@ def write_quality(column: TextColumn, sheet: Sheet) -> None:
             case "N":
                 words = sheet.lengths.unit.force_words(value)
             case _:
-                words = f"{value:.4f}" if value >= 0.001 else f"{value:.2e}".replace("-", "−")
+                words = value_words(value)
         column.fact(figure.words + (" (largest peg force)" if figure.key == "load_reaction" else ""), words)
     tolerance, lengths = sheet.details.tolerance, sheet.lengths
     if "location_error" in sheet.fixture.quality:
@@ -234,10 +226,7 @@ def write_cautions(column: TextColumn, sheet: Sheet) -> None:
     """Writes what to beware of, each behind a sign."""
     heading(column, "Beware")
     for caution in sheet.cautions:
-        y = column.y
-        column.scene.text((column.x, y + 0.75 * BODY), "▲", BODY, bold=True, middle=False)
-        column.paragraph(caution.sentence, BODY, indent=18)
-        column.y += 2
+        column.item("▲", caution.sentence, BODY)
 
 
 def write_steps(column: TextColumn, sheet: Sheet) -> None:
@@ -245,20 +234,13 @@ def write_steps(column: TextColumn, sheet: Sheet) -> None:
     heading(column, "Setting up")
     given = "as given under part zero X0 Y0, or touch off the part there"
     zero = f"Set the machine's zero, G54, from {sheet.datum.name} {given}."
-    for number, step in enumerate(
-        [*support_steps(sheet, MOVING[sheet.toolkit.moving.measure].steps(sheet)), zero], 1
-    ):
-        column.scene.text((column.x, column.y + 0.75 * BODY), f"{number}.", BODY, bold=True, middle=False)
-        column.paragraph(step, BODY, indent=18)
-        column.y += 2
+    steps = support_steps(sheet, MOVING[sheet.toolkit.moving.measure].steps(sheet))
+    for number, step in enumerate([*steps, zero], 1):
+        column.item(f"{number}.", step, BODY)
 
 
 def write_legend(column: TextColumn, sheet: Sheet) -> None:
     """Explains the signs of the plan."""
     heading(column, "Signs")
-    draw_legend(column, sheet.toolkit, BLACK)
-    if sheet.details.supports is not None:
-        for draw, words in ((draw_pad, "support below the part"), (draw_tip, "clamp on top, presses down")):
-            draw(column.scene, (column.x + 16, column.y + 8))
-            column.scene.text((column.x + 44, column.y + 8), words, 11.5, fill=BLACK)
-            column.y += 21
+    of_supports = ((draw_pad, "support below the part"), (draw_tip, "clamp on top, presses down"))
+    draw_legend(column, sheet.toolkit, BLACK, of_supports if sheet.details.supports is not None else ())

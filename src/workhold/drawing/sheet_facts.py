@@ -1,4 +1,5 @@
 """What a setup sheet shows besides the fixture: its details, what calipers measure, and cautions.
+
 The details are paper, unit, names, dates, and what the loads do.
 """
 
@@ -7,29 +8,45 @@ from __future__ import annotations
 from collections.abc import Sequence
 from datetime import date
 from math import dist, inf
+from typing import Any
 
-from attrs import field, frozen
+from attrs import evolve, field, frozen
 
 from workhold.drawing.scene import LengthUnit
-from workhold.drawing.seating_words import SeatingSentences
+from workhold.drawing.seating_words import SeatingSentences, sentence
+from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
+from workhold.model.bodies import SUPPORT_HEIGHT
 from workhold.model.first_side import FirstSide
 from workhold.model.fixture import Fixture
 from workhold.model.program import Program
-from workhold.model.requirements import Tolerance
+from workhold.model.requirements import Load, Tolerance
+from workhold.model.result import Result
 from workhold.model.seating import Seating
-from workhold.model.setup import PartZero
+from workhold.model.setup import PartZero, part_zero
+from workhold.model.support_bodies import height_of_supports
 from workhold.model.support_triples import ChosenSupports
 from workhold.model.workpiece import Workpiece
-from workhold.seating.clamping import ByHand
+from workhold.seating.clamping import ByHand, by_hand
 from workhold.statics.contact_matrix import Touched
 from workhold.statics.judging import is_astray, is_near_edge, is_strong, is_unfit, is_weak, lets_go
-from workhold.statics.loads import LoadCase
-from workhold.statics.program_clearance import Passing
-from workhold.statics.program_forces import CuttingNeed
+from workhold.statics.loads import LoadCase, load_cases
+from workhold.statics.program_clearance import Passing, passing_of
+from workhold.statics.program_forces import CuttingNeed, cutting_need_of
 from workhold.units import MILLIMETRE, Unit
+from workhold.version import __version__
 
-__all__ = ["PAPERS", "Caution", "SheetDetails", "caliper_check", "cautions_of", "edge_distances"]
+__all__ = [
+    "PAPERS",
+    "Caution",
+    "SheetDetails",
+    "caliper_check",
+    "cautions_of",
+    "edge_distances",
+    "lift_of",
+    "result_cautions",
+    "result_details",
+]
 
 # Width and height in mm, upright: ISO 216 and ANSI/ASME Y14.1.
 PAPERS = {"a4": (210.0, 297.0), "letter": (215.9, 279.4)}
@@ -249,3 +266,124 @@ def cautions_of(
             )
         )
     return found
+
+
+def lift_of(supports: ChosenSupports | None, support_height: float | None) -> float:
+    """How far the part lies above the plates in mm: as high as its supports, or 0 without any."""
+    if supports is None:
+        return 0.0
+    own = height_of_supports(supports.supports.query.toolkit) if support_height is None else support_height
+    return SUPPORT_HEIGHT if own is None else own
+
+
+def result_cautions(result: Result, rank: int, **asked: Any) -> list[Caution]:
+    """What the setup sheet of one fixture says to beware of; see :func:`result_details`."""
+    fixture, details = result_details(result, rank, **asked)
+    pitch = min(min(carrier.pitch) for carrier in result.toolkit.carriers)
+    lengths = LengthUnit.suiting(details.unit, pitch)
+    distances = edge_distances(fixture, result.workpiece, result.toolkit)
+    return cautions_of(fixture, result.toolkit, distances, details, lengths)
+
+
+def result_details(
+    result: Result,
+    rank: int,
+    *,
+    result_hash: str = "",
+    day: date = date.min,
+    unit: Unit = MILLIMETRE,
+    jaw_force: float | None = None,
+    friction: float | None = None,
+    jaw: str | float = "screw",
+    loads: Sequence[Load] | None = None,
+    zero: str | Sequence[float] | None = None,
+    peg_height: float | None = None,
+    others: int | None = None,
+    number: int | None = None,
+    count: int | None = None,
+    seating: bool | None = None,
+    supports: ChosenSupports | None = None,
+    support_height: float | None = None,
+    **further: Any,
+) -> tuple[Fixture, SheetDetails]:
+    """One fixture with all figures of quality, and the further details of its setup sheet.
+
+    Parameters
+    ----------
+    rank : of the fixture, from 1.
+    loads : instead of those of the result, if given.
+    jaw : what closes the vise, see :func:`workhold.statics.loads.jaw_stiffness`.
+    zero : part zero, see :func:`workhold.model.setup.part_zero`; its numbers are in ``unit``.
+    others : how many other fixtures use the same holes; counted in the result if None.
+    number, count : the rank in a larger result and how many that lists, for a fixture taken out of it.
+    seating : whether the sheet shows where else the pegs can hold the part; None shows it where the result
+        has it.
+    supports : see :class:`SheetDetails`; with these the sheet is of their fixture in holes that all have
+        names.
+    result_hash, day, unit, jaw_force, friction, peg_height, support_height : see :class:`SheetDetails`.
+    further : any others of :class:`SheetDetails`, such as ``paper`` or ``thickness``.
+
+    Raises
+    ------
+    InputError
+        For a jaw force, a coefficient of friction or a part zero that cannot be.
+    """
+    from workhold.seating.solver import Solver
+    from workhold.statics.quality import measured_fixture
+
+    asked = result.query.loads if loads is None else loads
+    jaw_force = result.query.jaw_force if jaw_force is None else jaw_force
+    fixture = measured_fixture(result, rank - 1, asked, jaw_force)
+    workpiece, toolkit = result.workpiece, result.toolkit
+    known, not_seated = result[rank - 1].seating if seating is not False else None, ""
+    if supports is not None and supports.recounted.fixture.pegs != fixture.pegs:
+        # The readings of its seats would be those of other holes.
+        seating, known = seating or known is not None, None
+        fixture = evolve(supports.recounted.fixture, quality=fixture.quality)
+    if seating is None and not toolkit.closes_at_once:
+        seating = rank <= (result.query.seating or 0)
+    put_in = None if not seating or toolkit.closes_at_once else by_hand(fixture, workpiece, toolkit)
+    if seating and known is None and put_in is None:
+        try:
+            known = Solver(workpiece, toolkit).of(fixture)
+        except InputError as error:
+            not_seated = sentence(str(error))
+    program, reach = result.query.program, result.query.peg_height
+    if peg_height is None and reach is not None:
+        # The query's height is above where the part lies, the sheet's above the plates.
+        peg_height = reach + lift_of(supports, support_height)
+    cutting = cutting_need_of(result, rank - 1, jaw_force, jaw)
+    if cutting is not None:
+        listed_holes = [peg.hole for peg in result[rank - 1].pegs]
+        cutting = cutting.in_holes(listed_holes, [peg.hole for peg in fixture.pegs])
+    cases = load_cases(fixture, workpiece, toolkit, asked, jaw_force, friction, jaw)
+    if program is not None and zero is None:
+        # Where the program counts from is what the machinist sets.
+        place = PartZero(program.zero, "place given" if any(program.zero) else "origin of the drawing")
+    else:
+        place = part_zero(workpiece, zero, unit)
+    details = SheetDetails(
+        number=rank if number is None else number,
+        count=len(result) if count is None else count,
+        day=day,
+        result_hash=result_hash,
+        version=__version__,
+        unit=unit,
+        tolerance=result.query.tolerance,
+        jaw_force=jaw_force,
+        friction=friction,
+        loads=cases,
+        zero=place,
+        peg_height=peg_height,
+        others=result.table.same_holes(rank - 1) if others is None else others,
+        seating=known,
+        by_hand=put_in,
+        not_seated=not_seated,
+        supports=supports,
+        support_height=support_height,
+        program=program,
+        passing=passing_of(result, rank - 1),
+        cutting=cutting,
+        **further,
+    )
+    return fixture, details

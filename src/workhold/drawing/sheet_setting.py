@@ -10,7 +10,7 @@ from __future__ import annotations
 from functools import partial
 from math import ceil
 
-from workhold.drawing.panel import NUMBERS, TextColumn, diameter_words, holes_words, offset_words
+from workhold.drawing.panel import NUMBERS, TextColumn, diameter_words, holes_words, offset_words, plural
 from workhold.drawing.sheet_facts import caliper_check
 from workhold.drawing.sheet_writing import (
     BODY,
@@ -67,12 +67,10 @@ def peg_size(sheet: Sheet, carrier: Carrier) -> str:
     if not carrier.peg_radius:
         return "(points, no diameter)"
     lengths = sheet.lengths
-    body = (
-        f", body Ø {lengths.short(2 * carrier.body_radius)}"
-        if carrier.body_radius > carrier.peg_radius
-        else ""
-    )
-    return f"Ø {lengths.short(2 * carrier.peg_radius)}{body}"
+    size = f"Ø {lengths.short(2 * carrier.peg_radius)}"
+    if carrier.body_radius > carrier.peg_radius:
+        size += f", body Ø {lengths.short(2 * carrier.body_radius)}"
+    return size
 
 
 def write_flush(column: TextColumn, sheet: Sheet, wall: Carrier) -> None:
@@ -80,12 +78,10 @@ def write_flush(column: TextColumn, sheet: Sheet, wall: Carrier) -> None:
     plate, edge = sheet.toolkit.plates[0], sheet.datum.edge
     ends = list(dict.fromkeys(peg.touching for peg in sheet.fixture.pegs if peg.carrier == wall.name))
     lies = f"with {ends[0]}" if len(ends) == 1 else f"from {ends[0]} to {ends[1]}"
-    row = (
-        ""
-        if edge is None
-        else f" Row 1 of the {plate.noun} is {sheet.lengths.words(edge)} from the {wall.noun}."
-    )
-    column.paragraph(f"The part lies flush on the {wall.noun} {lies}.{row}", NOTE)
+    words = f"The part lies flush on the {wall.noun} {lies}."
+    if edge is not None:
+        words += f" Row 1 of the {plate.noun} is {sheet.lengths.words(edge)} from the {wall.noun}."
+    column.paragraph(words, NOTE)
 
 
 def put_words(sheet: Sheet) -> str:
@@ -110,11 +106,6 @@ def touch_words(sheet: Sheet) -> str:
     return f"{touch}. A strip of paper at each must not pull out."
 
 
-def opening_writers(sheet: Sheet) -> list[Writer]:
-    """The block about the opening."""
-    return [write_opening]
-
-
 def write_opening(column: TextColumn, sheet: Sheet) -> None:
     """Writes the opening and how to measure it."""
     fixture, toolkit, lengths = sheet.fixture, sheet.toolkit, sheet.lengths
@@ -126,13 +117,8 @@ def write_opening(column: TextColumn, sheet: Sheet) -> None:
         return
     check = caliper_check(fixture, toolkit)
     one, other = (column_letters(hole[0]) for hole in (check.left, check.right))
-    column.paragraph(
-        (
-            f"x from the centres of column {one} of the {first.title} to those of column {other} of the "
-            f"{moving.title}."
-        ),
-        NOTE,
-    )
+    between = f"column {one} of the {first.title} to those of column {other} of the {moving.title}"
+    column.paragraph(f"x from the centres of {between}.", NOTE)
     left, right = hole_name(first.name, *check.left), hole_name(moving.name, *check.right)
     diameter = 2 * first.peg_radius
     spare = {2: "", 1: " (one of them a spare)", 0: " (both spare)"}[check.placed]
@@ -148,16 +134,11 @@ def write_opening(column: TextColumn, sheet: Sheet) -> None:
 
 def opening_steps(sheet: Sheet) -> list[str]:
     """What to do, one or two sentences each."""
-    fixture, lengths, moving, force = (
-        sheet.fixture,
-        sheet.lengths,
-        sheet.toolkit.moving,
-        sheet.details.jaw_force,
-    )
-    words = sheet.toolkit.setup_words
-    there, more, back = (
-        ("Open", "wider", "Close") if sheet.toolkit.clamping > 0 else ("Close", "narrower", "Open")
-    )
+    fixture, lengths, moving = sheet.fixture, sheet.lengths, sheet.toolkit.moving
+    words, force = sheet.toolkit.setup_words, sheet.details.jaw_force
+    there, more, back = "Open", "wider", "Close"
+    if sheet.toolkit.clamping < 0:
+        there, more, back = "Close", "narrower", "Open"
     with_force = "" if force is None else f" with {lengths.unit.force_words(force)}"
     against = f", {words.against}" if words.against else ""
     count = len(fixture.placed)
@@ -166,15 +147,13 @@ def opening_steps(sheet: Sheet) -> list[str]:
         put_words(sheet),
         f"{there} the {moving.noun}s a little {more} than S = {lengths.words(fixture.jaw_separation)} and "
         f"lay the part in as drawn, {lies_words(sheet)}{against}.{inside_words(sheet)}",
-        (
-            f"{back} the {moving.title} until {pegs} pegs touch. The opening is then S; if not, the part "
-            "lies another way."
-        ),
+        f"{back} the {moving.title} until {pegs} pegs touch. The opening is then S; if not, the part "
+        "lies another way.",
         f"Clamp{with_force}. The pegs touch: {touch_words(sheet)}",
     ]
 
 
-OPENING = MovingBlocks(opening_writers, opening_steps)
+OPENING = MovingBlocks(lambda sheet: [write_opening], opening_steps)
 
 
 def clamp_writers(sheet: Sheet) -> list[Writer]:
@@ -314,10 +293,8 @@ def write_plate(column: TextColumn, sheet: Sheet) -> None:
     column.paragraph(f"The holes of the {plate.noun} are {apart}{size}.", BODY)
     column.paragraph(moving_words(sheet), BODY)
     for side, way, count, noun in overhangs(sheet):
-        by = f"{count} {noun}{'' if count == 1 else 's'}"
-        column.paragraph(
-            f"As named, the part reaches beyond the {side} of the {plate.noun}; {by} {way} it does not.", BODY
-        )
+        beyond = f"As named, the part reaches beyond the {side} of the {plate.noun}"
+        column.paragraph(f"{beyond}; {plural(count, noun)} {way} it does not.", BODY)
 
 
 def moving_words(sheet: Sheet) -> str:
@@ -328,7 +305,7 @@ def moving_words(sheet: Sheet) -> str:
         if spare is None:
             ways.append(f"any {noun}s {way}")
         elif spare:
-            ways.append(f"up to {spare} {noun}{'' if spare == 1 else 's'} {way}")
+            ways.append(f"up to {plural(spare, noun)} {way}")
     if not ways:
         return f"The set-up fits the {sheet.toolkit.noun} in this place only."
     return (

@@ -18,15 +18,15 @@ from attrs import field, frozen
 from workhold.drawing.panel import FACT_NAME, TextColumn, pegs_words
 from workhold.drawing.scene import BLACK, GREY, LengthUnit, Scene, text_width
 from workhold.drawing.seating_words import SeatingSentences
-from workhold.drawing.sheet_facts import Caution, SheetDetails
+from workhold.drawing.sheet_facts import Caution, SheetDetails, lift_of
 from workhold.errors import InputError, listed
 from workhold.fixels.contacts import FLAT_PIN
 from workhold.fixels.setup_words import Datum
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Point
-from workhold.model.bodies import SUPPORT_HEIGHT, THICKNESS
+from workhold.model.bodies import THICKNESS
 from workhold.model.dowels import fit_words
-from workhold.model.fixture import Fixture, Peg
+from workhold.model.fixture import Fixture
 from workhold.model.own_outlines import numbered_solid
 from workhold.model.setup import LengthSetting, PartZero, contact_names, part_zero, settings_of
 from workhold.model.solid import Band
@@ -48,7 +48,6 @@ __all__ = [
     "heights_of",
     "inside_words",
     "lies_words",
-    "lift_of",
     "peg_rows",
     "write_dowel",
     "write_flats",
@@ -123,27 +122,25 @@ def heights_of(
         thickness = solid.height
     if thickness is None:
         return None
-    assumed = set()
     lift = lift_of(supports, details.support_height)
-    if supports is not None and details.support_height is None and height_of_supports(toolkit) is None:
-        assumed.add("supported_by")
     plate = THICKNESS if details.plate_thickness is None else details.plate_thickness
-    if details.plate_thickness is None:
-        assumed.add("plate_thickness")
     if details.peg_height is not None:
         top = details.peg_height - lift
-    elif solid is not None:
-        top = min(solid.peg_height, thickness)
     else:
-        top = thickness
-        assumed.add("peg_top")
+        top = thickness if solid is None else min(solid.peg_height, thickness)
     if top <= 0:
         raise InputError(
             f"pegs {details.peg_height:g} mm high end below the part, which lies {lift:g} mm above the "
             "plates: give a larger peg height, or lower supports."
         )
-    if details.peg_length is None:
-        assumed.add("peg_length")
+    is_assumed = {
+        "supported_by": supports is not None
+        and details.support_height is None
+        and height_of_supports(toolkit) is None,
+        "plate_thickness": details.plate_thickness is None,
+        "peg_top": details.peg_height is None and solid is None,
+        "peg_length": details.peg_length is None,
+    }
     return SheetHeights(
         thickness=thickness,
         peg_top=top,
@@ -152,7 +149,7 @@ def heights_of(
         plate_thickness=plate,
         peg_length=top + lift + plate if details.peg_length is None else details.peg_length,
         bands=bands_of_pegs(fixture, workpiece, details, thickness, top),
-        assumed=frozenset(assumed),
+        assumed=frozenset(name for name, is_so in is_assumed.items() if is_so),
         clamped_height=clamped_at(supports, thickness),
     )
 
@@ -164,14 +161,6 @@ def clamped_at(supports: ChosenSupports | None, thickness: float) -> float | Non
     request = supports.supports.request
     asked = request.clamped_height(supports.clamp.at)
     return thickness if asked == request.thickness else min(asked, thickness)
-
-
-def lift_of(supports: ChosenSupports | None, support_height: float | None) -> float:
-    """How far the part lies above the plates in mm: as high as its supports, or 0 without any."""
-    if supports is None:
-        return 0.0
-    own = height_of_supports(supports.supports.query.toolkit) if support_height is None else support_height
-    return SUPPORT_HEIGHT if own is None else own
 
 
 def bands_of_pegs(
@@ -224,21 +213,31 @@ class Sheet:
     @property
     def zero_place(self) -> Point:
         """Where part zero lies in the vise frame, in mm."""
-        x, y = self.fixture.pose.apply(*self.zero.point)
-        return float(x), float(y)
+        return self.fixture.pose.apply(*self.zero.point)
 
     @property
     def seating(self) -> SeatingSentences | None:
         """Sentences on where else the pegs can hold the part; None where the sheet does not show it."""
-        seating = self.details.seating
-        return (
-            None if seating is None else SeatingSentences(seating, self.fixture, self.toolkit, self.lengths)
-        )
+        if self.details.seating is None:
+            return None
+        return SeatingSentences(self.details.seating, self.fixture, self.toolkit, self.lengths)
 
     @property
     def datum(self) -> Datum:
         """What places are measured from."""
         return self.toolkit.datum
+
+    @property
+    def plates_noun(self) -> str:
+        """What pegs stand in, such as "plate" or "jaws"."""
+        first, *others = self.toolkit.plates
+        return f"{first.noun}s" if others else first.noun
+
+    @property
+    def dowel(self) -> str | None:
+        """What the pegs are and how they fit their holes; None where nobody knows."""
+        fit, diameter = self.details.tolerance.fit, 2 * self.toolkit.plates[0].peg_radius
+        return self.details.dowel or (None if fit is None else fit_words(fit, diameter))
 
     @property
     def is_closed_at_once(self) -> bool:
@@ -309,16 +308,11 @@ def peg_rows(sheet: Sheet) -> tuple[list[str], list[list[str]], str]:
         header.append(f"at {unit.force_words(force)}")
     rows = []
     for name, peg in zip(contact_names(sheet.fixture, sheet.toolkit), sheet.fixture.pegs, strict=True):
-        looks = [looks_words(peg)] * flats
-        row = [name, peg.touched, *looks, number(peg.x), number(peg.y), f"{KILO * peg.force:.0f}"]
+        looks = "–" if peg.flat_deg is None else f"{peg.flat_deg:.2f}°"
+        row = [name, peg.touched, *[looks] * flats, number(peg.x), number(peg.y), f"{KILO * peg.force:.0f}"]
         rows.append(row if force is None else [*row, unit.force_words(force * peg.force)])
     each = "kN" if unit.newtons == 1 else f"{KILO:.0f} {unit.force}"
     return header, rows, f"{per}: {unit.force} of the {pegs_words(sheet.toolkit)} on the part for each {each}"
-
-
-def looks_words(peg: Peg) -> str:
-    """Which way a peg's flat looks."""
-    return "–" if peg.flat_deg is None else f"{peg.flat_deg:.2f}°"
 
 
 def write_flats(column: TextColumn, sheet: Sheet) -> None:
@@ -351,22 +345,18 @@ def inside_words(sheet: Sheet) -> str:
 
 def write_dowel(column: TextColumn, sheet: Sheet) -> None:
     """Writes what the pegs are, how they sit in their holes and how far they stand out, or fields for it."""
-    details, lengths, carrier = sheet.details, sheet.lengths, sheet.toolkit.plates[0]
-    diameter = 2 * carrier.peg_radius
-    fit = details.tolerance.fit
+    details, lengths, fit = sheet.details, sheet.lengths, sheet.details.tolerance.fit
     column.y += 3
-    fact_or_field(
-        column, "dowel and fit", details.dowel or (None if fit is None else fit_words(fit, diameter))
-    )
+    fact_or_field(column, "dowel and fit", sheet.dowel)
     if fit is not None:
         pin, hole_limits = (
             f"{lengths.short_number(low)} to {lengths.short(high)}" for low, high in (fit.pin, fit.hole)
         )
         column.paragraph(f"Pin of {pin} in a hole of {hole_limits}.", NOTE)
-    jaws = f"{carrier.noun}{'s' * (len(sheet.toolkit.plates) > 1)}"
     length, height, mark = details.peg_length, details.peg_height, ""
     known = sheet.heights
     if known is not None and "peg_top" not in known.assumed:
         length, height, mark = known.peg_length, known.above_plate, known.sure("peg_length")
-    for name, size in ((f"{carrier.peg} length{mark}", length), (f"height above the {jaws}", height)):
+    peg, above = sheet.toolkit.plates[0].peg, f"height above the {sheet.plates_noun}"
+    for name, size in ((f"{peg} length{mark}", length), (above, height)):
         fact_or_field(column, name, None if size is None else lengths.words(size))

@@ -7,11 +7,12 @@ none covers another, each as near to its place as can be.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 
 from attrs import frozen
 
+from workhold.drawing.annotation import dimension_line
 from workhold.drawing.bench import PART_FILL, PEG_FILL, TOUCHED
 from workhold.drawing.carriers import FENCE, SLIDING, STILL
 from workhold.drawing.panel import TextColumn
@@ -19,7 +20,6 @@ from workhold.drawing.scene import BLACK, GREY, UNITS_PER_MM, Box, LengthUnit, S
 from workhold.drawing.sheet_writing import NOTE
 from workhold.drawing.side_view import SideContact, SideView
 from workhold.drawing.supports_drawn import SUPPORT
-from workhold.geometry.segment import Point
 
 __all__ = ["SideFigure", "moved_apart"]
 
@@ -50,13 +50,11 @@ class SideFigure:
     ----------
     view : what is drawn.
     lengths : how lengths are written.
-    scale_of : the largest standard scale up to a factor, paper over model.
     plates : what pegs stand in, such as "jaws".
     """
 
     view: SideView
     lengths: LengthUnit
-    scale_of: Callable[[float], tuple[str, float]]
     plates: str = "plate"
 
     @property
@@ -118,8 +116,7 @@ class SideFigure:
     @property
     def title(self) -> str:
         """What is seen, without the scale."""
-        way = self.view.way
-        return f"Side view {way.words}, along {way.seen_along}"
+        return f"Side view {self.view.way.words}, along {self.view.way.seen_along}"
 
     @property
     def notes(self) -> list[str]:
@@ -153,8 +150,8 @@ class SideFigure:
             notes.append(f"Assumed, as nobody said: {'; '.join(assumed)}.")
         return notes
 
-    def scaled(self, width: float, most: float, plan: float) -> tuple[str, float]:
-        """The scale's name and factor: the largest standard one with room that is not far from the plan's.
+    def largest(self, width: float, most: float, plan: float) -> float:
+        """The largest factor of a scale, paper over model, with room that is not far from the plan's.
 
         Parameters
         ----------
@@ -164,27 +161,17 @@ class SideFigure:
         extent = self.view.extent
         across = (width - self.left_room - self.right_room) / extent.width
         high = (most - self.top_room - NAMES_ROOM) / extent.height
-        return self.scale_of(min(LARGER * plan, across / UNITS_PER_MM, high / UNITS_PER_MM))
+        return min(LARGER * plan, across / UNITS_PER_MM, high / UNITS_PER_MM)
 
-    def height(self, width: float, most: float, plan: float) -> float:
-        """The height of all of it in a box of a width, page units; see :meth:`scaled`."""
-        _, factor = self.scaled(width, most, plan)
-        return (
-            self.top_room
-            + self.view.extent.height * factor * UNITS_PER_MM
-            + NAMES_ROOM
-            + self.notes_height(width)
-        )
+    def height(self, width: float, factor: float) -> float:
+        """The height of all of it in a box of a width, page units, at a scale of a factor."""
+        notes = TextColumn(Scene.page((1.0, 1.0), ""), 0.0, 0.0, width)
+        notes.paragraph(" ".join(self.notes), NOTE)
+        drawn = self.view.extent.height * factor * UNITS_PER_MM
+        return self.top_room + drawn + NAMES_ROOM + (notes.y + NOTE_GAP)
 
-    def notes_height(self, width: float) -> float:
-        """Height of the sentences below, page units."""
-        column = TextColumn(Scene.page((1.0, 1.0), ""), 0.0, 0.0, width)
-        column.paragraph(" ".join(self.notes), NOTE)
-        return column.y + NOTE_GAP
-
-    def draw(self, scene: Scene, box: Box, most: float, plan: float) -> None:
-        """Draws all of it into a page box of at least its height."""
-        name, factor = self.scaled(box.width, most, plan)
+    def draw(self, scene: Scene, box: Box, name: str, factor: float) -> None:
+        """Draws all of it into a page box of at least its height, at a scale of a name and a factor."""
         head = TextColumn(scene.group("words"), box.x0, box.y0, box.width)
         head.rule(1.4)
         head.words(f"{self.title}, scale {name}", TITLE, bold=True)
@@ -209,16 +196,16 @@ class SideFigure:
             scene.rectangle(
                 page.box(Box(span[0], low - heights.plate_thickness, span[1], low)), fill, edge, 1.4
             )
-        behind = [one for one in view.contacts if one.is_hidden]
-        before = [one for one in view.contacts if not one.is_hidden]
-        for one in behind:
-            self.draw_contact(scene, page, one)
+        for one in view.contacts:
+            if one.is_hidden:
+                self.draw_contact(scene, page, one)
         for pad in view.pads:
             box = page.box(Box(pad.at - view.pad_radius, low, pad.at + view.pad_radius, 0.0))
             scene.rectangle(box, SUPPORT, BLACK, 1.0)
         self.draw_part(scene, page)
-        for one in before:
-            self.draw_contact(scene, page, one)
+        for one in view.contacts:
+            if not one.is_hidden:
+                self.draw_contact(scene, page, one)
         for span in view.walls:
             begin, top = view.wall_heights or (0.0, heights.peg_top)
             box = page.box(Box(span[0], begin or low, span[1], top))
@@ -250,21 +237,15 @@ class SideFigure:
     def draw_contact(self, scene: Scene, page: View, one: SideContact) -> None:
         """Draws a peg through its plate, or a clamp on it."""
         heights = self.view.heights
-        low, top = -heights.supported_by, heights.peg_top
-        begin, top = one.heights or (0.0, top)
-        low = begin or low
+        begin, top = one.heights or (0.0, heights.peg_top)
+        low = begin or -heights.supported_by
         radius = max(one.radius, THINNEST / page.scale / 2)
         if one.is_clamp:
             ends = [one.at] if one.hole is None else [one.at, one.hole]
             box = page.box(Box(min(ends) - radius, low, max(ends) + radius, top))
             scene.rectangle(box, SLIDING[0], SLIDING[1], 1.2, 2.0)
-            tip = page.box(Box(one.at - radius, low, one.at + radius, top))
-            scene.line(
-                [(tip.center[0], tip.y0), (tip.center[0], tip.y1)],
-                SLIDING[1],
-                0.8,
-                stroke_dasharray="8 2 2 2",
-            )
+            middle = page.box(Box(one.at - radius, low, one.at + radius, top)).center[0]
+            scene.line([(middle, box.y0), (middle, box.y1)], SLIDING[1], 0.8, stroke_dasharray="8 2 2 2")
             return
         box = page.box(Box(one.at - radius, low, one.at + radius, top))
         scene.rectangle(box, PEG_FILL, BLACK, 1.0)
@@ -313,7 +294,7 @@ class SideFigure:
             low, high = page((0.0, start))[1], page((0.0, end))[1]
             for y in (low, high):
                 scene.line([(drawn.x0 - 4, y), (x - 4, y)], BLACK, 0.6)
-            upright(scene, x, low, high)
+            dimension_line(scene, (x, low), (x, high), TIGHT, OUTSIDE, 9)
             scene.line([(x, middle), (left, middle), (left - BEND + 8, at)], BLACK, 0.6)
             scene.circle((x, middle), 1.8, BLACK)
             scene.text((left - BEND + 4, at), words, WORDS, "end")
@@ -338,26 +319,13 @@ class SideFigure:
             scene.text((middle, y), name, NAMES, "middle", bold=True, fill=colour)
         if view.clamp is not None:
             x, top = page((view.clamp, self.highest))
-            words_at: Point = (x + 12, top - STEM)
-            scene.text(words_at, "clamp on top", NAMES, bold=True, fill=SUPPORT, halo=2.5)
+            scene.text((x + 12, top - STEM), "clamp on top", NAMES, bold=True, fill=SUPPORT, halo=2.5)
 
 
 def outline(box: Box) -> str:
     """SVG path data of a box."""
     corners = ((box.x0, box.y0), (box.x1, box.y0), (box.x1, box.y1), (box.x0, box.y1))
     return "M" + "L".join(f"{x:.3f} {y:.3f}" for x, y in corners) + "Z"
-
-
-def upright(scene: Scene, x: float, low: float, high: float) -> None:
-    """Draws an upright dimension line between two page heights; arrows of a short one stand outside."""
-    if abs(high - low) >= TIGHT:
-        middle = (x, (low + high) / 2)
-        scene.arrow(middle, (x, low), BLACK, 1.0, 9)
-        scene.arrow(middle, (x, high), BLACK, 1.0, 9)
-        return
-    scene.line([(x, low), (x, high)], BLACK, 1.0)
-    scene.arrow((x, low + OUTSIDE), (x, low), BLACK, 1.0, 9)
-    scene.arrow((x, high - OUTSIDE), (x, high), BLACK, 1.0, 9)
 
 
 def moved_apart(

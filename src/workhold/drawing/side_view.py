@@ -162,21 +162,23 @@ def side_view(
     way = max(WAYS, key=lambda one: (sees_past_walls(bench, one), *apart(bench, one), -WAYS.index(one)))
     pose, (x0, x1) = bench.fixture.pose, way.span(bench.shown.part)
     pads, request = ((), None) if supports is None else (supports.pads, supports.supports.request)
-    placed = [SidePad(pad.hole, way.across(point_of(pose.apply(pad.x, pad.y)))) for pad in pads]
+    placed = [SidePad(pad.hole, way.across(pose.apply(pad.x, pad.y))) for pad in pads]
     solid = workpiece.solid
-    tops = spans_of(solid.top, bench, way) if solid is not None else []
+    tops, feet = (
+        ([], []) if solid is None else (spans_of(loops, bench, way) for loops in (solid.top, solid.bottom))
+    )
     return SideView(
         way=way,
         heights=heights,
         part=(x0, x1),
         upper=(min([x0, *(a for a, _ in tops)]), max([x1, *(b for _, b in tops)])),
-        feet=tuple((spans_of(solid.bottom, bench, way) if solid is not None else []) or [(x0, x1)]),
+        feet=tuple(feet or [(x0, x1)]),
         plates=tuple(merged(way.span(one.plate) for one in bench.shown.carriers)),
         walls=tuple(way.span(one.bar) for one in bench.shown.walls),
         contacts=tuple(contacts(bench, way, heights)),
         pads=tuple(placed),
         pad_radius=0.0 if request is None else request.pad_radius,
-        clamp=None if supports is None else way.across(point_of(pose.apply(*supports.clamp.at))),
+        clamp=None if supports is None else way.across(pose.apply(*supports.clamp.at)),
         tip_radius=0.0 if request is None else request.tip_radius,
         clamped_height=heights.thickness if heights.clamped_height is None else heights.clamped_height,
         wall_heights=next((wall.carrier.heights for wall in bench.shown.walls), None),
@@ -188,11 +190,6 @@ def sees_past_walls(bench: Bench, way: ViewWay) -> bool:
     low, high = way.span(bench.shown.part)
     walls = [way.span(wall.bar) for wall in bench.shown.walls]
     return all(min(high, b) - max(low, a) < 0.5 * (high - low) for a, b in walls)
-
-
-def point_of(values: tuple[float, float]) -> Point:
-    """A point as plain numbers."""
-    return float(values[0]), float(values[1])
 
 
 def apart(bench: Bench, way: ViewWay) -> tuple[int, float]:
@@ -225,13 +222,10 @@ def spans_of(loops: Iterable[Sequence[Sequence[float]]], bench: Bench, way: View
     """Spans of level faces, given as loops in the part's coordinates, without overlaps."""
     found = []
     for number, loop in enumerate(loops):
-        vertices = checked_vertices(
-            [list(vertex) for vertex in loop], f"face {number}", lambda side: f"side {side}"
-        )
-        placed = [bench.fixture.pose.carry(segment) for segment in loop_segments(vertices)]
-        places = [
-            way.across(segment.at(share * segment.half_extent)) for segment in placed for share in SHARES
-        ]
+        rows = [list(vertex) for vertex in loop]
+        vertices = checked_vertices(rows, f"face {number}", lambda side: f"side {side}")
+        placed = map(bench.fixture.pose.carry, loop_segments(vertices))
+        places = [way.across(one.at(share * one.half_extent)) for one in placed for share in SHARES]
         found.append((min(places), max(places)))
     return merged(found)
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from math import cos, pi, sin
+from math import cos, dist, pi, sin
 
 from attrs import frozen
 
-from workhold.drawing.annotation import Label, LabelPlacer, Place, around, leader_end
-from workhold.drawing.panel import TextColumn
+from workhold.drawing.annotation import Label, LabelPlacer, Place, around
+from workhold.drawing.panel import TextColumn, plural
 from workhold.drawing.scene import Box, Scene, View, text_width
 from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, fact_or_field, heading
 from workhold.errors import listed
@@ -68,17 +68,12 @@ class PlannedSupports:
     def of(cls, chosen: ChosenSupports) -> PlannedSupports:
         """The supports of a set-up."""
         pose, request = chosen.recounted.fixture.pose, chosen.supports.request
-
-        def placed(x: float, y: float) -> Point:
-            there = pose.apply(x, y)
-            return float(there[0]), float(there[1])
-
         return cls(
             names=tuple(pad.hole for pad in chosen.pads),
-            places=tuple(placed(pad.x, pad.y) for pad in chosen.pads),
+            places=tuple(pose.apply(pad.x, pad.y) for pad in chosen.pads),
             holes=tuple((pad.carrier, pad.column, pad.row) for pad in chosen.pads),
             pad_radius=request.pad_radius,
-            clamp=placed(*chosen.clamp.at),
+            clamp=pose.apply(*chosen.clamp.at),
             tip_radius=request.tip_radius,
         )
 
@@ -103,17 +98,8 @@ class PlannedSupports:
         named = [(name, at, self.pad_radius) for name, at in zip(self.names, self.places, strict=True)]
         for name, at, radius in [*named, (TOP_NAME, self.clamp, self.tip_radius)]:
             size = (text_width(name, NAME, bold=True) + 8, HIGH)
-            near = size_of(radius, view)
-            found.append(
-                around(
-                    view(at),
-                    -pi / 4,
-                    size,
-                    [near + gap for gap in (3, 8, 16, 28, 44, 64)],
-                    turns,
-                    turn_cost=1.0,
-                )
-            )
+            gaps = [size_of(radius, view) + gap for gap in (3, 8, 16, 28, 44, 64)]
+            found.append(around(view(at), -pi / 4, size, gaps, turns, turn_cost=1.0))
         return found
 
     def draw_names(self, scene: Scene, places: Sequence[Place], view: View) -> None:
@@ -121,11 +107,9 @@ class PlannedSupports:
         for name, place, radius in zip(
             (*self.names, TOP_NAME), places, (*[self.pad_radius] * 3, self.tip_radius), strict=True
         ):
-            (x, y), (u, v) = place.anchor, leader_end(place.anchor, place.box)
-            gap = ((u - x) ** 2 + (v - y) ** 2) ** 0.5
-            near = size_of(radius, view)
-            if gap > near + 1.0:
-                scene.line([(x + near * (u - x) / gap, y + near * (v - y) / gap), (u, v)], SUPPORT, 1.2)
+            leader = place.leader(size_of(radius, view))
+            if dist(*leader) > 1.0:
+                scene.line(leader, SUPPORT, 1.2)
             scene.rectangle(place.box, "#ffffff", SUPPORT, 1.2, 3)
             scene.text(place.box.center, name, NAME, "middle", bold=True, fill=SUPPORT)
 
@@ -179,11 +163,8 @@ def write_supports(column: TextColumn, sheet: Sheet) -> None:
     column.fact("round pads", f"Ø {lengths.short(2 * request.pad_radius)}", bold=True)
     at = [place - zero for place, zero in zip(clamp.at, sheet.zero.point, strict=True)]
     column.fact("clamp presses at", f"X {lengths.number(at[0])}, Y {lengths.words(at[1])}", bold=True)
-    there = chosen.recounted.fixture.pose.apply(*clamp.at)
-    column.fact(
-        f"from {sheet.datum.point}",
-        f"x {lengths.number(float(there[0]))}, y {lengths.words(float(there[1]))}",
-    )
+    x, y = chosen.recounted.fixture.pose.apply(*clamp.at)
+    column.fact(f"from {sheet.datum.point}", f"x {lengths.number(x)}, y {lengths.words(y)}")
     if sheet.heights is not None and sheet.heights.clamped_height is not None:
         column.fact("at the height", lengths.words(sheet.heights.clamped_height), bold=True)
     column.fact("its round tip", f"Ø {lengths.short(2 * request.tip_radius)}", bold=True)
@@ -201,16 +182,10 @@ def write_forces(column: TextColumn, sheet: Sheet, chosen: ChosenSupports) -> No
     if supports.loads:
         wanted = f"at least {unit.force_above(clamp.clamp_needed)} {unit.force}"
         column.fact("clamp force wanted", wanted, bold=True)
-        column.fact(
-            "largest force on a support",
-            f"{unit.force_above(clamp.support_force or 0.0)} {unit.force}",
-            bold=True,
-        )
-        column.paragraph(
-            f"Under the loads, at a {noun} force of {unit.force_words(supports.jaw_force)}, without "
-            "friction.",
-            NOTE,
-        )
+        largest = f"{unit.force_above(clamp.support_force or 0.0)} {unit.force}"
+        column.fact("largest force on a support", largest, bold=True)
+        at = f"at a {noun} force of {unit.force_words(supports.jaw_force)}"
+        column.paragraph(f"Under the loads, {at}, without friction.", NOTE)
         return
     if clamp.lift > 0 and sheet.details.jaw_force is not None:
         force = f"at least {unit.force_above(clamp.lift * sheet.details.jaw_force)} {unit.force}"
@@ -233,14 +208,9 @@ def tipping_words(chosen: ChosenSupports, unit: Unit) -> str:
     force = chosen.clamp.clamp_needed if chosen.supports.loads else 0.0
     what = "that force" if force > 0 else f"each {ROUND_FORCE:.0f} {unit.force}"
     force = force if force > 0 else ROUND_FORCE * unit.newtons
-    return (
-        f"With {what} the clamp alone holds up to {moment_words(force * chosen.clamp.arm, unit)} of tipping."
-    )
-
-
-def moment_words(moment: float, unit: Unit) -> str:
-    """A moment in N mm as whole N mm, or in lbf in."""
-    return f"{moment:.0f} N mm" if unit.newtons == 1 else unit.moment_words(moment)
+    moment = force * chosen.clamp.arm
+    words = f"{moment:.0f} N mm" if unit.newtons == 1 else unit.moment_words(moment)
+    return f"With {what} the clamp alone holds up to {words} of tipping."
 
 
 def holding_up_words(sheet: Sheet, chosen: ChosenSupports) -> str:
@@ -257,7 +227,7 @@ def counting_words(sheet: Sheet, chosen: ChosenSupports) -> list[str]:
     recounted, sentences = chosen.recounted, list[str]()
     if recounted.is_moved:
         ways = [
-            f"{abs(count)} {noun}{'' if abs(count) == 1 else 's'} further {way[count < 0]}"
+            f"{plural(abs(count), noun)} further {way[count < 0]}"
             for count, noun, way in (
                 (recounted.columns, "column", ("right", "left")),
                 (recounted.rows, "row", ("up", "down")),
@@ -285,11 +255,9 @@ def support_steps(sheet: Sheet, steps: list[str]) -> list[str]:
     x, y = (
         lengths.number(place - zero) for place, zero in zip(chosen.clamp.at, sheet.zero.point, strict=True)
     )
-    force = (
-        f" with at least {unit.force_above(chosen.clamp.clamp_needed)} {unit.force}"
-        if chosen.supports.loads
-        else ""
-    )
+    force = ""
+    if chosen.supports.loads:
+        force = f" with at least {unit.force_above(chosen.clamp.clamp_needed)} {unit.force}"
     put = f"{steps[0]} Put supports in {listed([pad.hole for pad in chosen.pads])}."
     where = f"X {x}, Y {y} {lengths.sign}"
     press = f"Then press the part down at {where}{force}, inside the triangle of the supports."
@@ -312,11 +280,8 @@ def write_heights(column: TextColumn, sheet: Sheet) -> None:
     if heights.head_room is not None:
         column.fact("head room above the pegs", lengths.words(heights.head_room))
     if heights.supported_by:
-        column.fact(
-            f"height of the supports{heights.sure('supported_by')}",
-            lengths.words(heights.supported_by),
-            bold=True,
-        )
+        name = f"height of the supports{heights.sure('supported_by')}"
+        column.fact(name, lengths.words(heights.supported_by), bold=True)
         column.fact(f"pegs above the {noun}", lengths.words(heights.above_plate), bold=True)
     rows = [
         [peg.hole, *((lengths.number(end) for end in band) if band else ("?", "?"))]

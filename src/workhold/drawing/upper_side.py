@@ -100,9 +100,8 @@ class Mark:
         if self.hole:
             return f"hole {self.hole}" + (f", Ø {lengths.short(2 * self.radius, 4)}," if self.radius else "")
         if self.radius:
-            return (
-                f"the {'rounding' if self.bend > 0 else 'hollow'} of radius {lengths.short(self.radius, 4)}"
-            )
+            shape = "rounding" if self.bend > 0 else "hollow"
+            return f"the {shape} of radius {lengths.short(self.radius, 4)}"
         return f"the straight edge {lengths.short(self.length, 4)} long"
 
 
@@ -154,10 +153,8 @@ def side_words(workpiece: Workpiece, fixture: Fixture, lengths: LengthUnit) -> s
     """Sentences on which side is up in a fixture and how to see it."""
     if is_own_mirror_image([face.segment for face in workpiece.faces]):
         if workpiece.solid is not None:
-            up = workpiece.solid.axis.replace("-", "−")
-            return (
-                f"Turned over, the part would fit the same pegs: make sure that {up} of the file points up."
-            )
+            up = f"{workpiece.solid.axis.replace('-', '−')} of the file points up"
+            return f"Turned over, the part would fit the same pegs: make sure that {up}."
         return (
             "The outline is its own mirror image: either side up looks alike and lies in the same pegs. If "
             "the sides differ, mark the upper one first."
@@ -171,7 +168,7 @@ def side_words(workpiece: Workpiece, fixture: Fixture, lengths: LengthUnit) -> s
     (x, y), places = fixture.pose.apply(*workpiece.center), []
     for mark in marks:
         there = fixture.pose.apply(mark.place[0] + workpiece.center[0], mark.place[1] + workpiece.center[1])
-        eighth = round(atan2(float(there[1] - y), float(there[0] - x)) / (pi / 4)) % 8
+        eighth = round(atan2(there[1] - y, there[0] - x) / (pi / 4)) % 8
         places.append(f"{mark.words(lengths)} at the {EIGHTHS[eighth]}")
     return f"Lying as in the plan, it has {places[0]} and {places[1]}. Turned over, it never has."
 

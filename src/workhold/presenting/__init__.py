@@ -6,5 +6,5 @@ Methods of the model's classes lead here, see ``delegates``; the command line wr
 - ``assembly``: the bodies of a set-up in files, and in build123d and CadQuery.
 - ``data``: plain data for JSON, and all fixtures as a table of pandas or Arrow.
 - ``figure_words``: figures, holes and counts as tables write them.
-- ``notebook``, ``further_html``: what objects show of themselves in a notebook.
+- ``notebook``: what objects show of themselves in a notebook.
 """

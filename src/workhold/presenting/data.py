@@ -212,10 +212,7 @@ def explanation_data(explanation: Explanation, toolkit: Toolkit) -> dict[str, An
     nearest = explanation.nearest
     return {
         "contacts": explanation.contacts,
-        "removals": [
-            {"rule": removal.rule, "before": removal.before, "after": removal.after}
-            for removal in explanation.removals
-        ],
+        "removals": [asdict(removal) for removal in explanation.removals],
         "last_rule": explanation.last_rule,
         "nearest": None
         if nearest is None

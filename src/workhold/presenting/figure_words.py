@@ -10,7 +10,7 @@ from workhold.units import Unit
 
 if TYPE_CHECKING:
     from workhold.fixels.toolkit import Toolkit
-    from workhold.model.fixture import Peg
+    from workhold.model.fixture import Fixture, Peg
     from workhold.model.quality import Figure
     from workhold.model.result import Result
 
@@ -18,6 +18,7 @@ __all__ = [
     "counted_text",
     "figure_text",
     "figures_shown",
+    "fixture_title",
     "heading",
     "peg_groups",
     "place_of",
@@ -58,6 +59,12 @@ def figures_shown(result: Result) -> tuple[list[Figure], list[Figure]]:
         others = [f for f in SEATING_FIGURES if f.key in ("capture_opening", "reading") and f not in figures]
         figures[1:1] = others
     return figures, ranked
+
+
+def fixture_title(fixture: Fixture) -> str:
+    """What a fixture of a result is called, such as "Fixture 2 of 40 of bracket"."""
+    listed = fixture.listing
+    return f"Fixture {listed.rank:,} of {listed.count:,} of {listed.result.workpiece.name}"
 
 
 def short_heading(figure: Figure, unit: Unit) -> str:

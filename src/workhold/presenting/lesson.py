@@ -75,8 +75,7 @@ class ChordRange:
     ----------
     tail, head : numbers of the features its pegs touch.
     swapped : whether the second peg of the pair is the tail.
-    step : columns and rows from the tail's hole to that of the head.
-    shift, length : direction in radians and length in mm of the step.
+    shift, length : direction in radians and length in mm of the step between the holes.
     branch : which of two chords it is, 1 or -1.
     low, high : the orientations psi, in radians, around that of the fixture.
     """
@@ -84,7 +83,6 @@ class ChordRange:
     tail: int
     head: int
     swapped: bool
-    step: tuple[int, int]
     shift: float
     length: float
     branch: float
@@ -213,7 +211,7 @@ def range_of(
         if alpha <= real[TO] + END and hypot(ux - places[0][0], uy - places[0][1]) < SAME:
             low, high = (float(psi + end - alpha) for end in (real[FROM], real[TO]))
             length, branch, shift = (float(real[column]) for column in (LENGTH, BRANCH, SHIFT))
-            return ChordRange(ends[0], ends[1], swapped, step, shift, length, branch, low, high)
+            return ChordRange(ends[0], ends[1], swapped, shift, length, branch, low, high)
     return None
 
 

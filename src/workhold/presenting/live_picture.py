@@ -11,7 +11,7 @@ keyframe : one moment of closing: how far the part is turned, in degrees, and sh
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from math import atan2, ceil, cos, degrees, hypot, isfinite, radians, sin
 from typing import Any
 
@@ -35,14 +35,14 @@ from workhold.model.fixture import Fixture
 from workhold.model.pose import Pose
 from workhold.model.requirements import Load
 from workhold.model.result import Result
-from workhold.model.support_triples import ChosenSupports, SupportPad, Supports
-from workhold.presenting.figure_words import figure_text, figures_shown, unit_of
-from workhold.presenting.notebook import fixture_title
+from workhold.model.setup import settings_of
+from workhold.model.support_triples import ChosenSupports, Supports
+from workhold.presenting.figure_words import figure_text, figures_shown, fixture_title, unit_of
 from workhold.statics.loads import jaw_words, load_cases
 from workhold.supports.words import why_no_set
 from workhold.units import MILLIMETRE
 
-__all__ = ["LivePicture", "TriedForce", "draw_set", "set_words"]
+__all__ = ["LivePicture", "TriedForce"]
 
 # Size of the page and the room at its rim for names and arrows, page units.
 PAGE, RIM = (640.0, 480.0), 44.0
@@ -140,15 +140,12 @@ class LivePicture:
             stands = ChosenSupports.of(under).recounted.fixture
             fixture = fixture if stands.pegs == fixture.pegs else evolve(stands, seating=None)
         bench = bench_of(fixture, result.workpiece, result.toolkit)
-        width, height = PAGE
-        view = View.fitting(bench.extent, Box(RIM, RIM, width - RIM, height - RIM))
+        view = View.fitting(bench.extent, Box(0.0, 0.0, *PAGE).grown(-RIM))
         return cls(result, fixture, bench, view, usual, under)
 
     @property
     def title(self) -> str:
         """What the fixture is called, how it holds, and what to set."""
-        from workhold.model.setup import settings_of
-
         toolkit = self.result.toolkit
         set_to = ", ".join(
             f"{one.sign} = {MILLIMETRE.text(one.length)}" for one in settings_of(self.fixture, toolkit)
@@ -192,12 +189,7 @@ class LivePicture:
             draw_push(self.group_for(scene, clamp.clamping if clamp.hole is None else None), clamp, view, 1.0)
         ways = {one.carrier.name: one.clamping for one in bench.shown.carriers}
         if self.under is not None and self.under.triples:
-            draw_set(
-                scene,
-                ChosenSupports.of(self.under),
-                view,
-                lambda pad: self.group_for(scene, ways.get(pad.carrier)),
-            )
+            self.draw_set(scene, ChosenSupports.of(self.under), ways)
         ways |= {one.carrier.name: one.clamping for one in bench.shown.clamps}
         for number in bench.placed:
             peg = self.fixture.pegs[number]
@@ -205,6 +197,22 @@ class LivePicture:
             draw_pegs(group, evolve(bench, fixture=evolve(self.fixture, pegs=(peg,))), view, 1.0)
             self.write_name(group, number)
         return scene.svg()
+
+    def draw_set(self, scene: Scene, chosen: ChosenSupports, ways: Mapping[str, Point | None]) -> None:
+        """Draws a set of three with the names of its holes; each moves with the jaw that it stands on.
+
+        Parameters
+        ----------
+        ways : in which each carrier clamps, by its name; None for those that stand still.
+        """
+        planned, view = PlannedSupports.of(chosen), self.view
+        corners, radius = [view(place) for place in planned.places], size_of(planned.pad_radius, view)
+        draw_triangle(scene.group("stands"), corners)
+        for pad, (x, y) in zip(chosen.pads, corners, strict=True):
+            group, below = self.group_for(scene, ways.get(pad.carrier)), (x, y + radius + PAD_NAME)
+            draw_pad(group, (x, y), radius)
+            group.text(below, pad.hole, PAD_NAME, "middle", bold=True, fill=SUPPORT, halo=3.0)
+        draw_tip(scene.group("stands"), view(planned.clamp), size_of(planned.tip_radius, view))
 
     def group_for(self, scene: Scene, clamping: tuple[float, float] | None) -> Scene:
         """A group for what stands still, or for what clamps in a direction of the plan."""
@@ -337,27 +345,6 @@ class LivePicture:
         turned = (pose.theta_deg - self.fixture.pose.theta_deg + 180.0) % 360.0 - 180.0
         numbers = turned, x - self.center[0], y - self.center[1], opened
         return [round(float(value), 3) for value in numbers]
-
-
-def draw_set(
-    scene: Scene, chosen: ChosenSupports, view: View, group_for: Callable[[SupportPad], Scene]
-) -> None:
-    """Draws a set of three with the names of its holes.
-
-    Parameters
-    ----------
-    group_for : the group of a support, which moves with the jaw that it stands on.
-    """
-    planned = PlannedSupports.of(chosen)
-    corners, radius = [view(place) for place in planned.places], size_of(planned.pad_radius, view)
-    draw_triangle(scene.group("stands"), corners)
-    for pad, (x, y) in zip(chosen.pads, corners, strict=True):
-        group = group_for(pad)
-        draw_pad(group, (x, y), radius)
-        group.text(
-            (x, y + radius + PAD_NAME), pad.hole, PAD_NAME, "middle", bold=True, fill=SUPPORT, halo=3.0
-        )
-    draw_tip(scene.group("stands"), view(planned.clamp), size_of(planned.tip_radius, view))
 
 
 def set_words(found: Supports) -> str:

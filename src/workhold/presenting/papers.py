@@ -162,14 +162,14 @@ def write_paper(
     path : of a file whose name ends in .pdf, .svg or .png.
     result_file : the file that the result is in, whose hash stands on the sheet; None for a result of no
         file.
-    settings : as of :func:`workhold.drawing.result_sheet.result_details`.
+    settings : as of :func:`workhold.drawing.sheet_facts.result_details`.
 
     Raises
     ------
     InputError
         For another ending, values that cannot be, and when the file cannot be read or written.
     """
-    from workhold.drawing.result_sheet import result_sheet
+    from workhold.drawing.sheet import result_sheet
 
     ending = Path(path).suffix.lower()
     if ending not in PAPER_ENDINGS:

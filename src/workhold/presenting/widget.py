@@ -17,7 +17,6 @@ from workhold.errors import InputError
 from workhold.model.result import Result
 from workhold.presenting.closing_shown import closing_shown
 from workhold.presenting.live_picture import LivePicture, TriedForce
-from workhold.presenting.notebook import fixture_html
 from workhold.statics.loads import jaw_stiffness
 
 __all__ = ["FixtureWidget"]
@@ -144,7 +143,7 @@ class FixtureWidget(anywidget.AnyWidget):  # type: ignore[misc]
         return bundle
 
     def _repr_html_(self) -> str:
-        return fixture_html(self.result[self.rank - 1]) or ""
+        return self.result[self.rank - 1]._repr_html_() or ""
 
     def __repr__(self) -> str:
         return f"<FixtureWidget: fixture {self.rank} of {self.count} of {self.result.workpiece.name}>"

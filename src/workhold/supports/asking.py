@@ -21,7 +21,7 @@ from workhold.model.requirements import Load
 from workhold.model.result import Result
 from workhold.model.support_request import SpatialLoad, SupportRequest
 from workhold.model.support_triples import Supports
-from workhold.supports.listing import supports_of, supports_of_best, supports_one_by_one
+from workhold.supports.listing import supports_of, supports_one_by_one
 
 __all__ = [
     "SMALLER",
@@ -199,6 +199,5 @@ def result_supports(
         As that method.
     """
     count, sets = counting_number("best", best), counting_number("each", each)
-    fixtures = result[:count]
-    request = asked_request(result.query, thickness, asked)
-    return supports_of_best(fixtures, result.query, request, loads, jaw_force, 3 if sets is None else sets)
+    request, sets = asked_request(result.query, thickness, asked), 3 if sets is None else sets
+    return tuple(supports_one_by_one(result[:count], result.query, request, loads, jaw_force, sets))

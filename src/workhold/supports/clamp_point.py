@@ -71,12 +71,8 @@ class ClampPlaces:
     def border_corners(self) -> Array:
         """Points (K, 2) where two curves of the border cross and the tip may stand."""
         points = [line_points(self.lines[None], self.lines, self.circles).reshape(-1, 2)]
-        a, b = (
-            (self.circles[list(k)] for k in zip(*combinations(range(len(self.circles)), 2), strict=True))
-            if (len(self.circles) > 1)
-            else (self.circles[:0], self.circles[:0])
-        )
-        points.append(circle_points(a, b))
+        first, second = np.triu_indices(len(self.circles), 1)
+        points.append(circle_points(self.circles[first], self.circles[second]))
         every = np.concatenate(points)
         every = every[np.isfinite(every).all(axis=1)]
         every = every[self.allows(every)] if len(every) else every
@@ -144,11 +140,12 @@ class ClampPlaces:
             steep = triangles.steepness[:, j]
             lines.append(normalised(triangles.slopes[:, j], inside * steep - triangles.constants[:, j]))
         every = np.stack(lines, axis=1)
+        first, second = np.triu_indices(every.shape[1], 1)
         normals = triangles.slopes / triangles.steepness[..., None]
         centers, radii = self.circles[:, :2], self.circles[:, 2, None]
         out = [
             line_points(every, self.lines, self.circles).reshape(count, -1, 2),
-            own_crossings(every),
+            cross_lines(every[:, first], every[:, second]),
             np.broadcast_to(self.corners, (count, len(self.corners), 2)),
         ]
         for sign in (1.0, -1.0):
@@ -171,13 +168,6 @@ def cross_lines(a: Array, b: Array) -> Array:
         x = (a[..., 2] * b[..., 1] - b[..., 2] * a[..., 1]) / det
         y = (a[..., 0] * b[..., 2] - b[..., 0] * a[..., 2]) / det
     return np.stack([x, y], axis=-1)
-
-
-def own_crossings(lines: Array) -> Array:
-    """Crossings (N, K, 2) among the lines (N, L, 3) of each triangle."""
-    pairs = list(combinations(range(lines.shape[1]), 2))
-    first, second = (lines[:, list(k)] for k in zip(*pairs, strict=True))
-    return cross_lines(first, second)
 
 
 def line_points(lines: Array, others: Array, circles: Array) -> Array:

@@ -21,6 +21,7 @@ side : a line from one hole to another; what lies on its left is at a positive d
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import product
 from math import radians
 
@@ -28,23 +29,22 @@ import numpy as np
 from attrs import define, field
 from numpy.typing import NDArray
 
-from workhold.conventions import GAP_SLACK
+from workhold.conventions import AGREEMENT, GAP_SLACK
+from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.support_request import SpatialLoad
-from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import Touched
 
 __all__ = [
-    "ON_ONE_LINE",
     "Corners",
     "Lines",
     "PegForces",
     "Sides",
     "Triangles",
-    "largest_over",
+    "WeakJawError",
     "lifted_by_jaws",
-    "support_forces",
+    "needed_jaw_force",
 ]
 
 Array = NDArray[np.float64]
@@ -71,14 +71,8 @@ class PegForces:
     answers: Array
 
     @classmethod
-    def of(cls, fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> PegForces:
+    def of(cls, fixture: Fixture, toolkit: Toolkit, touched: Touched) -> PegForces:
         """The responses of a fixture whose jaw keeps its force."""
-        touched = Touched.of(workpiece, toolkit)
-        return cls.within(fixture, toolkit, touched)
-
-    @classmethod
-    def within(cls, fixture: Fixture, toolkit: Toolkit, touched: Touched) -> PegForces:
-        """The responses where what the pegs touch is known already."""
         matrices = touched.of_fixture(fixture, toolkit)
         scale = np.array([1.0, 1.0, touched.length, 1.0])
         return cls(touched.center, -matrices.normals[0], matrices.inverses[0].T / scale)
@@ -219,6 +213,47 @@ def lifted_by_jaws(lines: Lines, pegs: PegForces, bands: Array) -> Array:
     return np.asarray(-(lines.leverage(pegs, bands, highest=False) @ pegs.answers[:, 3]))
 
 
+class WeakJawError(InputError):
+    """A jaw force that is too small for a load."""
+
+
+def needed_jaw_force(pegs: PegForces, loads: Sequence[SpatialLoad], jaw_force: float | None) -> float:
+    """The jaw force asked for, or the one that keeps all pegs in contact under every load.
+
+    Raises
+    ------
+    WeakJawError
+        When the one asked for is too small, naming the load.
+    """
+    needs = [needed_for(pegs, load) for load in loads]
+    if jaw_force is None:
+        return max(needs, default=0.0)
+    for load, need in zip(loads, needs, strict=True):
+        if need > jaw_force * (1 + AGREEMENT):
+            name = f"the load '{load.name}'" if load.name else "a load"
+            raise WeakJawError(
+                f"a jaw force of {jaw_force:g} N lets a peg lose contact under {name}, which takes "
+                f"{need:.6g} N: give more, or leave it out."
+            )
+    return float(jaw_force)
+
+
+def needed_for(pegs: PegForces, load: SpatialLoad) -> float:
+    """The jaw force in N above which no peg lets go under a load, as ``statics.loads`` has it.
+
+    Peg i presses with a_i + F h_i, where a_i balances the load and h_i > 0.
+    """
+    if load.force == 0.0 and load.moment == 0.0:
+        return 0.0
+    _, _, moment, closing = pegs.answers.T
+    worst = 0.0
+    for point in (load.points if load.force else ()) or (tuple(pegs.center),):
+        x, y = pegs.at(np.array(point)).T
+        asked = load.force * largest_over(-x, -y, load.directions) - load.moment * moment
+        worst = max(worst, float((asked / closing).max()))
+    return worst
+
+
 @define(frozen=True, eq=False)
 class Corners:
     """N triangles of holes, run counter-clockwise, with what decides between them; lengths in mm.
@@ -264,10 +299,7 @@ class Sides:
         count = len(self.points)
         apart = self.points[None] - self.points[:, None]
         object.__setattr__(self, "length", np.hypot(apart[..., 0], apart[..., 1]).ravel())
-        least, most = (
-            np.zeros(count * count if self.loads else 0),
-            np.zeros(count * count if self.loads else 0),
-        )
+        least, most = np.zeros((2, count * count if self.loads else 0))
         for first in range(0, len(least), AT_ONCE):
             numbers = np.arange(first, min(first + AT_ONCE, len(least)))
             least[numbers], most[numbers] = support_forces(

@@ -20,7 +20,7 @@ from workhold.model.fixture import Fixture
 from workhold.model.support_request import SupportRequest
 from workhold.supports.faces import TouchableFace
 
-__all__ = ["CarrierRoom", "HolesUnderPart", "Standing", "holes_under", "pegs_in_part"]
+__all__ = ["CarrierRoom", "HolesUnderPart", "Standing", "holes_under"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -47,12 +47,6 @@ class HolesUnderPart:
     spare: Array
 
 
-def pegs_in_part(fixture: Fixture) -> Array:
-    """Centres (P, 2) of the pegs in the part's coordinates."""
-    x, y = fixture.pose.inverse.apply(*np.array([(peg.x, peg.y) for peg in fixture.pegs]).T)
-    return np.stack([x, y], axis=1)
-
-
 def holes_under(
     fixture: Fixture, toolkit: Toolkit, face: TouchableFace, request: SupportRequest
 ) -> HolesUnderPart:
@@ -60,27 +54,24 @@ def holes_under(
     low, high = face.box
     corners = np.array(list(product((low[0], high[0]), (low[1], high[1]))))
     x, y = fixture.pose.apply(corners[:, 0], corners[:, 1])
-    pegs = pegs_in_part(fixture)
-    placed = [k for k, peg in enumerate(fixture.pegs) if peg in fixture.placed]
-    carriers = toolkit.carriers
-    radii = {one.name: one.body_radius for one in carriers}
-    bodies = np.array([radii[fixture.pegs[k].carrier] for k in placed])
+    back, placed = fixture.pose.inverse, fixture.placed
+    pegs = np.stack(back.apply(*np.array([(peg.x, peg.y) for peg in placed]).T), axis=1)
+    bodies = np.array([toolkit.carrier(peg.carrier).body_radius for peg in placed])
     found: list[tuple[Array, ...]] = []
-    for number, carrier in enumerate(carriers):
+    for number, carrier in enumerate(toolkit.carriers):
         if not carrier.has_lattice:
             continue
-        x0, y0 = carrier.place(0, 0, fixture.jaw_separation)
-        columns = np.arange(
-            np.floor((x.min() - x0) / carrier.pitch[0]), np.ceil((x.max() - x0) / carrier.pitch[0]) + 1
-        )
-        rows = np.arange(
-            np.floor((y.min() - y0) / carrier.pitch[1]), np.ceil((y.max() - y0) / carrier.pitch[1]) + 1
+        columns, rows = (
+            np.arange(np.floor((ends.min() - first) / pitch), np.ceil((ends.max() - first) / pitch) + 1)
+            for ends, first, pitch in zip(
+                (x, y), carrier.place(0, 0, fixture.jaw_separation), carrier.pitch, strict=True
+            )
         )
         column, row = (grid.ravel() for grid in np.meshgrid(columns, rows, indexing="ij"))
         hole = carrier.place(column, row, fixture.jaw_separation)
-        points = np.stack(fixture.pose.inverse.apply(*hole), axis=1)
+        points = np.stack(back.apply(*hole), axis=1)
         spare = face.room(points) - request.pad_radius - request.pad_margin
-        apart = np.hypot(*np.moveaxis(points[:, None] - pegs[None, placed], -1, 0))
+        apart = np.hypot(*np.moveaxis(points[:, None] - pegs[None], -1, 0))
         spare = np.minimum(spare, (apart - bodies).min(axis=1, initial=np.inf) - request.pad_radius)
         kept = spare >= -GAP_SLACK
         found.append((np.full(kept.sum(), number), column[kept], row[kept], points[kept], spare[kept]))
@@ -161,9 +152,7 @@ class CarrierRoom:
     def standing(self, sets: IntArray) -> Standing:
         """How sets (N, S) of holes stand beside the pegs, blocked holes included."""
         found, at_rest = self.spanned(sets)
-        if not self.has_blocked:
-            return found
-        return clear_of_blocked(found, self.fixture, self.toolkit, self.holes, sets, at_rest)
+        return self.clear_of_blocked(found, sets, at_rest) if self.has_blocked else found
 
     def pairs(self) -> NDArray[np.bool_]:
         """Which two of H holes (H, H) may both hold a support; all three pairs of a set have to."""
@@ -236,47 +225,29 @@ class CarrierRoom:
         fits = fits & (outward <= room) & (spare >= -GAP_SLACK)
         return Standing(fits, opened, spare), np.asarray(at_rest, np.float64)
 
+    def clear_of_blocked(self, found: Standing, sets: IntArray, at_rest: Array) -> Standing:
+        """Moves pegs and supports of sets (N, S) on until none of them stands in a blocked hole.
 
-def clear_of_blocked(
-    found: Standing,
-    fixture: Fixture,
-    toolkit: Toolkit,
-    holes: HolesUnderPart,
-    triples: IntArray,
-    at_rest: Array,
-) -> Standing:
-    """Moves pegs and supports on until none of them stands in a blocked hole.
-
-    Parameters
-    ----------
-    at_rest : the travel (N,) nearest the opening.
-    """
-    plates = [(k, one) for k, one in enumerate(toolkit.carriers) if one.has_lattice]
-    if len(plates) < 2 or not any(one.blocked for _, one in plates):
-        return found
-    travel = next(one.travel for _, one in plates if one.travel is not None)
-    pitch, names = plates[0][1].pitch[0], [one.name for _, one in plates]
-    assert travel is not None
-    fits, opened = found.fits.copy(), found.travel.copy()
-    pegs = [(names.index(p.carrier), p.column, p.row) for p in fixture.pegs if p.carrier in names]
-    numbers = [k for k, _ in plates]
-    for index in np.flatnonzero(found.fits):
-        own = triples[index]
-        standing = pegs + [
-            (numbers.index(int(holes.carrier[h])), int(holes.column[h]), int(holes.row[h])) for h in own
-        ]
-        place = first_free(standing, [one for _, one in plates])
-        for moved in place:
-            width = at_rest[index] - moved * pitch
-            if width < travel.least - GAP_SLACK:
-                fits[index] = False
-                break
-            if travel.most is None or width <= travel.most + GAP_SLACK:
-                opened[index] = width
-                break
-        else:
-            fits[index] = False
-    return Standing(fits, opened, found.spare)
+        Parameters
+        ----------
+        at_rest : the travel (N,) nearest the opening.
+        """
+        holes, plates, numbers = self.holes, list(self.plates.values()), list(self.plates)
+        travel = next(one.travel for one in plates if one.travel is not None)
+        most = np.inf if travel.most is None else travel.most + GAP_SLACK
+        names = [one.name for one in plates]
+        pegs = [(names.index(p.carrier), p.column, p.row) for p in self.fixture.pegs if p.carrier in names]
+        fits, opened = found.fits.copy(), found.travel.copy()
+        for index in np.flatnonzero(found.fits):
+            standing = pegs + [
+                (numbers.index(int(holes.carrier[h])), int(holes.column[h]), int(holes.row[h]))
+                for h in sets[index]
+            ]
+            widths = (at_rest[index] - moved * plates[0].pitch[0] for moved in first_free(standing, plates))
+            width = next((one for one in widths if one <= most), -np.inf)
+            fits[index] = width >= travel.least - GAP_SLACK
+            opened[index] = width if fits[index] else opened[index]
+        return Standing(fits, opened, found.spare)
 
 
 def first_free(standing: list[tuple[int, int, int]], plates: list[Carrier]) -> list[int]:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from workhold.conventions import AGREEMENT
 from workhold.errors import InputError
+from workhold.limits import real, refuse_strong
 from workhold.model.fixture import Fixture
 from workhold.model.own_outlines import numbered_solid
 from workhold.model.query import Query
@@ -19,15 +20,14 @@ from workhold.model.requirements import Load
 from workhold.model.support_request import Loops, SpatialLoad, SupportRequest
 from workhold.model.support_triples import ClampFigures, SupportPad, Supports, Triple
 from workhold.statics.contact_matrix import Touched
-from workhold.supports.acting import WeakJawError, acting_on, checked_force, needed_jaw_force, spatial
-from workhold.supports.choosing import Chosen, TripleChoice
+from workhold.supports.choosing import TripleChoice
 from workhold.supports.clamp_point import ClampPlaces
 from workhold.supports.faces import TouchableFace, area_center
-from workhold.supports.forces import PegForces, Sides, lifted_by_jaws
-from workhold.supports.holes import CarrierRoom, HolesUnderPart, holes_under
-from workhold.supports.program_zones import with_program
+from workhold.supports.forces import Corners, PegForces, Sides, WeakJawError, lifted_by_jaws, needed_jaw_force
+from workhold.supports.holes import CarrierRoom, holes_under
+from workhold.supports.program import acting_on, with_program
 
-__all__ = ["SupportSearch", "supports_one_by_one", "supports_of", "supports_of_best"]
+__all__ = ["SupportSearch", "supports_one_by_one", "supports_of"]
 
 Array = NDArray[np.float64]
 # More holes than these leave more triples than can be looked at.
@@ -98,7 +98,7 @@ class SupportSearch:
             For a jaw force too small for a load, and more holes or triples than can be looked at.
         """
         toolkit, workpiece = self.query.toolkit, self.query.workpiece
-        pegs = PegForces.within(fixture, toolkit, self.touched)
+        pegs = PegForces.of(fixture, toolkit, self.touched)
         force = needed_jaw_force(pegs, self.loads, jaw_force)
         solid = numbered_solid(workpiece)
         request = self.request.for_fixture(fixture, solid, self.query.peg_height)
@@ -117,8 +117,7 @@ class SupportSearch:
             None if request.point is None else np.array(request.point),
         )
         chosen = choice.chosen(best, cancel, progress)
-        names = [one.name for one in toolkit.carriers]
-        triples = Describing(choice, holes, names, request).triples(chosen)
+        triples = triples_of(choice, chosen.corners)
         return Supports(
             self.query,
             fixture,
@@ -132,83 +131,92 @@ class SupportSearch:
         )
 
 
-@define(frozen=True, eq=False)
-class Describing:
-    """Makes triples with their figures from what was chosen.
-
-    Parameters
-    ----------
-    choice, holes : of the fixture.
-    names : of the carriers.
-    request : what was asked.
-    """
-
-    choice: TripleChoice
-    holes: HolesUnderPart
-    names: list[str]
-    request: SupportRequest
-
-    def triples(self, chosen: Chosen) -> tuple[Triple, ...]:
-        """The triples in their order."""
-        choice, corners, sides = self.choice, chosen.corners, self.choice.sides
-        if not len(corners.numbers):
-            return ()
-        arm_at, arm = choice.arms(corners)
-        best_at, need = choice.least_forces(corners)
-        free = np.isnan(best_at[:, 0])
-        best_at[free] = arm_at[free]
-        given = choice.given_at(corners)
-        standing = sides.distances(corners, choice.center).min(axis=1)
-        points = [point for load in sides.loads for point in load.points]
-        outside = np.full(len(need), -inf)
-        for point in points:
-            outside = np.maximum(outside, -sides.distances(corners, np.array(point)).min(axis=1))
-        stand = choice.room.standing(corners.numbers)
-        spare = np.minimum(self.holes.spare[corners.numbers].min(axis=1), arm - self.request.inside)
-        spare = np.minimum(spare, stand.spare)
-        best, at_point = self.figures(chosen, best_at), self.figures(chosen, choice.given_points(corners))
-        return tuple(
-            Triple(
-                supports=tuple(self.support(hole) for hole in numbers),
-                travel=float(stand.travel[k]) if isfinite(stand.travel[k]) else None,
-                marginal=bool(spare[k] < AGREEMENT),
-                standing=float(standing[k]),
-                overhang=float(outside[k]) if points else None,
-                arm=float(arm[k]),
-                arm_at=(float(arm_at[k, 0]), float(arm_at[k, 1])),
-                best=best[k],
-                given=at_point[k] if given[k] else None,
-            )
-            for k, numbers in enumerate(corners.numbers.tolist())
+def triples_of(choice: TripleChoice, corners: Corners) -> tuple[Triple, ...]:
+    """The triples of a fixture that were chosen, with their figures, in their order."""
+    sides, room = choice.sides, choice.room
+    if not len(corners.numbers):
+        return ()
+    arm_at, arm = choice.arms(corners)
+    best_at, need = choice.least_forces(corners)
+    free = np.isnan(best_at[:, 0])
+    best_at[free] = arm_at[free]
+    given = choice.given_at(corners)
+    standing = sides.distances(corners, choice.center).min(axis=1)
+    points = [point for load in sides.loads for point in load.points]
+    outside = np.full(len(need), -inf)
+    for point in points:
+        outside = np.maximum(outside, -sides.distances(corners, np.array(point)).min(axis=1))
+    stand = room.standing(corners.numbers)
+    spare = np.minimum(room.holes.spare[corners.numbers].min(axis=1), arm - choice.inside)
+    spare = np.minimum(spare, stand.spare)
+    best = clamp_figures(choice, corners, best_at)
+    at_point = clamp_figures(choice, corners, choice.given_points(corners))
+    return tuple(
+        Triple(
+            supports=tuple(support_in(room, hole) for hole in numbers),
+            travel=float(stand.travel[k]) if isfinite(stand.travel[k]) else None,
+            marginal=bool(spare[k] < AGREEMENT),
+            standing=float(standing[k]),
+            overhang=float(outside[k]) if points else None,
+            arm=float(arm[k]),
+            arm_at=(float(arm_at[k, 0]), float(arm_at[k, 1])),
+            best=best[k],
+            given=at_point[k] if given[k] else None,
         )
+        for k, numbers in enumerate(corners.numbers.tolist())
+    )
 
-    def figures(self, chosen: Chosen, points: Array) -> list[ClampFigures]:
-        """The figures of triples with the clamp at points (N, 2)."""
-        choice, corners, sides = self.choice, chosen.corners, self.choice.sides
-        need, force, arm = choice.figures_at(corners, points)
-        shares = sides.distances(corners, points) / corners.heights
-        lifted = lifted_by_jaws(sides.lines(corners.sides), sides.pegs, sides.bands) / corners.heights
-        with np.errstate(divide="ignore", invalid="ignore"):
-            lift = np.maximum((lifted / shares).max(axis=1), 0.0)
-        loaded = bool(sides.loads)
-        return [
-            ClampFigures(
-                at=(float(points[k, 0]), float(points[k, 1])),
-                clamp_needed=float(need[k]),
-                support_force=float(force[k]) if loaded else None,
-                arm=float(arm[k]),
-                share=float(shares[k].min()),
-                lift=float(lift[k]),
-            )
-            for k in range(len(need))
-        ]
 
-    def support(self, hole: int) -> SupportPad:
-        """One support."""
-        holes = self.holes
-        x, y = holes.points[hole]
-        name = self.names[holes.carrier[hole]]
-        return SupportPad(name, int(holes.column[hole]), int(holes.row[hole]), float(x), float(y))
+def clamp_figures(choice: TripleChoice, corners: Corners, points: Array) -> list[ClampFigures]:
+    """The figures of triples with the clamp at points (N, 2)."""
+    sides = choice.sides
+    need, force, arm = choice.figures_at(corners, points)
+    shares = sides.distances(corners, points) / corners.heights
+    lifted = lifted_by_jaws(sides.lines(corners.sides), sides.pegs, sides.bands) / corners.heights
+    with np.errstate(divide="ignore", invalid="ignore"):
+        lift = np.maximum((lifted / shares).max(axis=1), 0.0)
+    loaded = bool(sides.loads)
+    return [
+        ClampFigures(
+            at=(float(points[k, 0]), float(points[k, 1])),
+            clamp_needed=float(need[k]),
+            support_force=float(force[k]) if loaded else None,
+            arm=float(arm[k]),
+            share=float(shares[k].min()),
+            lift=float(lift[k]),
+        )
+        for k in range(len(need))
+    ]
+
+
+def support_in(room: CarrierRoom, hole: int) -> SupportPad:
+    """The support in a hole."""
+    holes = room.holes
+    x, y = holes.points[hole].tolist()
+    name = room.toolkit.carriers[holes.carrier[hole]].name
+    return SupportPad(name, int(holes.column[hole]), int(holes.row[hole]), x, y)
+
+
+def spatial(loads: Iterable[Load | SpatialLoad], thickness: float) -> tuple[SpatialLoad, ...]:
+    """Loads as they act in space, with their heights written out."""
+    every = (load if isinstance(load, SpatialLoad) else SpatialLoad.of(load) for load in loads)
+    return tuple(load.at_height(thickness) for load in every)
+
+
+def checked_force(jaw_force: float | None) -> float | None:
+    """A jaw force in N, or None.
+
+    Raises
+    ------
+    InputError
+        For one that is negative or no number.
+    """
+    if jaw_force is None:
+        return None
+    if not (isfinite(real(jaw_force)) and real(jaw_force) >= 0):
+        raise InputError(f"jaw force {real(jaw_force):g} cannot be used: give 0 or more.")
+    refuse_strong("jaw force", real(jaw_force))
+    return real(jaw_force)
 
 
 def supports_of(
@@ -240,34 +248,8 @@ def supports_of(
         For pads too large for the holes, and a jaw force too small for a load. For more holes than can be
         looked at, and for all triples where there are too many.
     """
-    every = supports_one_by_one(
-        (fixture,), query, request, loads, jaw_force, best, cancel=cancel, progress=progress
-    )
-    return next(every)
-
-
-def supports_of_best(
-    fixtures: Iterable[Fixture],
-    query: Query,
-    request: SupportRequest,
-    loads: Sequence[Load | SpatialLoad] | None = None,
-    jaw_force: float | None = None,
-    each: int = 3,
-    *,
-    cancel: Event | None = None,
-    progress: Callable[[float], None] | None = None,
-) -> tuple[Supports, ...]:
-    """The best triples of each of some fixtures of a query; those without any have an empty list.
-
-    Parameters
-    ----------
-    each : how many triples of each fixture; all other parameters as of :func:`supports_of`. Once
-        ``cancel`` is set no further fixture is looked at.
-    """
-    every = list(fixtures)
-    return tuple(
-        supports_one_by_one(every, query, request, loads, jaw_force, each, cancel=cancel, progress=progress)
-    )
+    asked = (query, request, loads, jaw_force, best)
+    return next(supports_one_by_one((fixture,), *asked, cancel=cancel, progress=progress))
 
 
 def supports_one_by_one(

@@ -59,11 +59,11 @@ def reason(found: Supports, unit: Unit) -> str:
             f"and {unit.text(request.inside)} is asked for; a smaller tip would help, or less distance "
             "inside the triangle."
         )
-    beside = ", keep-outs on top or the clamp's reach" if request.top_zones or request.reach else ""
+    beside = ", or other keep-outs on top or the clamp's reach" if request.top_zones or request.reach else ""
     return (
         f"inside every triangle of the {found.positions} holes that could hold a support, the tip of radius "
         f"{unit.text(request.tip_radius)} finds no place on the upper face; a smaller tip would help, "
-        f"or less distance inside the triangle{', or other' + beside.removeprefix(',') if beside else ''}."
+        f"or less distance inside the triangle{beside}."
     )
 
 
@@ -149,12 +149,12 @@ def flat_faces_notes(workpiece: Workpiece, keep_off: Sequence[str]) -> list[str]
         return []
     if solid.lies_on_no_face:
         return ["The part lies on no level face, so no support can stand under it: turn another side up."]
-    names = ("bottom", "top")
-    lacking = [k for k, name in enumerate(names) if not getattr(solid, name)]
+    levels = (("bottom", solid.bottom, keep_off[0]), ("top", solid.top, keep_off[1]))
+    lacking = [(name, off) for name, loops, off in levels if not loops]
     if not lacking:
         return []
-    sides = " and ".join(names[k] for k in lacking)
+    sides, off = (" and ".join(words) for words in zip(*lacking, strict=True))
     return [
         f"No level face of the part is known at its {sides}, which is taken to be flat as far as the outline "
-        f"goes: keep pads and tip off the rest with {' and '.join(keep_off[k] for k in lacking)}."
+        f"goes: keep pads and tip off the rest with {off}."
     ]

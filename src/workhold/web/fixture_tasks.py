@@ -75,7 +75,7 @@ class PaperOrder:
     unit : "mm" or "inch".
     day : written on the sheet.
     wishes : what is asked of a sheet or a set-up, named as in
-        :func:`workhold.drawing.result_sheet.result_details` and :func:`workhold.files.dxf.writer.setup_dxf`;
+        :func:`workhold.drawing.sheet_facts.result_details` and :func:`workhold.files.dxf.writer.setup_dxf`;
         lengths in mm.
     result_hash : of the result's file, or None where it is not known yet.
     supports : what supports and clamp on top are asked for, and which set of them; None for none.
@@ -133,7 +133,7 @@ def make_paper(payload: PaperOrder, order: Order) -> tuple[bytes, str | None]:
 
 def sheet(order: PaperOrder) -> tuple[bytes, str | None]:
     """Draws the setup sheet."""
-    from workhold.drawing.result_sheet import result_sheet
+    from workhold.drawing.sheet import result_sheet
     from workhold.model.first_side import first_side
     from workhold.presenting.papers import pages_bytes
 

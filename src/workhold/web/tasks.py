@@ -158,7 +158,7 @@ def loads(payload: tuple[Fixture, Workpiece, Toolkit, LoadsForm], order: Order) 
 
 def warnings(payload: tuple[Result, dict[str, Any]], order: Order) -> list[dict[str, str]]:
     """Lists the cautions of the only fixture of a result."""
-    from workhold.drawing.result_sheet import result_cautions
+    from workhold.drawing.sheet_facts import result_cautions
 
     result, asked = payload
     return [

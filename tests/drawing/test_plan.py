@@ -8,7 +8,7 @@ from math import atan2, degrees
 import pytest
 from svg_reading import by_class
 
-from workhold.drawing.annotation import angle_mark
+from workhold.drawing.plan import angle_mark
 from workhold.drawing.scene import Scene
 
 

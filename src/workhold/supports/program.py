@@ -1,4 +1,9 @@
-"""Where a program leaves no place for supports and for the clamp on top: keep-out zones of what it sweeps.
+"""What a program asks of supports: its forces as loads in space, and keep-out zones of what it sweeps.
+
+Cutting forces are loads with heights, the thrust of drills and the pull of helices. For each tool, what mills
+and what drills are loads of their own, with every force that it has; where it has more than a few, with the
+largest. A path counts as the hull of its places. Arcs are taken in polygons around them, so that nothing is
+less than it is, and a force may act in any direction.
 
 What tools sweep at heights below the part is no place for pads, such as where a drill comes through. What
 they sweep at the heights of the clamp is none for its tip. Each swept piece is a zone, straight or bent, as
@@ -24,23 +29,89 @@ from numpy.typing import NDArray
 
 from workhold.contact.swept import Swept, path_of
 from workhold.contact.trimming import distances
+from workhold.model.cutting_forces import CuttingForces
+from workhold.model.cutting_tool import ANY
 from workhold.model.program import PathVertex, Program, SweptPiece
-from workhold.model.requirements import Zone, zone_of
+from workhold.model.query import Query
+from workhold.model.requirements import Load, Zone, zone_of
 from workhold.model.support_bodies import clamp_pieces
-from workhold.model.support_request import SupportRequest
+from workhold.model.support_request import SpatialLoad, SupportRequest
 from workhold.model.workpiece import Workpiece
+from workhold.statics.path_pieces import all_pieces, around_arcs, hull_of
 from workhold.supports.faces import TouchableFace
 
-__all__ = ["capsule", "with_program"]
+__all__ = ["acting_on", "capsule", "cutting_loads", "with_program"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+# Forces of one tool that are loads of their own.
+MOST_FORCES = 8
 # Half diagonals in mm of the smallest squares, tried until there are few zones.
 FINEST = (0.01, 0.05, 0.25, 1.0)
 # Zones above the part among which the clamp's place is still found fast, and zones below it.
 MOST_ABOVE, MOST_BELOW = 40, 400
 # Squares along the longer side of a face to begin with.
 FIRST = 16
+
+
+def acting_on(query: Query, thickness: float) -> tuple[Load | SpatialLoad, ...]:
+    """The loads of a query and those that its program makes on a part of a thickness in mm."""
+    return (*query.loads, *(() if query.program is None else cutting_loads(query.program, thickness)))
+
+
+def cutting_loads(program: Program, thickness: float) -> tuple[SpatialLoad, ...]:
+    """The loads of a program on a part of a thickness in mm; none without forces."""
+    forces = program.forces
+    if forces is None:
+        return ()
+    found = list[SpatialLoad]()
+    acts = (forces.torque > 0.0) | (forces.force > 0.0)
+    for tool in program.tools:
+        own = acts & (program.moves.tool == tool)
+        for drills, word in ((False, "milling"), (True, "drilling")):
+            rows = np.flatnonzero(own & ((forces.force == 0.0) == drills))
+            for group in alike(forces, rows):
+                found += loads_of(program, forces, group, thickness, f"T{tool} {word}")
+    return tuple(found)
+
+
+def alike(forces: CuttingForces, rows: IntArray) -> Iterator[IntArray]:
+    """Moves of one force each; all together where there are more than a few forces."""
+    values, which = np.unique(forces.torque[rows], return_inverse=True)
+    if len(values) > MOST_FORCES:
+        yield rows
+    else:
+        yield from (rows[which == k] for k in range(len(values)))
+
+
+def loads_of(
+    program: Program, forces: CuttingForces, rows: IntArray, thickness: float, name: str
+) -> Iterator[SpatialLoad]:
+    """The loads of some moves, with the torque either way round."""
+    moves = program.moves
+    only = np.zeros(len(moves))
+    only[rows] = 1.0
+    none = np.zeros(len(moves))
+    any_way = CuttingForces(only, none, np.zeros((len(moves), 2)), none, ANY)
+    pieces = all_pieces(evolve(program, forces=any_way), (0.0, 0.0))
+    is_arc = pieces.radius > 0.0
+    x, y = around_arcs(pieces, np.flatnonzero(is_arc))
+    points = np.concatenate(
+        [np.stack([pieces.x[~is_arc], pieces.y[~is_arc]], axis=1), np.stack([x.ravel(), y.ravel()], axis=1)]
+    )
+    tip = np.concatenate([moves.start[rows, 2], moves.end[rows, 2]]) + np.tile(forces.height[rows], 2)
+    # What a tool does below the part or over it acts at its lower or upper side.
+    heights = np.clip([tip.min(), tip.max()], 0.0, thickness)
+    load = SpatialLoad(
+        points=hull_of(points).tolist(),
+        force=float(forces.force[rows].max()),
+        heights=(float(heights[0]), float(heights[1])),
+        axial=(float(forces.axial[rows, 0].min()), float(forces.axial[rows, 1].max())),
+        moment=float(forces.torque[rows].max()),
+        name=name,
+    )
+    yield load
+    yield evolve(load, moment=-load.moment)
 
 
 def with_program(request: SupportRequest, workpiece: Workpiece, program: Program | None) -> SupportRequest:
