@@ -229,7 +229,7 @@ def family(
     toolkit, tolerance = held_in.asked(shown)
     words.asked(shown)
     type_ = choice("--type", type_, (*toolkit.types, EVERY_TYPE))
-    from workhold.family.covering import load_solver
+    from workhold.family.solver import load_solver
 
     thresholds = [threshold_of(text) for text in limit or ()]
     load_solver()

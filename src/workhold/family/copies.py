@@ -30,8 +30,8 @@ from workhold.drawing.bench import bench_of, draw_part, draw_pegs
 from workhold.drawing.carriers import STILL, draw_clamp, draw_push, draw_wall, labelled
 from workhold.drawing.scene import GREY, LANDSCAPE, PORTRAIT, Box, LengthUnit, Scene, View, shortened
 from workhold.errors import InputError
-from workhold.family.covering import ROUNDING, best_choice, load_solver
 from workhold.family.patterns import shifted
+from workhold.family.solver import ROUNDING, best_choice, load_solver
 from workhold.fixels.carrier import Carrier, column_letters
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Line

@@ -1,8 +1,7 @@
 """The fewest sets that together hold all members, and the curve of the least loss for each number of set-ups.
 
-Set cover is solved exactly by HiGHS (Huangfu & Hall, *Parallelizing the dual revised simplex method*, Math.
-Prog. Comp. 10, 2018), which branches and bounds; it comes with SciPy. Its answer is taken as the least only
-when its lower bound, rounded up, is the number of sets it found.
+Set cover is solved exactly (``family.solver``). An answer is taken as the least only when the solver's lower
+bound, rounded up, is the number of sets it found.
 
 The curve gives for each number of set-ups the least worst loss among the members, proven. At a bound on the
 loss only the sets of members that patterns hold matter, and of these only the ones inside no other: few, even
@@ -17,29 +16,25 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from math import ceil
 from time import monotonic
-from typing import Any
 
 import numpy as np
 from attrs import define, field, frozen
 from numpy.typing import NDArray
 
-from workhold.errors import InputError
 from workhold.family.members import Member
+from workhold.family.solver import ROUNDING, best_choice
 from workhold.listing.canonical_form import changes
 
 __all__ = [
-    "REQUIREMENT",
     "Cover",
     "LossTable",
     "Point",
     "Search",
     "as_sets",
-    "best_choice",
     "cover",
     "curve_of",
     "first_cover",
     "greedy",
-    "load_solver",
     "maximal",
     "packing",
     "points_of",
@@ -49,10 +44,7 @@ __all__ = [
 BoolArray = NDArray[np.bool_]
 WordArray = NDArray[np.uint64]
 
-REQUIREMENT = "scipy>=1.13"
 WORD = 64
-# A bound this little below a whole number is that number.
-ROUNDING = 1e-6
 
 
 @frozen
@@ -72,22 +64,6 @@ class Cover:
     def is_least(self) -> bool:
         """Whether it is proven that there is none with fewer sets."""
         return self.at_least == len(self.sets)
-
-
-def load_solver() -> None:
-    """Loads HiGHS.
-
-    Raises
-    ------
-    InputError
-        When SciPy is not installed; with the remedy.
-    """
-    try:
-        import scipy.optimize  # noqa: F401
-    except ImportError as error:
-        raise InputError(
-            f"a family needs SciPy, which is not installed: pip install '{REQUIREMENT}'."
-        ) from error
 
 
 def maximal(masks: WordArray) -> NDArray[np.int64]:
@@ -146,37 +122,6 @@ def cover(sets: BoolArray, deadline: float | None = None) -> Cover:
     if len(quick) <= len(chosen) or not sets[list(chosen)].any(axis=0).all():
         chosen = quick
     return Cover(chosen, min(at_least, len(chosen)))
-
-
-def best_choice(
-    costs: NDArray[np.float64], constraint: Any, seconds: float | None
-) -> tuple[list[int] | None, float | None]:
-    """The numbers of the things to choose so that their costs (N,) are least, and a lower bound of the cost.
-
-    Parameters
-    ----------
-    constraint : of SciPy, on whether each of the things is chosen, 0 or 1.
-    seconds : time limit, after which it is the best choice known; None for none.
-
-    Returns
-    -------
-    Each of the two is None where it is not known.
-    """
-    from scipy.optimize import Bounds, milp
-
-    options = (
-        {"mip_rel_gap": 0.0} if seconds is None else {"mip_rel_gap": 0.0, "time_limit": max(seconds, 0.0)}
-    )
-    found = milp(
-        costs,
-        integrality=np.ones(len(costs)),
-        bounds=Bounds(0, 1),
-        constraints=constraint,
-        options=options,
-    )
-    bound = found.mip_dual_bound
-    chosen = None if found.x is None else np.flatnonzero(found.x > 0.5).tolist()
-    return chosen, None if bound is None or not np.isfinite(bound) else float(bound)
 
 
 def packing(sets: BoolArray) -> int:

@@ -18,9 +18,10 @@ import numpy as np
 from attrs import define, evolve, frozen
 
 from workhold.errors import InputError
-from workhold.family.covering import LossTable, Point, curve_of, load_solver, table_of
+from workhold.family.covering import LossTable, Point, curve_of, table_of
 from workhold.family.members import OTHER_SIDE, Member, Threshold, member_of, other_side, zero_of_other_side
 from workhold.family.plan import Holding, Plan, SetUp, plan_of
+from workhold.family.solver import load_solver
 from workhold.files.result.fixture_text import LENGTH_STEPS, rounded, rounded_degrees
 from workhold.files.result.writer import toolkit_fields
 from workhold.fixels.contacts import CLAMP_TIP

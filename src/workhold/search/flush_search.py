@@ -1,4 +1,4 @@
-"""A part that lies flush on a wall: on which of its hull edges, how it lies there, and what a search there counts.
+"""A part that lies flush on a wall: on which hull edges, how it lies there, and what a search counts there.
 
 In the wall's frame a part lies on a hull edge: u runs along it from its start, v up from it. What presses it
 there is a locator and a clamp (``search.wall_search``), or two pegs of a lattice that slides toward the wall

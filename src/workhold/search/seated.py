@@ -88,8 +88,8 @@ def seated_answer(
 
     Parameters
     ----------
-    search : answers a query without seating, watched by ``progress`` and ``cancel``; if there is a sink here, a
-        ``sink`` takes its fixtures.
+    search : answers a query without seating, watched by ``progress`` and ``cancel``; if there is a sink here,
+        a ``sink`` takes its fixtures.
     threads, progress, cancel : see ``search.design.answer``.
     sink : takes the fixtures; the result that is returned has none then.
 

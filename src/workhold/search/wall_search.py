@@ -61,12 +61,12 @@ class WallSearch(FlushSearch):
 
     @property
     def plate(self) -> Carrier:
-        """In whose holes the locator stands."""
+        """The plate in whose holes the locator stands."""
         return self.problem.toolkit.carriers[0]
 
     @property
     def clamp(self) -> Carrier:
-        """What moves."""
+        """The clamp, which moves."""
         return self.problem.toolkit.moving
 
     @property

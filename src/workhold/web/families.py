@@ -54,8 +54,8 @@ class FamilyForm(Form):
         InputError
             For the first value that cannot be, and where the solver is not installed.
         """
-        from workhold.family.covering import load_solver
         from workhold.family.members import RANKINGS
+        from workhold.family.solver import load_solver
 
         load_solver()
         toolkit = self.toolkit.toolkit()

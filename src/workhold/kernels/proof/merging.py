@@ -1,4 +1,7 @@
-"""Boxes of the same candidate that overlap, put together."""
+"""Boxes of the same candidate that overlap, put together.
+
+One contact is found by several pairs of chords, and in neighbouring cells.
+"""
 
 from __future__ import annotations
 

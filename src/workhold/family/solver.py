@@ -1,0 +1,69 @@
+"""HiGHS, which branches and bounds, and comes with SciPy: what to choose so that it costs least.
+
+References
+----------
+Q. Huangfu, J. A. J. Hall, "Parallelizing the dual revised simplex method", Mathematical Programming
+Computation 10 (2018) 119-142.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.errors import InputError
+
+__all__ = ["REQUIREMENT", "ROUNDING", "best_choice", "load_solver"]
+
+REQUIREMENT = "scipy>=1.13"
+# A bound this little below a whole number is that number.
+ROUNDING = 1e-6
+
+
+def load_solver() -> None:
+    """Loads HiGHS.
+
+    Raises
+    ------
+    InputError
+        When SciPy is not installed; with the remedy.
+    """
+    try:
+        import scipy.optimize  # noqa: F401
+    except ImportError as error:
+        raise InputError(
+            f"a family needs SciPy, which is not installed: pip install '{REQUIREMENT}'."
+        ) from error
+
+
+def best_choice(
+    costs: NDArray[np.float64], constraint: Any, seconds: float | None
+) -> tuple[list[int] | None, float | None]:
+    """The numbers of the things to choose so that their costs (N,) are least, and a lower bound of the cost.
+
+    Parameters
+    ----------
+    constraint : of SciPy, on whether each of the things is chosen, 0 or 1.
+    seconds : time limit, after which it is the best choice known; None for none.
+
+    Returns
+    -------
+    Each of the two is None where it is not known.
+    """
+    from scipy.optimize import Bounds, milp
+
+    options = (
+        {"mip_rel_gap": 0.0} if seconds is None else {"mip_rel_gap": 0.0, "time_limit": max(seconds, 0.0)}
+    )
+    found = milp(
+        costs,
+        integrality=np.ones(len(costs)),
+        bounds=Bounds(0, 1),
+        constraints=constraint,
+        options=options,
+    )
+    bound = found.mip_dual_bound
+    chosen = None if found.x is None else np.flatnonzero(found.x > 0.5).tolist()
+    return chosen, None if bound is None or not np.isfinite(bound) else float(bound)
