@@ -44,6 +44,8 @@ BALLS = Lock()
 # Records looked at between two looks at the flag that stops the work: at first, at most, and the seconds
 # under which twice as many are looked at next.
 OPEN_BLOCK, LARGEST_BLOCK, QUICK = 16, 1024, 0.02
+# A box is flat whose turn is no more than this part of its other sides.
+FLAT = 1e-6
 # Seconds after somebody asked to stop in which records are still decided, by what takes little time.
 GRACE = 0.5
 
@@ -242,8 +244,10 @@ def interval_newton_in_doubles(records: Array, problem: Problem, setting: Settin
     slopes = jacobians(records, problem.rows, setting)
     bounded = np.isfinite(records).all(axis=1) & np.isfinite(slopes).all(axis=(1, 2))
     known = records[bounded]
-    # By how far each unknown goes in the box: the orientation may be known far better than the place.
-    left, _, right = np.linalg.svd(slopes[bounded] * box_reach(known, problem.wrench_length)[:, None, :])
+    reach = box_reach(known, problem.wrench_length)
+    # Where the orientation is known far better than the place, a frame must not mix them.
+    reach[reach[:, 0] >= FLAT * reach[:, 1]] = 1.0
+    left, _, right = np.linalg.svd(slopes[bounded] * reach[:, None, :])
     frames = np.stack([left, right.transpose(0, 2, 1)], axis=1)
     verdicts, roots = interval_newton(known, problem.rows, setting, frames)
     proven, still_open = sifted(roots, problem, setting)
