@@ -30,7 +30,6 @@ from ezdxf.disassemble import recursive_decompose, to_primitives
 from ezdxf.entities import LWPolyline
 from hostile_files import MAKERS
 from pytest import approx, raises
-from workhold.files.result.heads import HEAD, columns_said
 
 from workhold.archive import mapped_archive
 from workhold.cli.main import app
@@ -38,6 +37,7 @@ from workhold.errors import InputError
 from workhold.files.apart import limit_memory, limit_processor
 from workhold.files.loads_file import read_loads
 from workhold.files.part.load import read_workpiece
+from workhold.files.result.parts import HEAD, columns_said
 from workhold.files.result.reader import read_result
 from workhold.files.toolkit_file import read_toolkit_file
 from workhold.kernels.base.distance import outline_distances

@@ -113,8 +113,13 @@ class Vise(Toolkit):
         """Half a turn, which swaps the jaws; none where their pegs have different heights."""
         return (Symmetry(1, (1, 0)),) if self.left_heights == self.right_heights else ()
 
-    @cached_property
+    @property
     def carriers(self) -> tuple[Carrier, ...]:
+        """The jaws, which are made once."""
+        return self.jaws
+
+    @cached_property
+    def jaws(self) -> tuple[Carrier, ...]:
         """The left jaw, and the right jaw, whose travel is the jaw separation."""
         both = {"body_radius": self.body_radius, "noun": "jaw"}
         left = lattice_carrier(self, "left", **both, heights=self.left_heights)

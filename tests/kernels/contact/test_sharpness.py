@@ -17,7 +17,7 @@ from sharpness import Constant, changed, check_sharpness
 from workhold.conventions import GAP_SLACK
 from workhold.kernels.base.tables import Features
 from workhold.kernels.contact import rules
-from workhold.kernels.curves import rows
+from workhold.kernels.curves import moving_pegs
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 Kernel = Callable[..., Any]
@@ -165,7 +165,7 @@ def row_met(lines: bool) -> Callable[[Random, Kernel], float]:
         meets, x, y, off = kernel(row, ax, ay, height, error, side)
         worst = 0.0
         for part in (-1, -0.5, 0.5, 1):
-            one, px, py, _ = rows.row_meets(row, ax, ay, height + part * error, 0.0, side)
+            one, px, py, _ = moving_pegs.row_meets(row, ax, ay, height + part * error, 0.0, side)
             if one and not meets:
                 return inf
             if one and meets:
@@ -182,11 +182,11 @@ CONSTANTS = [
     Constant("contact past the end, 1.2", rules.is_within, past_the_end, 1.2),
     Constant("gap, 2 radii", rules.is_fixture, at_the_edge("gap"), 2.0, 0, draws=60),
     Constant("clamping, 3 bands", rules.is_fixture, at_the_edge("clamp"), 3.0, 0, draws=1500),
-    Constant("row and line, 1.1", rows.row_meets, row_met(True), 1.1, draws=600),
-    Constant("row and arc, 2.2 R", rows.row_meets, row_met(False), 2.2, draws=600),
-    Constant("row and arc, 1.3", rows.row_meets, row_met(False), 1.3, draws=600),
-    Constant("row and arc, 16 R", rows.row_meets, row_met(False), 16.0, draws=600),
-    Constant("row and arc, 2 roots", rows.row_meets, row_met(False), 2.0, draws=600),
+    Constant("row and line, 1.1", moving_pegs.row_meets, row_met(True), 1.1, draws=600),
+    Constant("row and arc, 2.2 R", moving_pegs.row_meets, row_met(False), 2.2, draws=600),
+    Constant("row and arc, 1.3", moving_pegs.row_meets, row_met(False), 1.3, draws=600),
+    Constant("row and arc, 16 R", moving_pegs.row_meets, row_met(False), 16.0, draws=600),
+    Constant("row and arc, 2 roots", moving_pegs.row_meets, row_met(False), 2.0, draws=600),
 ]
 
 

@@ -295,8 +295,7 @@ def judged_from_aside(rule: str, lines: bool) -> Callable[[Random, Kernel], floa
             pairs[0] = there
 
             def is_open(part: float, moved: Held = moved, work: Array = work, pairs: Array = pairs) -> bool:
-                null = np.zeros(4)
-                return bool(judge(RECORD, moved.rows, asked, off * part, smallest, work, pairs, null) == OPEN)
+                return bool(judge(RECORD, moved.rows, asked, off * part, smallest, work, pairs) == OPEN)
 
             if not is_open(1.0):
                 return inf
