@@ -22,11 +22,11 @@ from workhold.family.covering import (
     curve_of,
     first_cover,
     greedy,
-    load_solver,
     maximal,
     packing,
     points_of,
 )
+from workhold.family.solver import load_solver
 
 pytest.importorskip("scipy", reason="the extra [batch] is not installed")
 
