@@ -17,7 +17,7 @@ def search_for_long(walk: Walk) -> None:
     page = walk.page
     walk.take("8Handle", None)
     page.select_option("#toolkit", "vise")
-    for name, value in (("#peg-radius", "1.4"), ("#columns", "7"), ("#pitch-x", "3"), ("#pitch-y", "3")):
+    for name, value in (("#peg-radius", "1.4"), ("#columns", "10"), ("#pitch-x", "3"), ("#pitch-y", "3")):
         page.fill(name, value)
     page.press("#pitch-y", "Tab")
     page.click("#search")
