@@ -118,18 +118,25 @@ def closure_margin(one: Array, other: Array) -> tuple[float, float]:
 
 
 @inner
+def pressed_range(low: float, high: float, a: float, b: float) -> tuple[float, float]:
+    """The ends of the part of an interval of ratios t in which a locator that carries a + b t is pressed."""
+    if b > 0.0:
+        low = max(low, -a / b)
+    elif b < 0.0:
+        high = min(high, -a / b)
+    elif a <= 0.0:
+        high = 0.0
+    return (low, high)
+
+
+@inner
 def ratio_range(one: Array, other: Array) -> tuple[float, float]:
     """The ends of the open interval of f2 / f1 in which all locators are pressed."""
     low, high = 0.0, inf
     for k in range(3):
         a, b = one[TAKEN + k] / one[PUSH], other[TAKEN + k] / other[PUSH]
         a, b = (0.0 if abs(a) < NO_REACTION else a), (0.0 if abs(b) < NO_REACTION else b)
-        if b > 0.0:
-            low = max(low, -a / b)
-        elif b < 0.0:
-            high = min(high, -a / b)
-        elif a <= 0.0:
-            high = 0.0
+        low, high = pressed_range(low, high, a, b)
     return (low, high)
 
 

@@ -15,7 +15,7 @@ from __future__ import annotations
 from math import atan, cos, degrees, inf, pi, sin
 
 from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
-from workhold.kernels.contact.clamp_pairs import closure_margin
+from workhold.kernels.contact.clamp_pairs import closure_margin, pressed_range
 from workhold.kernels.contact.record import COLUMNS, PSI, ROWS, TAIL_X, TAIL_Y
 
 # What mixes two coordinates to one number.
@@ -78,13 +78,7 @@ def widened_range(one: Array, other: Array, off: float, off_other: float) -> tup
     """The ends of the interval of f2 / f1 in which locators are pressed, were forces larger by ``off``."""
     low, high = 0.0, inf
     for k in range(3):
-        a, b = one[LOCATOR + k] + off, other[LOCATOR + k] + off_other
-        if b > 0.0:
-            low = max(low, -a / b)
-        elif b < 0.0:
-            high = min(high, -a / b)
-        elif a <= 0.0:
-            high = 0.0
+        low, high = pressed_range(low, high, one[LOCATOR + k] + off, other[LOCATOR + k] + off_other)
     return (low, high)
 
 

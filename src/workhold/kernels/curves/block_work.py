@@ -26,7 +26,6 @@ from workhold.kernels.base.tables import (
     Limits,
 )
 from workhold.kernels.contact.record import (
-    PEG_FEATURE,
     PEG_LENGTH,
     PEG_RADIUS,
     PEG_ROW,
@@ -153,11 +152,11 @@ def place_triple(
     other one may say it well.
     """
     place_tail(pegs, one, angle, reach, 0.0, features, curves)
-    if pegs[0, PEG_RADIUS] > BADLY:
-        x, y, radius = pegs[0, PEG_X], pegs[0, PEG_Y], pegs[0, PEG_RADIUS]
+    radius = pegs[0, PEG_RADIUS]
+    if radius > BADLY:
         place_tail(pegs, two, angle, reach, 0.0, features, curves)
         if pegs[0, PEG_RADIUS] >= radius:
-            place_peg(pegs[0], x, y, pegs[0, PEG_FEATURE], 0.0, 0.0, radius)
+            place_tail(pegs, one, angle, reach, 0.0, features, curves)
     place_head(pegs, 1, one, angle, reach, curves)
     place_head(pegs, 2, two, angle, reach, curves)
 
