@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from math import cos, pi, sin
+from pathlib import Path
 from threading import Event
 from time import sleep
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,7 +15,7 @@ from flint import arb
 from numpy.typing import NDArray
 
 from chord_examples import arc_row, line_row
-from workhold import Query, Vise, load
+from workhold import Query, Vise, design, load
 from workhold.contact.problem import Problem
 from workhold.conventions import END_SLACK
 from workhold.kernels.contact import record
@@ -259,3 +261,24 @@ def test_a_wide_box_is_decided_in_doubles() -> None:
         row, problem, problem.setting._replace(backward_error=0.0)
     )
     assert len(proven) == len(still_open) == 0
+
+
+def test_an_ordinary_part_leaves_nothing_to_balls(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Boxes that are not flat are contracted in the frame of the Jacobian alone; weighed, some of them stay open, and the
+    search loads ball arithmetic for them."""
+    in_balls: list[int] = []
+    monkeypatch.setattr(deciding, "records_in_balls", counted(in_balls, deciding.records_in_balls))
+    bracket = Path(__file__).resolve().parents[2] / "examples" / "bracket.dxf"
+    result = design(load(bracket), Vise(pitch=10, columns=2, peg_radius=3))
+    assert result.proof is not None and result.proof.escalated > 500
+    assert sum(in_balls) == 0
+
+
+def counted(counts: list[int], work: Callable[..., Any]) -> Callable[..., Any]:
+    """A function of records, with how many it is given noted."""
+
+    def noting(records: NDArray[np.float64], *given: Any) -> Any:
+        counts.append(len(records))
+        return work(records, *given)
+
+    return noting
