@@ -8,6 +8,7 @@ import pytest
 from workhold import Fence, Query, Workpiece
 from workhold.contact.problem import Problem
 from workhold.listing.wall_fixtures import WallFixtures
+from workhold.proof.exact_contacts import side_of
 from workhold.proof.flush import Candidate, pressing
 from workhold.search import wall_contacts
 from workhold.search.flush_search import part_on_wall
@@ -92,3 +93,15 @@ def test_a_line_that_misses_an_arc_has_no_contact() -> None:
     arc = int(np.flatnonzero(problem.rows[:, 0] != 0.0)[0])
     far = Candidate(edge=0, row=9, line=1, is_upright=False, features=(arc, arc), branches=(-1.0, 1.0))
     assert pressing(far, problem, problem.toolkit.carriers[0], (-1.0, 0.0)) is False
+
+
+def test_sides_are_numbered_through_all_loops() -> None:
+    """Each is given by the vertices at its ends, those of a hole after those of the outside; there is none after the last."""
+    part = Workpiece.from_loops("part", [KITE, [[20, 15, 0], [20, 25, 0], [30, 25, 0]]])
+    ends = [side_of(part, number) for number in range(7)]
+    loops = [[tuple(vertex) for vertex in loop.tolist()] for loop in part.loops]
+    assert ends == [
+        (one, other) for loop in loops for one, other in zip(loop, loop[1:] + loop[:1], strict=True)
+    ]
+    with pytest.raises(IndexError):
+        side_of(part, 7)
