@@ -96,7 +96,7 @@ def test_a_line_that_misses_an_arc_has_no_contact() -> None:
 
 
 def test_sides_are_numbered_through_all_loops() -> None:
-    """Each is given by the vertices at its ends, those of a hole after those of the outside; there is none after the last."""
+    """Each is given by the vertices at its ends; those of a hole come after those of the outside."""
     part = Workpiece.from_loops("part", [KITE, [[20, 15, 0], [20, 25, 0], [30, 25, 0]]])
     ends = [side_of(part, number) for number in range(7)]
     loops = [[tuple(vertex) for vertex in loop.tolist()] for loop in part.loops]
