@@ -37,7 +37,7 @@ HOLDERS, RECORDS = {"toolkit"}, {"fields", "given", "said"}
 # What of a row of a table is the name of another field.
 REFERRING = {"at_least", "follows", "name"}
 KIND_WORDS = {"vise", "vises", "plate", "plates", "fence", "fences", "opening"}
-LONGEST_FILE, SHORTEST_FILE, LONGEST_LINE, LONGEST_SENTENCE, LONGEST_SUBJECT = 400, 40, 110, 30, 72
+LONGEST_FILE, SHORTEST_FILE, LONGEST_LINE, LONGEST_SENTENCE, LONGEST_SUBJECT = 800, 40, 110, 30, 72
 # Openings that lean on something said elsewhere.
 ELLIPSIS = re.compile(
     r"(?:The same|The (?:one|ones|other|others|rest) (?:for|from|in|of|that|to|with)|Those|That|These|This|Its?|Their|They"
@@ -360,7 +360,7 @@ RULES = (
     Rule("lines asking for the kind", "ask its data or its contact kinds in fixels", lines_asking_for_kind),
     Rule("modules named after a kind", "name it by what it does", modules_named_after_kind),
     Rule("files naming a field", "take the field from the table in fixels.fields", files_naming_fields),
-    Rule("files over 400 lines", "split it by ideas", long_files),
+    Rule("files over 800 lines", "split it by ideas", long_files),
     Rule("files under 40 lines", "put it where it is used", short_files),
     Rule("size", "take away what is no longer needed", sizes),
     Rule("class names used again", "give each class a name of its own", repeated_classes),

@@ -165,12 +165,12 @@ def test_fields_are_those_of_the_tables() -> None:
 
 
 def test_files_that_are_too_long_or_too_short_are_found() -> None:
-    lengths = {"a/short.py": 39, "a/least.py": 40, "a/most.py": 400, "b/long.py": 401, "a/__init__.py": 0}
+    lengths = {"a/short.py": 39, "a/least.py": 40, "a/most.py": 800, "b/long.py": 801, "a/__init__.py": 0}
     sources = [Source(name, "\n" * count) for name, count in lengths.items()]
     assert places(rules.long_files(sources)) == ["b/long.py"]
     assert places(rules.short_files(sources)) == ["a/short.py"]
     assert house.counts_of({"size": house.by_key(list(rules.sizes(sources)))}) == {
-        "size": {"files": 5, "lines": 880}
+        "size": {"files": 5, "lines": 1680}
     }
 
 

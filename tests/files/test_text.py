@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from workhold.errors import InputError, plain, shortened
+from workhold.files.budget import LIMITS
 from workhold.files.loads_file import read_loads
 from workhold.files.part.load import read_workpiece
 from workhold.files.result.reader import read_result
@@ -94,7 +95,7 @@ def test_size_is_looked_at_before_a_file_is_read(tmp_path: Path) -> None:
     ):
         read_loads(path)
     with pytest.raises(InputError, match="this is not a file"):
-        read_text(Path("/dev/zero"), 10, "a vise")
+        read_text(Path("/dev/zero"), LIMITS["toolkit"])
 
 
 @pytest.mark.parametrize(

@@ -30,6 +30,7 @@ from attrs import define, field, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
+from workhold.files.budget import LIMITS
 from workhold.files.text import read_text
 from workhold.geometry.symmetry import centroid_of_joints, rotated, rotations_onto_itself
 from workhold.model.workpiece import Workpiece
@@ -45,8 +46,6 @@ __all__ = [
     "read_entry",
 ]
 
-# Bytes; the largest complete list takes twenty million.
-LARGEST_ENTRY = 200_000_000
 # The direction in which a peg of a role pushes as jaws close; a clamp is named with its own.
 PUSHES: Mapping[str, tuple[float, float]] = {
     "left": (1.0, 0.0),
@@ -106,7 +105,7 @@ def read_entry(path: Path, set_name: str | None = None) -> Entry:
         For a file that cannot be read, naming the fixture and what is wrong with it.
     """
     try:
-        text = read_text(path, LARGEST_ENTRY, "a list of fixtures")
+        text = read_text(path, LIMITS["list"])
         if path.suffix.lower() == ".csv":
             return Entry(set_name or path.stem, rows_of(text))
         return entry_of(text, set_name or path.stem)

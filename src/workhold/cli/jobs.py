@@ -42,8 +42,6 @@ if TYPE_CHECKING:
 __all__ = ["JOB_ENDINGS", "asked_of", "jobs_of", "read_jobs"]
 
 JOB_ENDINGS = (".csv", ".toml")
-# Bytes; a job takes a hundred.
-LARGEST_FILE = 100_000_000
 PART, TOOLKIT = "part", "toolkit"
 GROUPS = PartWords, QueryWords, SeatingWords, ProgramWords
 Words = TypeVar("Words", PartWords, QueryWords, SeatingWords, ProgramWords)
@@ -91,10 +89,11 @@ def read_jobs(path: Path) -> list[JobWords]:
     InputError
         When it cannot be read, holds no jobs, or a word that is not known.
     """
+    from workhold.files.budget import LIMITS
     from workhold.files.text import read_text
 
     try:
-        text = read_text(path, LARGEST_FILE, "jobs")
+        text = read_text(path, LIMITS["jobs"])
         entries = list(toml_entries(text) if path.suffix.lower() == ".toml" else csv_entries(text))
     except InputError as error:
         raise InputError(f"{path}: {error}") from error

@@ -22,6 +22,7 @@ from types import ModuleType
 from typing import Any
 
 from workhold.errors import InputError, lacks_memory
+from workhold.files.budget import LIMITS
 from workhold.files.fork_server import CAN_FORK, ForkedProcess, forked
 
 __all__ = ["limit_memory", "limit_processor", "run_apart"]
@@ -29,8 +30,6 @@ __all__ = ["limit_memory", "limit_processor", "run_apart"]
 # Address space that the libraries themselves take is a third of this; a large file needs some fifty times its
 # size.
 MEMORY_BYTES, MEMORY_FACTOR = 5 << 29, 50
-# Processor seconds for any file, and for every million bytes of it.
-SECONDS, SECONDS_PER_MILLION = 12.0, 2.0
 # Wall time is longer, since the machine may be busy; it counts from when the process is prepared, which may
 # mean to compile the program's own code.
 WALL_FACTOR = 10.0
@@ -59,7 +58,8 @@ def run_apart(module: str, content: bytes, options: Mapping[str, Any], what: str
     InputError
         What the work raises, or a sentence that the process crashed, took too long or took too much memory.
     """
-    seconds = SECONDS + SECONDS_PER_MILLION * len(content) / 1e6
+    seconds = LIMITS["step"].seconds_for(len(content))
+    assert seconds is not None
     memory = MEMORY_BYTES + MEMORY_FACTOR * len(content)
     order = {
         "module": module,

@@ -23,14 +23,13 @@ from pathlib import Path
 from typing import Any
 
 from workhold.errors import InputError
+from workhold.files.budget import LIMITS
 from workhold.files.text import json_value, read_text, toml_table
 from workhold.model.requirements import ANY_DIRECTION, Load
 from workhold.units import unit_named
 
 __all__ = ["load_from_words", "read_loads"]
 
-# Bytes; a load takes a hundred.
-LARGEST_FILE = 1_000_000
 KEYS = ("name", "force", "at", "path", "direction", "moment")
 # Exact: 0.45359237 kg (international pound, 1959) times 9.80665 m/s^2 (standard gravity, 1901).
 POUND_FORCE = 4.4482216152605
@@ -82,7 +81,7 @@ def read_loads(path: str | Path, unit_scale: float = 1.0) -> tuple[Load, ...]:
 def parsed(path: Path) -> dict[str, Any]:
     """The content of a TOML or JSON file; refuses one that cannot be read."""
     try:
-        text = read_text(path, LARGEST_FILE, "loads")
+        text = read_text(path, LIMITS["loads"])
         content = json_value(text) if path.suffix.lower() == ".json" else toml_table(text)
     except InputError as error:
         raise InputError(f"{path} is not a loads file: {error}") from error

@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, ValidationError
 
 from workhold.errors import InputError
+from workhold.files.budget import LIMITS
 from workhold.files.result.forms import FormPart
 from workhold.files.text import json_value, read_text
 from workhold.model.requirements import ANY_DIRECTION, Zone, circle_zone, polygon_zone, zone_of
@@ -16,7 +17,6 @@ from workhold.model.support_request import SpatialLoad, SupportRequest
 __all__ = ["FORMAT", "SupportsPart", "read_supports_part"]
 
 FORMAT = "workhold-supports/1"
-LARGEST_FILE = 1_000_000_000
 Two = Annotated[list[float], Field(min_length=2, max_length=2)]
 Ring = Annotated[list[float], Field(min_length=4, max_length=4)]
 Loop = list[Annotated[list[float], Field(min_length=3, max_length=3)]]
@@ -192,7 +192,7 @@ def read_supports_part(path: Path) -> SupportsPart:
         When it cannot be read, or is no such file.
     """
     try:
-        return SupportsPart.model_validate(json_value(read_text(path, LARGEST_FILE, "supports")))
+        return SupportsPart.model_validate(json_value(read_text(path, LIMITS["supports"])))
     except InputError as error:
         raise InputError(f"{path} is not a file of supports: {error}") from error
     except ValidationError as error:

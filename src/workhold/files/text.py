@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from workhold.errors import InputError
+from workhold.files.budget import FileLimits
 
 __all__ = ["json_value", "read_limited", "read_text", "toml_table"]
 
@@ -21,34 +22,31 @@ __all__ = ["json_value", "read_limited", "read_text", "toml_table"]
 MOST_DIGITS = 308
 
 
-def read_text(path: Path, largest: int, what: str) -> str:
+def read_text(path: Path, limits: FileLimits) -> str:
     """The text of a UTF-8 file, with or without a byte order mark.
 
     Parameters
     ----------
-    largest : bytes that the file may have.
-    what : what it should describe, for the message.
+    limits : of this kind of file.
 
     Raises
     ------
     InputError
         Without the file's name: when it cannot be read, is too large, or is no text.
     """
-    content = read_limited(path, largest, f"one that describes {what}", f"of a file that describes {what}")
+    content = read_limited(path, limits)
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise InputError(f"the file is not UTF-8 text (byte {error.start}): save it as UTF-8.") from error
 
 
-def read_limited(path: Path, largest: int, wanted: str, whose: str) -> bytes:
+def read_limited(path: Path, limits: FileLimits) -> bytes:
     """The content of a file.
 
     Parameters
     ----------
-    largest : bytes that the file may have.
-    wanted : what to give instead of a folder, such as "a program".
-    whose : whose limit that is and what helps, such as "of a program: split it".
+    limits : of this kind of file.
 
     Raises
     ------
@@ -59,11 +57,16 @@ def read_limited(path: Path, largest: int, wanted: str, whose: str) -> bytes:
         if not path.exists():
             raise InputError("there is no file of that name.")
         if not path.is_file():
-            raise InputError(f"this is not a file: give {wanted}.")
+            raise InputError(f"this is not a file: give {limits.what}.")
         size = path.stat().st_size
-        if size > largest:
-            raise InputError(f"the file has {size / 1e6:.0f} MB, more than the {largest / 1e6:g} MB {whose}.")
-        return path.read_bytes()
+        most = limits.most_bytes
+        if most is not None and size > most:
+            raise InputError(
+                f"the file has {size / 1e6:.0f} MB, more than the {most / 1e6:g} MB of {limits.what}: "
+                f"{limits.remedy}."
+            )
+        with path.open("rb") as stream:
+            return stream.read(-1 if most is None else most)
     except (OSError, ValueError) as error:
         if isinstance(error, InputError):
             raise

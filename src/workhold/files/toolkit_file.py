@@ -28,6 +28,7 @@ from attrs import frozen
 
 from workhold.conventions import SAME_SIZE
 from workhold.errors import InputError
+from workhold.files.budget import LIMITS
 from workhold.files.text import read_text, toml_table
 from workhold.fixels.fields import COLUMNS, OPTIONS, PEG_RADIUS, PITCH
 from workhold.fixels.kinds import KINDS, USUAL, kind_of, toolkit_of
@@ -122,8 +123,6 @@ def dowel_size(standard: str, diameter: float) -> DowelSize:
     raise InputError(f'dowel "{standard[:40]}" is not known: the standards are {names}.')
 
 
-# Bytes; a toolkit takes a few hundred.
-LARGEST_FILE = 1_000_000
 # Where nobody says how well the holes are placed: what a tolerance is when nothing is said, see Tolerance.
 ASSUMED_POSITION = Tolerance().peg
 
@@ -170,9 +169,7 @@ def read_toolkit_file(path: Path) -> LoadedToolkit:
     from workhold.files.input_forms import checked_toolkit
 
     try:
-        return described_toolkit(
-            path.stem, checked_toolkit(toml_table(read_text(path, LARGEST_FILE, "a toolkit")))
-        )
+        return described_toolkit(path.stem, checked_toolkit(toml_table(read_text(path, LIMITS["toolkit"]))))
     except InputError as error:
         raise InputError(f"{path.name or path}: {error}") from error
 

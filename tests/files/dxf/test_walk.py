@@ -8,11 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from attrs import evolve
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from reading_helpers import area, new_dxf, perimeter, read_dxf, rectangle
 
 from workhold.errors import InputError
+from workhold.files.budget import LIMITS
 from workhold.files.part.load import load, read_workpiece
 from workhold.model.workpiece import Workpiece
 
@@ -229,7 +231,7 @@ def test_blocks_that_multiply_without_end_are_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Ten levels of ten INSERTs would be ten thousand million lines; the walk stops at its limit."""
-    monkeypatch.setattr("workhold.files.dxf.walk.MOST_ENTITIES", 1000)
+    monkeypatch.setitem(LIMITS, "dxf", evolve(LIMITS["dxf"], most_elements=1000))
     document, space = new_dxf()
     rectangle(document.blocks.new("B0"))
     for level in range(1, 11):
@@ -238,7 +240,7 @@ def test_blocks_that_multiply_without_end_are_refused(
             block.add_blockref(f"B{level - 1}", (k, 0))
     space.add_blockref("B10", (0, 0))
     document.saveas(tmp_path / "part.dxf")
-    with pytest.raises(InputError, match=r"part\.dxf: the drawing has more than 1000 entities"):
+    with pytest.raises(InputError, match=r"part\.dxf: the file has more than the 1,000 entities"):
         load(tmp_path / "part.dxf")
 
 

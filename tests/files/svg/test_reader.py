@@ -6,11 +6,13 @@ from math import cos, pi, radians, sin
 from pathlib import Path
 
 import pytest
+from attrs import evolve
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from reading_helpers import area, perimeter, read_svg
 
 from workhold.errors import InputError
+from workhold.files.budget import LIMITS
 from workhold.files.part.load import load
 
 MM = 'width="100mm" height="50mm" viewBox="0 0 100 50"'
@@ -293,9 +295,9 @@ def test_broken_and_hostile_files(tmp_path: Path, content: str, words: str) -> N
 
 def test_use_bombs_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Ten levels of ten <use> elements stop at the limit."""
-    monkeypatch.setattr("workhold.files.svg.walk.MOST_ELEMENTS", 1000)
+    monkeypatch.setitem(LIMITS, "svg", evolve(LIMITS["svg"], most_elements=1000))
     levels = '<g id="g0"><rect width="1" height="1"/></g>'
     for k in range(1, 11):
         levels += f'<g id="g{k}">' + f'<use href="#g{k - 1}"/>' * 10 + "</g>"
-    with pytest.raises(InputError, match="more than 1000 elements"):
+    with pytest.raises(InputError, match="more than the 1,000 elements"):
         read_svg(tmp_path, f'<defs>{levels}</defs><use href="#g10"/>', MM)

@@ -18,6 +18,7 @@ from typing import Any
 from attrs import evolve
 
 from workhold.errors import InputError
+from workhold.files.budget import LIMITS, Budget
 from workhold.files.dxf.walk import BlockNesting, DxfWalk
 from workhold.files.outline.chain import Drawing, Placement
 from workhold.files.outline.diagnostics import unit_asked
@@ -51,6 +52,7 @@ def read_dxf(
     usual_unit: str | None = None,
     layers: Sequence[str] | None,
     fit: float | None = None,
+    budget: Budget | None = None,
 ) -> Drawing:
     """Reads the outline entities of a DXF file's model space.
 
@@ -63,6 +65,7 @@ def read_dxf(
     layers : layers to read; all visible ones when None.
     fit : how far lines and arcs may be from true curves, in mm; None keeps a proposal in their place, see
         ``Drawing``.
+    budget : what reading the file may still take; None is that of a file of these bytes.
 
     Raises
     ------
@@ -70,9 +73,12 @@ def read_dxf(
         For files that are no DXF or damaged, unknown units, unknown layers, and entities that are refused.
     """
     refuse_other_formats(content)
+    budget = budget or Budget(LIMITS["dxf"], len(content))
     document, remarks = opened(path)
     code = unit_code(document, content)
-    drawing = read_document(document, code, unit=unit, usual_unit=usual_unit, layers=layers, fit=fit)
+    drawing = read_document(
+        document, code, unit=unit, usual_unit=usual_unit, layers=layers, fit=fit, budget=budget
+    )
     return evolve(drawing, remarks=(*remarks, *drawing.remarks))
 
 
@@ -84,11 +90,12 @@ def read_document(
     usual_unit: str | None = None,
     layers: Sequence[str] | None,
     fit: float | None = None,
+    budget: Budget | None = None,
 ) -> Drawing:
     """Reads the outline entities of the model space of a document of ezdxf; see :func:`read_dxf`."""
     known = scale_of(code, unit, usual_unit)
     scale, unit_remarks = known or (1.0, [])
-    walk = DxfWalk(document, layers, fit)
+    walk = DxfWalk(document, layers, fit, budget or Budget(LIMITS["dxf"]))
     try:
         walk.visit_all(document.modelspace(), BlockNesting(Placement(a=scale, d=scale, height_scale=scale)))
         walk.refuse_missing_layers()

@@ -16,6 +16,7 @@ from attrs import evolve, frozen
 
 from workhold.conventions import LEVEL
 from workhold.errors import InputError
+from workhold.files.budget import LIMITS, Budget
 from workhold.files.dxf.entities import REFUSED, SHAPES, RawChain, seen_from_below
 from workhold.files.outline.chain import Chain, Placement, counted, listed
 from workhold.files.outline.curves import CurveReader
@@ -24,11 +25,9 @@ from workhold.files.questions import LAYERS
 __all__ = ["BlockNesting", "DxfWalk"]
 
 T = TypeVar("T")
-
-# More entities than this, blocks written out, is no drawing of a part (or a file made to exhaust the
-# machine).
-MOST_ENTITIES = 500_000
-DEEPEST_NEST = 50
+# Blocks inside each other, and repetitions of one.
+DEEPEST = LIMITS["dxf"].deepest or 0
+MOST_REPEATED = LIMITS["dxf"].most_elements or 0
 
 
 @frozen
@@ -54,7 +53,10 @@ class BlockNesting:
 class DxfWalk:
     """Collects the chains of a document's entities, and what was left out."""
 
-    def __init__(self, document: Any, layers: Sequence[str] | None, fit: float | None = None) -> None:
+    def __init__(
+        self, document: Any, layers: Sequence[str] | None, fit: float | None, budget: Budget
+    ) -> None:
+        self.budget = budget
         self.document = document
         self.curves = CurveReader(fit)
         self.wanted = None if layers is None else {name.strip().casefold(): name for name in layers}
@@ -66,7 +68,6 @@ class DxfWalk:
         self.hidden: Counter[str] = Counter()
         self.ignored: Counter[str] = Counter()
         self.missing_blocks: Counter[str] = Counter()
-        self.count = 0
         self.level: tuple[float, str] | None = None
         self.hidden_layers = {
             layer.dxf.name.casefold()
@@ -87,12 +88,7 @@ class DxfWalk:
         InputError
             For an entity that is refused, naming it.
         """
-        self.count += 1
-        if self.count > MOST_ENTITIES:
-            raise InputError(
-                f"the drawing has more than {MOST_ENTITIES} entities once its blocks are written out: "
-                "export the part's outline only."
-            )
+        self.budget.spend()
         kind = entity.dxftype()
         label = f"{kind} {entity.dxf.handle}{nest.suffix}"
         try:
@@ -188,14 +184,14 @@ class DxfWalk:
         if block is None:
             self.missing_blocks[name] += 1
             return
-        if name.casefold() in nest.blocks or len(nest.blocks) >= DEEPEST_NEST:
+        if name.casefold() in nest.blocks or len(nest.blocks) >= DEEPEST:
             raise InputError(f"{label} inserts block '{name}', which contains itself: repair the drawing.")
         said_of(label, seen_from_below, insert)
         if insert.dxf.get("invisible", 0):
             self.hidden["made invisible"] += 1
             return
         rows, columns = max(insert.dxf.row_count, 1), max(insert.dxf.column_count, 1)
-        if rows * columns > MOST_ENTITIES:
+        if rows * columns > MOST_REPEATED:
             raise InputError(
                 f"{label} repeats its block {rows * columns} times: export the part's outline only."
             )

@@ -15,6 +15,7 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError, plain, shortened
+from workhold.files.budget import UNLIMITED, Budget
 from workhold.files.outline.joining import Loop
 from workhold.geometry.loop import (
     LoopShape,
@@ -79,8 +80,12 @@ class MeasuredLoop:
         return cls(loop, segments, segment_rows(segments), abs(area), box_around(segments))
 
 
-def nest(loops: Sequence[Loop]) -> tuple[DrawnPart, ...]:
-    """Sorts loops into parts, by decreasing area; loops that cross are sorted somehow, and refused later."""
+def nest(loops: Sequence[Loop], budget: Budget | None = None) -> tuple[DrawnPart, ...]:
+    """Sorts loops into parts, by decreasing area; loops that cross are sorted somehow, and refused later.
+
+    What reading the file may still take is left in ``budget``; None is no limit.
+    """
+    budget = budget or Budget(UNLIMITED)
     rings = sorted(map(MeasuredLoop.of, loops), key=lambda r: -r.area)
     boxes = np.array([r.box for r in rings]).reshape(-1, 4)
     depths: list[int] = []
@@ -91,6 +96,7 @@ def nest(loops: Sequence[Loop]) -> tuple[DrawnPart, ...]:
         around = (larger[:, 0] <= x0) & (larger[:, 1] <= y0) & (larger[:, 2] >= x1) & (larger[:, 3] >= y1)
         x, y = inner.segments[0].start
         outer = [j for j in np.flatnonzero(around).tolist() if is_inside(x, y, rings[j].rows)]
+        budget.work(1 + int(around.sum()))
         depths.append(len(outer))
         if len(outer) % 2 == 0:
             holes[k] = []

@@ -14,6 +14,7 @@ from pathlib import Path
 from attrs import frozen
 
 from workhold.errors import InputError
+from workhold.files.budget import PART_BYTES
 
 __all__ = ["BuiltinPart", "builtin_parts", "builtin_path", "found", "kind_of", "read_bytes"]
 
@@ -64,10 +65,6 @@ def builtin_path(name: str) -> Path | None:
     return None
 
 
-# Bytes; a drawing of one part is far smaller, and reading takes about twenty times as much memory.
-LARGEST_FILE = 40_000_000
-
-
 def found(part: str | PathLike[str]) -> Path:
     """The file of a part given by path or built-in name.
 
@@ -106,12 +103,13 @@ def read_bytes(path: Path) -> bytes:
             raise InputError("this is a folder: give a .json, .dxf, .svg or .step file in it.")
         if not path.is_file():
             raise InputError("this is not a regular file: give a .json, .dxf, .svg or .step file.")
-        if path.stat().st_size > LARGEST_FILE:
+        with path.open("rb") as stream:
+            content = stream.read(PART_BYTES + 1)
+        if len(content) > PART_BYTES:
             raise InputError(
-                f"the file is larger than {LARGEST_FILE // 1_000_000} MB: save a drawing of the part's "
+                f"the file is larger than {PART_BYTES // 1_000_000} MB: save a drawing of the part's "
                 "outline only."
             )
-        content = path.read_bytes()
     except OSError as error:
         raise InputError(f"the file cannot be read ({(error.strerror or str(error)).lower()}).") from error
     if not content.strip():

@@ -11,6 +11,7 @@ from typing import Any
 from attrs import evolve
 
 from workhold.errors import InputError
+from workhold.files.budget import LIMITS, Budget
 from workhold.files.outline.chain import Drawing
 from workhold.files.outline.curves import checked_fit
 from workhold.files.part.data import drawing_of_object, read_json
@@ -195,21 +196,24 @@ def from_file(path: Path, options: Mapping[str, Any], join_tolerance: float) -> 
     if kind == "json":
         return read_json(path, content, options, own=path == builtin_path(path.stem))
     units = {"unit": options["unit"], "usual_unit": options["usual_unit"]}
+    budget = Budget(LIMITS[kind], len(content))
     if kind == "dxf":
         from workhold.files.dxf.reader import read_dxf
 
         return from_drawing(
             path,
-            read_dxf(path, content, **units, layers=layers, fit=fit),
+            read_dxf(path, content, **units, layers=layers, fit=fit, budget=budget),
             part_number,
             join_tolerance,
             fit,
             True,
+            budget,
         )
     refuse_layers(layers)
     from workhold.files.svg.reader import read_svg
 
-    return from_drawing(path, read_svg(content, **units, fit=fit), part_number, join_tolerance, fit)
+    drawing = read_svg(content, **units, fit=fit, budget=budget)
+    return from_drawing(path, drawing, part_number, join_tolerance, fit, budget=budget)
 
 
 def from_step(path: Path, content: bytes, options: Mapping[str, Any]) -> Loaded:

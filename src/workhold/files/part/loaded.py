@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from attrs import evolve, frozen
 
 from workhold.errors import InputError
+from workhold.files.budget import UNLIMITED, Budget
 from workhold.files.outline.chain import Drawing, cleaned
 from workhold.files.outline.curves import (
     curve_remarks,
@@ -97,30 +98,39 @@ def from_drawing(
     tolerance: float,
     fit: float | None,
     layered: bool = False,
+    budget: Budget | None = None,
 ) -> Loaded:
     """A workpiece from a drawing's chains; ``layered`` says whether its layers can be chosen.
+
+    What reading the file may still take is left in ``budget``; None is no limit.
 
     Raises
     ------
     InputError
         When no usable closed outline remains, or one with curves that nobody has allowed to be replaced.
     """
+    budget = budget or Budget(UNLIMITED)
     try:
-        return outline_of(path, drawing, part_number, tolerance, fit, layered)
+        return outline_of(path, drawing, part_number, tolerance, fit, layered, budget)
     except InputError as error:
         if not drawing.layers:
             raise
         raise with_layers_named(
-            error, drawing, partial(is_usable, path, part_number, tolerance, fit)
+            error, drawing, partial(is_usable, path, part_number, tolerance, fit, budget)
         ) from error
 
 
 def is_usable(
-    path: Path, part_number: int | str | None, tolerance: float, fit: float | None, drawing: Drawing
+    path: Path,
+    part_number: int | str | None,
+    tolerance: float,
+    fit: float | None,
+    budget: Budget,
+    drawing: Drawing,
 ) -> bool:
     """Whether a part can be read of a drawing."""
     try:
-        outline_of(path, drawing, part_number, tolerance, fit, True)
+        outline_of(path, drawing, part_number, tolerance, fit, True, budget)
     except InputError:
         return False
     return True
@@ -133,13 +143,15 @@ def outline_of(
     tolerance: float,
     fit: float | None,
     layered: bool,
+    budget: Budget,
 ) -> Loaded:
     """The workpiece, or a refusal, see :func:`from_drawing`."""
     clean = cleaned(drawing.chains)
     joined = join(clean.chains, tolerance)
     if not joined.loops:
         refuse_nothing_closed(joined.strays, drawing.remarks)
-    parts = nest(joined.loops)
+    budget.check_time()
+    parts = nest(joined.loops, budget)
     part = chosen_part(parts, part_number)
     if part_number is None:
         refuse_open_outline(part, joined.strays)

@@ -22,6 +22,7 @@ import numpy as np
 from attrs import evolve, frozen
 
 from workhold.errors import InputError
+from workhold.files.budget import LIMITS, Budget
 from workhold.files.dxf.reader import opened, refuse_other_formats, scale_of, unit_code
 from workhold.files.dxf.walk import BlockNesting, DxfWalk
 from workhold.files.outline.chain import Chain, Drawing, Placement, cleaned
@@ -62,7 +63,7 @@ class LayerWalk(DxfWalk):
     """Visits everything, on hidden layers too, whatever is wrong with it."""
 
     def __init__(self, document: Any) -> None:
-        super().__init__(document, None)
+        super().__init__(document, None, None, Budget(LIMITS["dxf"]))
         self.kinds: dict[str, Counter[str]] = {}
 
     def visit(self, entity: Any, nest: BlockNesting) -> None:

@@ -14,6 +14,7 @@ from attrs import define, field, frozen
 
 from workhold.conventions import ARC_RADII
 from workhold.errors import InputError
+from workhold.files.budget import LIMITS
 from workhold.files.program.words import Modes
 from workhold.limits import MOST_LENGTH
 
@@ -22,7 +23,7 @@ __all__ = ["AXES", "PathWriter", "Place", "PlaneArc", "Reached", "arc_about", "a
 AXES = "XYZ"
 # Digits in mm to which places are rounded, so that sums of increments are the places that they mean.
 DIGITS = 9
-MOST_MOVES = 2_000_000
+MOST_MOVES = LIMITS["program"].most_elements or 0
 Place = tuple[float, float, float]
 # A place of which not every coordinate needs to be known.
 Reached = list[float | None]

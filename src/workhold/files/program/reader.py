@@ -12,6 +12,7 @@ import numpy as np
 from attrs import evolve, frozen
 
 from workhold.errors import InputError, listed
+from workhold.files.budget import LIMITS
 from workhold.files.program.interpreter import Interpreter
 from workhold.files.program.tool_tables import SHAPE, commented_tools, is_bare, read_tools, tool_of_fields
 from workhold.files.program.words import UNITS, ProgramText, code_of, program_text
@@ -25,8 +26,6 @@ from workhold.units import Unit
 
 __all__ = ["ReadProgram", "read_program", "read_program_with_calls"]
 
-# Bytes; 100,000 lines have 3 MB.
-LARGEST_FILE = 64_000_000
 # How many lines a note names.
 NAMED = 5
 ToolsGiven = str | Path | Mapping[int, Any] | None
@@ -88,7 +87,7 @@ def read_program_with_calls(
     if unit is not None and unit not in ("mm", "inch"):
         raise InputError(f"the unit '{unit[:20]}' is not one of a program: give mm or inch.")
     try:
-        content = read_limited(path, LARGEST_FILE, "a program", "of a program: split it")
+        content = read_limited(path, LIMITS["program"])
         listing = program_text(decoded(content))
         control = run(listing, None if unit is None else UNITS[unit])
     except InputError as error:

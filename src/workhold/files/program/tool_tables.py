@@ -27,6 +27,7 @@ from pathlib import Path
 from typing import Any
 
 from workhold.errors import InputError
+from workhold.files.budget import LIMITS, Budget
 from workhold.files.text import read_text, toml_table
 from workhold.limits import real
 from workhold.model.cutting_tool import CuttingData, Cylinder, Tool
@@ -55,9 +56,6 @@ SHAPE = (
 )
 # mm. As far up as a tool is taken to go where nobody says: past everything that holds a part.
 ENDLESS = 1000.0
-# Bytes; a tool takes a hundred.
-LARGEST_FILE = 1_000_000
-MOST_TOOLS = 10_000
 LINUXCNC = re.compile(r"\s*T\s*\d+", re.IGNORECASE)
 LINUXCNC_WORD = re.compile(r"([A-Z])\s*([-+]?(?:\d+\.?\d*|\.\d+))\s*", re.IGNORECASE | re.ASCII)
 # Fusion, and posts like its own, write (T3 D=6. CR=0. - ZMIN=-5. - flat end mill).
@@ -202,7 +200,7 @@ def read_tools(path: str | Path, unit: Unit) -> tuple[dict[int, Tool], bool]:
     """
     path = Path(path)
     try:
-        text = read_text(path, LARGEST_FILE, "tools")
+        text = read_text(path, LIMITS["tools"])
         ending = path.suffix.lower()
         if ending == ".toml":
             return of_toml(toml_table(text), unit)
@@ -240,12 +238,12 @@ def checked_number(text: Any, place: str) -> int:
 def collected(rows: Iterable[tuple[int, Mapping[str, Any], str]], unit: Unit) -> dict[int, Tool]:
     """Tools of rows of number, fields and place; refuses a tool that is given twice, and none."""
     tools: dict[int, Tool] = {}
+    budget = Budget(LIMITS["tools"])
     for number, fields, place in rows:
         if number in tools:
             raise InputError(f"T{number} is given twice: leave one of them out.")
         tools[number] = tool_of_fields(number, fields, place, unit)
-        if len(tools) > MOST_TOOLS:
-            raise InputError(f"there are more than {MOST_TOOLS:,} tools: give those of the program.")
+        budget.spend()
     if not tools:
         raise InputError(
             f"there are no tools in it: write a line for each, such as {SHAPE.format(number=1)}."

@@ -27,8 +27,9 @@ from pydantic import ValidationError
 
 from workhold.archive import Column, Columns
 from workhold.errors import InputError
+from workhold.files.budget import LIMITS
 from workhold.files.result.forms import MISSING, Head, ProofPart, first_fault
-from workhold.files.text import json_value
+from workhold.files.text import json_value, read_text
 from workhold.fixels.fields import CLAMPS
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture_table import FixtureTable
@@ -289,9 +290,6 @@ def checked_proof(part: ProofPart, query: Query, path: Path) -> Proof:
     return part.proof()
 
 
-# Bytes of a file of another layout, which takes twenty times as much memory.
-LARGEST_WHOLE = 200_000_000
-
 Taken = TypeVar("Taken")
 Take = Callable[[Iterable[Any], Path], Taken]
 
@@ -375,12 +373,10 @@ def fixture_lines(stream: Iterable[str], after: list[str]) -> Iterator[Any]:
 
 def read_whole(path: Path, take: Take[Taken]) -> tuple[Any, Taken]:
     """Head and fixtures of a file of any layout."""
-    if path.is_file() and path.stat().st_size > LARGEST_WHOLE:
-        raise InputError(
-            f"{path} is too large a file to be read but with one fixture on every line, as workhold writes "
-            "it."
-        )
-    text = path.read_text(encoding="utf-8-sig")
+    try:
+        text = read_text(path, LIMITS["result"])
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error
     if not text.strip():
         raise InputError(f"{path} is empty: it is not a result file.")
     try:

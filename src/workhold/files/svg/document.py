@@ -23,6 +23,7 @@ from xml.parsers import expat
 from attrs import frozen
 
 from workhold.errors import InputError
+from workhold.files.budget import LIMITS
 
 __all__ = [
     "DEEPEST",
@@ -36,7 +37,8 @@ __all__ = [
     "short",
 ]
 
-DEEPEST = 200
+# Elements inside each other, and <use> elements that show each other.
+DEEPEST = LIMITS["svg"].deepest or 0
 SVG_SPACE = "http://www.w3.org/2000/svg"
 LINK = "{http://www.w3.org/1999/xlink}href"
 ANIMATIONS = {"animate", "animateColor", "animateMotion", "animateTransform", "set"}

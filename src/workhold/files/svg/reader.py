@@ -14,6 +14,7 @@ physical size : a root width and height in mm, cm or in (or pt, pc). Pixels are 
 from __future__ import annotations
 
 from workhold.errors import InputError
+from workhold.files.budget import LIMITS, Budget
 from workhold.files.outline.chain import Drawing, Placement
 from workhold.files.outline.diagnostics import unit_asked
 from workhold.files.svg.document import Styles, read_document
@@ -25,7 +26,12 @@ __all__ = ["read_svg"]
 
 
 def read_svg(
-    content: bytes, *, unit: str | None, usual_unit: str | None = None, fit: float | None = None
+    content: bytes,
+    *,
+    unit: str | None,
+    usual_unit: str | None = None,
+    fit: float | None = None,
+    budget: Budget | None = None,
 ) -> Drawing:
     """Reads the visible outlines of an SVG file.
 
@@ -36,19 +42,21 @@ def read_svg(
     usual_unit : what it is in a file without a physical size.
     fit : how far lines and arcs may be from true curves, in mm; None keeps a proposal in their place, see
         ``Drawing``.
+    budget : what reading the file may still take; None is that of a file of these bytes.
 
     Raises
     ------
     InputError
         For files that are no SVG, unknown units, and values that make no sense.
     """
+    budget = budget or Budget(LIMITS["svg"], len(content))
     document = read_document(content)
     styles = Styles(document)
     root = ShapeElement(document.root, document.name(document.root), styles.of(document.root), (None, None))
     box = viewbox_of(document.root.get("viewBox"), root.label)
     known = page(root, box, unit, usual_unit)
     placement, remarks = known or (Placement(d=-1.0), [])
-    walk = SvgWalk(document, styles, fit)
+    walk = SvgWalk(document, styles, fit, budget)
     sides = [root.given(name) for name in ("width", "height")]
     width, height = (None if side is None else absolute(side.text) for side in sides)
     viewport = (width, height) if box is None else (box[2], box[3])

@@ -9,6 +9,7 @@ from xml.etree.ElementTree import Element
 from attrs import evolve, frozen
 
 from workhold.errors import InputError
+from workhold.files.budget import Budget
 from workhold.files.outline.chain import Chain, Placement, counted
 from workhold.files.outline.curves import CurveReader
 from workhold.files.svg.document import DEEPEST, Declared, Document, Styles, href, local_name, short
@@ -19,7 +20,6 @@ from workhold.files.svg.viewport import ShapeElement, Viewport, Window, convex, 
 
 __all__ = ["ElementNesting", "SvgWalk"]
 
-MOST_ELEMENTS = 1_000_000
 CONTAINERS = {"g", "a", "switch"}
 SILENT = {"defs", "symbol", "style", "title", "desc", "metadata", "clipPath", "mask", "marker", "pattern"}
 SILENT |= {"filter", "linearGradient", "radialGradient", "view", "namedview"}
@@ -53,7 +53,8 @@ class ElementNesting:
 class SvgWalk:
     """Collects the chains of a document's elements, and what was left out."""
 
-    def __init__(self, document: Document, styles: Styles, fit: float | None) -> None:
+    def __init__(self, document: Document, styles: Styles, fit: float | None, budget: Budget) -> None:
+        self.budget = budget
         self.curves = CurveReader(fit)
         self.document = document
         self.styles = styles
@@ -61,7 +62,6 @@ class SvgWalk:
         self.hidden = 0
         self.painted_over = 0
         self.ignored: Counter[str] = Counter()
-        self.count = 0
 
     def visit(self, element: Element, nest: ElementNesting) -> None:
         """Collects one element and those inside it.
@@ -71,11 +71,7 @@ class SvgWalk:
         InputError
             For an element that is refused, naming it.
         """
-        self.count += 1
-        if self.count > MOST_ELEMENTS:
-            raise InputError(
-                f"the drawing has more than {MOST_ELEMENTS} elements once <use> is written out: simplify it."
-            )
+        self.budget.spend()
         tag = local_name(element)
         if tag in SILENT:
             return

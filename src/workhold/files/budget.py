@@ -1,0 +1,200 @@
+"""Limits of what a file may ask of its reader: bytes, elements, depth and processor time, for every kind.
+
+A file comes from anywhere, and what it costs to read must not depend on how it is written. Every reader takes
+its limits from the table here, spends from a :class:`Budget`, and refuses a file that asks for more. The
+manual's page of limits lists the same table.
+
+Glossary
+--------
+element : what a reader goes through one by one: an element of a drawing, a row of a table, a move of a
+    program.
+depth : how many elements lie inside each other.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from attrs import frozen
+
+from workhold.errors import InputError
+
+__all__ = ["LIMITS", "PART_BYTES", "UNLIMITED", "Budget", "FileLimits"]
+
+# Processor seconds for any file, and for every million bytes of it.
+SECONDS, SECONDS_PER_MILLION = 12.0, 2.0
+
+
+@frozen
+class FileLimits:
+    """How much a file of one kind may ask for.
+
+    Parameters
+    ----------
+    what : such a file, in words that follow "more than a ... may".
+    most_bytes : None where a file is read in blocks and may have any size.
+    most_elements : how many elements the reader goes through, repeated ones counted each time.
+    elements : what these are called.
+    deepest : how many elements may lie inside each other.
+    seconds, seconds_per_million : processor time for any such file, and for every million bytes of it; None
+        where the work follows the bytes alone.
+    remedy : what helps a file that asks for more.
+    """
+
+    what: str
+    most_bytes: int | None
+    most_elements: int | None = None
+    elements: str = "elements"
+    deepest: int | None = None
+    seconds: float | None = None
+    seconds_per_million: float = 0.0
+    remedy: str = "save less in it"
+
+    def seconds_for(self, size: int) -> float | None:
+        """The processor seconds for a file of so many bytes."""
+        return None if self.seconds is None else self.seconds + self.seconds_per_million * size / 1e6
+
+
+OUTLINE_ONLY = "save a drawing of the part's outline only"
+# Reading takes about twenty times as much memory as a drawing has bytes.
+PART_BYTES = 40_000_000
+LIMITS = {
+    "svg": FileLimits(
+        "an SVG drawing",
+        PART_BYTES,
+        1_000_000,
+        "elements, those of <use> written out",
+        200,
+        SECONDS,
+        SECONDS_PER_MILLION,
+        OUTLINE_ONLY,
+    ),
+    "dxf": FileLimits(
+        "a DXF drawing",
+        PART_BYTES,
+        500_000,
+        "entities, those of blocks written out",
+        50,
+        SECONDS,
+        SECONDS_PER_MILLION,
+        OUTLINE_ONLY,
+    ),
+    "json": FileLimits("a part in JSON", PART_BYTES, remedy="draw its outline with fewer segments"),
+    "step": FileLimits("a STEP file", PART_BYTES, seconds=SECONDS, seconds_per_million=SECONDS_PER_MILLION),
+    "toolkit": FileLimits("a file that describes a toolkit", 1_000_000),
+    "loads": FileLimits("a file that describes loads", 1_000_000),
+    "tools": FileLimits(
+        "a table of tools", 1_000_000, 10_000, "tools", remedy="give the tools of the program"
+    ),
+    "program": FileLimits("a program", 64_000_000, 2_000_000, "moves", remedy="split it"),
+    "jobs": FileLimits("a file that describes jobs", 100_000_000, remedy="split it"),
+    "supports": FileLimits("a file that describes supports", 1_000_000_000),
+    "result": FileLimits(
+        "a result file of another layout than workhold's own",
+        200_000_000,
+        remedy="write one fixture on every line, as workhold does",
+    ),
+    "list": FileLimits("a list of fixtures to compare with", 200_000_000),
+}
+# Of data that this program has in memory already, such as a drawing of another library.
+UNLIMITED = FileLimits("data in memory", None)
+
+
+class Budget:
+    """What reading one file may still take.
+
+    Parameters
+    ----------
+    limits : of this kind of file.
+    size : bytes of the file, for the processor time.
+
+    Examples
+    --------
+    >>> budget = Budget(FileLimits("a table", None, 2, "rows", remedy="split it"))
+    >>> budget.spend(2)
+    >>> budget.spend()
+    Traceback (most recent call last):
+        ...
+    workhold.errors.InputError: the file has more than the 2 rows that a table may have: split it.
+    """
+
+    # Elements after which the clock is looked at.
+    PERIOD = 256
+
+    def __init__(self, limits: FileLimits, size: int = 0) -> None:
+        self.limits = limits
+        self.seconds = limits.seconds_for(size)
+        # Only this thread's time counts: the machine may be busy, and other threads may read other files.
+        self.started = time.thread_time()
+        self.elements = 0
+        self.steps = 0
+        self.depth = 0
+
+    def spend(self, elements: int = 1) -> None:
+        """Counts elements that the reader goes through.
+
+        Raises
+        ------
+        InputError
+            Where there are more than the limit, or time is up.
+        """
+        self.elements += elements
+        most = self.limits.most_elements
+        if most is not None and self.elements > most:
+            raise InputError(
+                f"the file has more than the {most:,} {self.limits.elements} that {self.limits.what} may "
+                f"have: {self.limits.remedy}."
+            )
+        self.work(elements)
+
+    def work(self, steps: int = 1) -> None:
+        """Counts steps of work that are no elements, such as comparisons; only time limits them.
+
+        Raises
+        ------
+        InputError
+            Where time is up.
+        """
+        before = self.steps // self.PERIOD
+        self.steps += steps
+        if self.steps // self.PERIOD > before:
+            self.check_time()
+
+    def check_time(self) -> None:
+        """Refuses the file if the reader has worked on it for longer than it may.
+
+        Raises
+        ------
+        InputError
+            Then.
+        """
+        if self.seconds is not None and time.thread_time() - self.started > self.seconds:
+            raise InputError(
+                f"reading it was given up after {self.seconds:.0f} s, the most for {self.limits.what} of its "
+                f"size: {self.limits.remedy}."
+            )
+
+    @contextmanager
+    def nested(self, label: str) -> Iterator[None]:
+        """Counts what is read inside as one level deeper.
+
+        Parameters
+        ----------
+        label : the element, in words that begin a sentence.
+
+        Raises
+        ------
+        InputError
+            Where it is deeper than the limit.
+        """
+        self.depth += 1
+        try:
+            if self.limits.deepest is not None and self.depth > self.limits.deepest:
+                raise InputError(
+                    f"{label} is nested more than {self.limits.deepest} levels deep: {self.limits.remedy}."
+                )
+            yield
+        finally:
+            self.depth -= 1
