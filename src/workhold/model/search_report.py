@@ -184,12 +184,15 @@ class Explanation:
 
     @property
     def asked_words(self) -> str:
-        """The sentence that names what was asked for where it takes the last fixtures; empty where nothing does."""
-        if not self.taken_by:
+        """The sentence that names what was asked for where it takes the last fixtures.
+
+        It is empty where nothing does, and where the last rule is just that.
+        """
+        if self.taken_by in ((), (self.last_rule,)):
             return ""
         alone = all(len(help.rules) < 2 for help in self.helps)
         rules = " or ".join(self.taken_by) if alone else f"{listed(self.taken_by)} together"
-        return f"What was asked for takes the last fixtures, there are some without it: {rules}."
+        return f"The last fixtures are taken by what was asked for: {rules}."
 
 
 def no_fixture_notes(wording: Wording) -> tuple[str, ...]:
