@@ -100,6 +100,7 @@ def explain(asked: DesignArguments, folder: Path, cancel: Event) -> Answer:
 
     explanation = explained(result.query)
     words = explanation.nearest.words if explanation.nearest else " ".join(result.notes)
+    words = f"{explanation.asked_words} {words}".lstrip()
     return Answer(
         {"found": 0, "complete": True, "sentence": words, **explanation_data(explanation, result.toolkit)}
     )

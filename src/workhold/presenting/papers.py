@@ -96,8 +96,7 @@ def fixture_picture(
 def result_picture(result: Result, path: str | Path | None = None, *, unit: str = "mm") -> Picture:
     """Draws thumbnails of the best fixtures, see :meth:`workhold.Result.draw`."""
     if not len(result):
-        why = f" {result.reasons[0]}" if result.reasons else ""
-        raise InputError(f"there is no fixture to draw.{why}")
+        raise InputError(" ".join(("there is no fixture to draw.", *result.reasons)))
     return saved(best_at_a_glance(result, entries(result), unit_named(unit)), path)
 
 

@@ -35,7 +35,7 @@ from workhold.model.quality import FIGURES, asked_ranking
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Restrictions, Tolerance
 from workhold.model.result import Result
-from workhold.model.search_report import no_fixture_notes, no_place_note
+from workhold.model.search_report import left_notes, no_fixture_notes, no_place_note
 from workhold.model.workpiece import Workpiece
 from workhold.search.cells import run_blocks
 from workhold.search.lattice_shares import LatticeShares
@@ -226,6 +226,7 @@ def with_reason(result: Result, search: ToolkitSearch, threads: int, cancel: Eve
         return result
     proven = 0 if result.proof is None else result.proof.verified
     reason = why_none(search, int(search.totals[CONTACTS]), proven, threads, cancel)
+    reason = of_what_is_left(reason, search.problem, threads)
     return result if cancel is not None and cancel.is_set() else evolve(result, notes=(reason,))
 
 
@@ -242,6 +243,26 @@ def why_none(search: ToolkitSearch, contacts: int, proven: int, threads: int, ca
     if contacts == 0 and contacts_of(problem, threads, cancel) == 0:
         return apart
     return no_place_note(proven, wording, has_body_to_pass(problem.query)) if proven else loose
+
+
+def of_what_is_left(reason: str, problem: Problem, threads: int) -> str:
+    """A reason that is about the part and the pitch, as one about what was asked for where that is the cause."""
+    query, toolkit = problem.query, problem.toolkit
+    concentric, too_far, *_ = no_fixture_notes(toolkit.wording)
+    if reason not in (concentric, too_far) or not query.asked_of_places:
+        return reason
+    toolkit = toolkit.without([limit for limit in toolkit.limits if limit.rule in query.asked_of_places])
+    whole = Problem.of(evolve(query.without_program, toolkit=toolkit, restrictions=None))
+    if reason == concentric:
+        every = center_numbers(whole.rows)
+        return (
+            reason
+            if every.min() >= 0 == np.ptp(every)
+            else left_notes(toolkit.wording, query.asked_of_places)[0]
+        )
+    table = ToolkitSearch.of(whole, threads=threads).table
+    is_far = len(table) + len(table.sliding_pairs.integers) == 0
+    return reason if is_far else left_notes(toolkit.wording, query.asked_of_places)[1]
 
 
 @frozen
