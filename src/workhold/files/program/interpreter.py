@@ -181,6 +181,7 @@ class Interpreter:
             value = values.pop(letter)
             if letter in ROTARY and once in VISITS:
                 self.away.add(letter)
+                values[letter] = value
                 continue
             if distance == "91":
                 at = 0.0
@@ -268,7 +269,7 @@ class Interpreter:
         modes.plane = codes.get("plane", modes.plane)
         if "offset" in codes:
             zero = codes["offset"]
-            if zero in NUMBERED and "P" in values and "once" not in codes:
+            if zero in NUMBERED and "P" in values.keys() - used and "once" not in codes:
                 if values["P"] != int(values["P"]) or values["P"] < 1:
                     raise InputError(
                         f"P{values['P']:g} is not the number of a zero: write a whole one from 1."
@@ -397,11 +398,11 @@ class Interpreter:
             if passed:
                 self.path.move_to(self.path.target(passed), cutting=False)
         # G28 and G30 alone move all axes.
-        alone = once != "53" and not axes
+        alone = once != "53" and not axes and not values.keys() & ROTARY
         lost = [axis for axis, letter in enumerate(AXES) if letter in axes or alone]
         self.path.lose(lost, f"line {self.path.line} goes to a place of the machine's own")
         self.skipped.append(self.path.line)
-        return set(axes)
+        return axes | ROTARY
 
     def set_zero(self, code: str, values: dict[str, float]) -> set[str]:
         """Takes a word that could set another zero, where it sets none.

@@ -175,11 +175,8 @@ class PathWriter:
         before = self.modes.place
         x, y, z = place
         from_x, from_y, from_z = before
-        if (
-            cutting
-            and (z is None or None in before)
-            and (z is None or x is None or (x, y) != (from_x, from_y))
-        ):
+        upright = x is not None and y is not None and z is not None and (x, y) == (from_x, from_y)
+        if cutting and (z is None or None in before) and not upright:
             refuse_unknown(self, [None if None in ends else 0.0 for ends in zip(before, place, strict=True)])
         self.modes.place = place
         if x is None or y is None or z is None:
@@ -232,13 +229,13 @@ def refuse_unknown(path: PathWriter, place: Reached, what: str = "the tool cuts 
     for why, axes in unknown.items():
         names = listed([AXES[axis] for axis in axes])
         remedies.append(f"write {names} with G0 before it")
-        if why == NOSE:
+        if axes == [2] and not path.has_heights:
+            reasons.append("no height (Z) is given anywhere in the program")
+        elif why == NOSE:
             reasons.append("Z is the height of the spindle's nose after G49, and not that of the tip")
             remedies[-1] = "write G43 with H and Z before it"
         elif why:
             reasons.append(f"{why}, and {names} {'is' if len(axes) == 1 else 'are'} not named after it")
-        elif axes == [2] and not path.has_heights:
-            reasons.append("no height (Z) is given anywhere in the program")
         else:
             reasons.append(f"{names} {'is' if len(axes) == 1 else 'are'} not named before")
     either = f", or give where the tip is at the start with {START}" if "" in unknown else ""

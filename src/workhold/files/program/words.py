@@ -50,7 +50,7 @@ MOTIONS = ("0", "1", "2", "3")
 # Cancels the cycle in force; the motion before it goes on, as on Fanuc and Haas.
 CANCEL = "80"
 # Zeros of the control; Haas has twenty more of them as G110 to G129, and all as G154 with P.
-OFFSETS = ("54", "55", "56", "57", "58", "59", "59.1", "59.2", "59.3", "54.1", "154")
+OFFSETS: tuple[str, ...] = ("54", "55", "56", "57", "58", "59", "59.1", "59.2", "59.3", "54.1", "154")
 OFFSETS += tuple(str(number) for number in range(110, 130))
 # Those that P numbers; G54 of some controls too.
 NUMBERED = ("54", "54.1", "154")
@@ -285,7 +285,7 @@ def program_text(text: str) -> ProgramText:
         Beginning with the number of the line that is none.
     """
     found = ProgramText([], [], [], [])
-    began = ended = False
+    began = ended = is_closed = False
     for line, content in numbered(text):
         if ended:
             if content.strip() not in ("", "%"):
@@ -297,6 +297,7 @@ def program_text(text: str) -> ProgramText:
         if not bare:
             continue
         began, ended = True, bare == "%" and began
+        is_closed = ended
         if bare == "%":
             continue
         if bare.startswith("/"):
@@ -317,6 +318,11 @@ def program_text(text: str) -> ProgramText:
         ended = any(letter == "M" and float(text) in (2, 30) for letter, text in words)
         if words:
             found.blocks.append(ProgramBlock(line, words))
+    if found.behind and found.blocks and found.optional[-1:] == [found.blocks[-1].line] and not is_closed:
+        raise InputError(
+            f"line {found.optional[-1]}: whether the program ends here is said by a switch (/), and there is more "
+            "behind it: take the slash out, or the line."
+        )
     return found
 
 
