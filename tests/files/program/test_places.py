@@ -380,7 +380,8 @@ def test_the_places_of_a_file_are_those_of_the_text(tmp_path: Path) -> None:
 def test_a_program_of_two_tools_is_that_of_places_written_out(tmp_path: Path) -> None:
     """Leaving axes away that are known changes nothing of what cuts, at any heights."""
     path = tmp_path / "a.nc"
-    short = "G21 G90 G17 G54\nT1 M6\nG0 X40. Y-3.\nG43 H1 Z20.\nG1 Z2. F100\nG0 Z20.\nT2 M6\nG0 X-5.\nG43 H2 Z20.\nG1 Z-9. F100\nX85.\nG0 Z20.\nM30\n"
+    short = "G21 G90 G71 G54\nT1 M6\nG0 X40. Y-3.\nG43 H1 Z20.\nG1 Z2. F100\nG0 Z20.\n"
+    short += "T2 M6\nG0 X-5.\nG43 H2 Z20.\nG1 Z-9. F100\nX85.\nG0 Z20.\nM30\n"
     path.write_text(short)
     read = read_program_with_calls(path, TOOLS, z_zero=12.0).program
     path.write_text(short.replace("X-5.", "X-5. Y-3."))

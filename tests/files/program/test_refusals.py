@@ -29,6 +29,8 @@ LINES = {
     "G38.2 Z-5": "probes",
     "G5.1 X5 Y5": "spline",
     "G71": "G20 or G21",
+    "G70 G90": "G20 or G21",
+    "G71 G90 I5. J2. L4": "G20 or G21",
     "G12.3": "G12.3 is not known",
     "M96 P5": "jumps to another line",
     "M16": "write M6",

@@ -29,6 +29,7 @@ from workhold.files.program.words import (
     LOOK_AHEAD,
     NOSE,
     NUMBERED,
+    OTHER_UNITS,
     UNITS,
     VISITS,
     Modes,
@@ -265,6 +266,11 @@ class Interpreter:
                 self.passed.setdefault(f"G{code}", []).append(self.path.line)
                 used |= set(LOOK_AHEAD[code])
         modes.unit = UNITS[codes["unit"]] if "unit" in codes else modes.unit
+        if "other unit" in codes:
+            # Among other codes, as Vectric's posts write it at the head, it repeats the unit that is in force.
+            repeats = OTHER_UNITS[codes["other unit"]] is modes.unit and len(codes) > 1
+            if not repeats or values.keys() & set("IJKL"):
+                refuse_code(codes["other unit"])
         modes.feed_kind = codes.get("feed", modes.feed_kind)
         modes.plane = codes.get("plane", modes.plane)
         if "offset" in codes:

@@ -31,6 +31,7 @@ __all__ = [
     "LOOK_AHEAD",
     "NOSE",
     "NUMBERED",
+    "OTHER_UNITS",
     "UNITS",
     "VISITS",
     "Modes",
@@ -88,6 +89,8 @@ GROUPS: Mapping[str, str] = {
     **dict.fromkeys(("4", *VISITS, "52", "92", "92.1", "92.2"), "once"),
     # Of these a block may have several.
     **{code: f"look-ahead G{code}" for code in ("5", "5.1", "8", "9", "23", "67", "103", "187", "255")},
+    # A unit on some controls, a pattern of holes on others.
+    **dict.fromkeys(("70", "71"), "other unit"),
     "40": "compensation",
     "15": "polar",
     "50": "scale",
@@ -130,6 +133,7 @@ FUNCTION_REASONS: Mapping[str, str] = {
     "72": "brings codes back that were in force before: write those that are meant",
 }
 UNITS = {"20": INCH, "21": MILLIMETRE, "inch": INCH, "mm": MILLIMETRE}
+OTHER_UNITS = {"70": INCH, "71": MILLIMETRE}
 # An unsigned number has a digit before its point or behind it.
 NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
 WORD = re.compile(rf"([A-Z])[ \t]*({NUMBER})[ \t]*")
