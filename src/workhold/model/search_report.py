@@ -195,12 +195,25 @@ class Explanation:
         return f"The last fixtures are taken by what was asked for: {rules}."
 
 
-def no_fixture_notes(wording: Wording) -> tuple[str, ...]:
+def no_fixture_notes(wording: Wording, line: int | None = None) -> tuple[str, ...]:
     """Why a search finds no fixture, in the order of what is asked; a toolkit may have reasons of its own.
 
     All normals meet in a point, no two pegs of one carrier touch, no four pegs touch, or no four hold the
     part.
+
+    Parameters
+    ----------
+    line : of the program whose tools take most of the places for pegs away; None where none does.
     """
+    if line is not None:
+        clear = f"clear of the program's tools, of which line {line} is most in the way."
+        return tuple(f"{reason[:-1]}, {clear}" for reason in wording.reasons) or (
+            f"Every face that the program's tools leave, of which line {line} takes the most, is an arc about one "
+            "centre, so the forces of all pegs meet in that point and nothing keeps the part from turning.",
+            f"No {wording.two} can touch the part together {clear}",
+            f"No {wording.four} can touch the part at the same time {clear}",
+            f"Four pegs can touch the part at the same time, but no such set {wording.rules} {clear}",
+        )
     return wording.reasons or (
         "Every face is an arc about one centre, so the forces of all pegs meet in that point and nothing "
         "keeps the part from turning.",
