@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from workhold.conventions import READING, SHORTEST
 from workhold.delegates import delegate
-from workhold.errors import InputError
+from workhold.errors import InputError, encodable
 from workhold.fixels.carrier import WALL
 from workhold.geometry.hull import HullEdge, hull_edges
 from workhold.geometry.loop import (
@@ -72,7 +72,7 @@ class Workpiece:
     [0, 1, 2, 3]
     """
 
-    name: str
+    name: str = field(converter=encodable)
     loops: tuple[NDArray[np.float64], ...] = field(eq=numbers_of)
     remarks: tuple[str, ...] = field(default=(), eq=False)
     departure: float = 0.0
