@@ -150,20 +150,21 @@ class Result:
         shown: str = delegate("result_html")(self)
         return shown
 
-    def draw(self, path: str | Path | None = None, *, unit: str = "mm") -> str:
+    def draw(self, path: str | Path | None = None, *, unit: str = "mm", overwrite: bool = False) -> str:
         """The best twelve at a glance, near duplicates once: SVG text, which a notebook shows as a picture.
 
         Parameters
         ----------
         path : also write it into this file, whose name ends in .svg or .png.
         unit : of the lengths written: "mm", "cm", "m" or "inch".
+        overwrite : whether a file that workhold has not written may be replaced.
 
         Raises
         ------
         InputError
-            For a result without a fixture, and when the file cannot be written.
+            For a result without a fixture, and when the file cannot be written or replaced.
         """
-        picture: str = delegate("result_picture")(self, path, unit=unit)
+        picture: str = delegate("result_picture")(self, path, unit=unit, overwrite=overwrite)
         return picture
 
     def widget(
