@@ -147,9 +147,11 @@ def test_leaning_strip_is_cut_in_pieces() -> None:
 
 
 def test_half_round_notch_from_below() -> None:
-    """Where the band's end rises without a jump, the wall stays one segment; at a jump it is cut."""
+    """A wall is cut where a notch begins, upright or round, and beside that stands from the plate up."""
     notched = cut(PLATE, cylinder(10, 60, (30, -5, 0), (0, 1, 0)))
-    assert dict(strips(notched, 15.0))[(0, 0, 0)] == (10, 15)
+    found = dict(strips(notched, 15.0))
+    assert (found[(0, 0, 0)], found[(40, 0, 0)]) == ((0, 15), (0, 15))
+    assert [band for (x, y, _), band in found.items() if y == 0 and 20 <= x < 40 and band[1:] == (15,)]
     slotted = cut(PLATE, box(20, 60, 10, (20, -5, 0)))
     found = dict(strips(slotted, 15.0))
     assert (found[(0, 0, 0)], found[(20, 0, 0)], found[(40, 0, 0)]) == ((0, 15), (10, 15), (0, 15))

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from workhold.conventions import SAME_HEIGHT
 from workhold.errors import InputError
 from workhold.files.questions import PEG_HEIGHT, SECTION
-from workhold.files.step.bands import Walls
+from workhold.files.step.bands import WallEdge, Walls
 from workhold.files.step.edge_curves import EdgeCurve, Found, edge_curves
 from workhold.files.step.faces import SolidFace, plane_height, solid_faces
 from workhold.files.step.library import bounding_box, occ, raised, sub_shapes
@@ -123,6 +123,7 @@ class StandingSolid:
     edge_boxes: NDArray[np.float64] = field(init=False)
     material: Material = field(init=False)
     folds: dict[int, list[Found]] = field(init=False, factory=dict)
+    wall_edges: dict[int, WallEdge] = field(init=False, factory=dict)
 
     def __attrs_post_init__(self) -> None:
         self.faces = solid_faces(self.shape)
@@ -166,7 +167,7 @@ class StandingSolid:
             For heights that leave nothing, and where the outline has a curve that is neither line nor arc.
         """
         top = self.height if peg_height is None else peg_height
-        walls = Walls(self.faces, self.edges, max(low, 0.0), min(top, self.height))
+        walls = Walls(self.faces, self.edges, max(low, 0.0), min(top, self.height), self.wall_edges)
         loops = self.border(low if low > 0.0 else -inf, top + head_room, walls)
         strips = tuple(tuple(strips_of_loop(loop, walls, least_band)) for loop in loops)
         return HeightOutline(strips, top, head_room, least_band)
