@@ -7,7 +7,7 @@ outside meet nothing.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import islice
+from itertools import islice, pairwise
 from typing import Any
 
 import numpy as np
@@ -71,7 +71,9 @@ def unlike(a: HeightOutline, b: HeightOutline, off: float = 1e-4) -> str:
     """How two outlines differ as lists of lengths and bands; empty where they are alike."""
     left = listed(b)
     for one in listed(a):
-        near = min(left, key=lambda other: max(abs(p - q) for p, q in zip(one, other, strict=True)), default=())
+        near = min(
+            left, key=lambda other: max(abs(p - q) for p, q in zip(one, other, strict=True)), default=()
+        )
         if not near or max(abs(p - q) for p, q in zip(one, near, strict=True)) > off:
             return f"{one} is not in the other, where {near} is nearest"
         left.remove(near)
@@ -85,7 +87,7 @@ def runs_beside(shape: Any, point: tuple[float, float], low: float, high: float)
     meets.Perform(gp_Lin(gp_Pnt(*point, -1.0), gp_Dir(0, 0, 1)), -10.0, 1e4)
     met = sorted(meets.WParameter(k) - 1.0 for k in range(1, meets.NbPnt() + 1))
     classifier, found = BRepClass3d_SolidClassifier(shape), list[Band]()
-    for a, b in zip(met, met[1:], strict=False):
+    for a, b in pairwise(met):
         if b - a < 1e-6:
             continue
         classifier.Perform(gp_Pnt(*point, (a + b) / 2), 1e-7)

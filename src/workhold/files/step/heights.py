@@ -38,10 +38,10 @@ from workhold.files.step.projected import (
     projected_curves,
     refuse_others,
 )
-from workhold.files.step.strips import Strip, strips_of_loop
+from workhold.files.step.strips import Strip, run_rows, strips_of_loop
 from workhold.geometry.loop import loop_segments, signed_area
 from workhold.geometry.subdivision import BorderPiece, border_loops, border_pieces, subdivide
-from workhold.model.solid import Band, HeightRow, SolidOutline
+from workhold.model.solid import Band, HeightRow, RunRows, SolidOutline
 
 __all__ = [
     "HEAD_ROOM",
@@ -95,6 +95,12 @@ class HeightOutline:
     def faces(self) -> tuple[tuple[int, ...], ...]:
         """The faces over every segment of the loops in order, as ``SolidOutline`` has them."""
         return tuple(strip.faces for loop in self.ordered for strip in loop)
+
+    @property
+    def runs(self) -> tuple[RunRows, ...]:
+        """The run that holds the band of every segment, as ``SolidOutline`` has them."""
+        found = tuple(run_rows(strip) for loop in self.ordered for strip in loop)
+        return found if any(found) else ()
 
     @property
     def feet(self) -> int:
@@ -366,6 +372,7 @@ def own_drawings(
                 f"{where}, no upright face of the part is at least {found.least_band:g} mm high: give other "
                 f"heights of the {role}."
             )
-        own = evolve(found, low=low, peg_height=high, bands=outline.bands, faces=outline.faces)
+        own = evolve(found, low=low, peg_height=high, bands=outline.bands)
+        own = evolve(own, faces=outline.faces, runs=outline.runs)
         own = evolve(own, bottom=(), top=(), top_heights=())
         yield OwnDrawing(role, outline.vertices, own)

@@ -19,14 +19,14 @@ from math import pi, tan
 from attrs import frozen
 
 from workhold.conventions import SAME_HEIGHT
-from workhold.files.step.bands import Covered, Walls, length
+from workhold.files.step.bands import Covered, Run, Walls, length
 from workhold.files.step.edge_curves import ONE_HEIGHT, bisected
 from workhold.geometry.loop import runs_around
 from workhold.geometry.segment import Arc, Point
 from workhold.geometry.subdivision import BorderPiece
-from workhold.model.solid import Band
+from workhold.model.solid import Band, RunRows, run_at
 
-__all__ = ["Strip", "strips_of_loop"]
+__all__ = ["Strip", "run_rows", "strips_of_loop"]
 
 # Ends of runs that differ by less, in mm, go on from piece to piece.
 SAME_BAND = 1e-5
@@ -36,6 +36,8 @@ STEP = 2.0
 AT_JOINT, BESIDE = 10.0, 1e3
 # mm. Pieces shorter than this are not made by halving.
 SHORTEST_STRIP = 0.01
+# mm. Heights that a piece's cubic tells are off by no more, and pieces of a run that are not parted any more.
+CUBIC, SHORTEST_PIECE = 1e-6, 1e-5
 # Halvings in which a place is searched.
 HALVINGS = 50
 Stretch = Sequence[Covered]
@@ -343,3 +345,52 @@ def strips_between(stretch: Stretch, band: Band | None) -> list[Strip]:
         Strip(a, b, bulge, band, faces, tuple(half))
         for (a, b), half in zip(pairwise(ends), halves, strict=True)
     ]
+
+
+def run_rows(strip: Strip) -> RunRows:
+    """The run that holds a strip's band, along the strip; empty where it is the band all along."""
+    band = strip.band
+    if band is None:
+        return ()
+    runs = [holding(one, band) for one in strip.covered]
+    ends = [
+        (end.extent(one.low, one.high), own)
+        for one, run in zip(strip.covered, runs, strict=True)
+        for end, own in zip((run.lower, run.upper), band, strict=True)
+    ]
+    if all(abs(z - own) <= SAME_BAND for extent, own in ends for z in extent):
+        return ()
+    rows: list[tuple[float, float, float]] = []
+    size, before = sum(one.size for one in strip.covered), 0.0
+    for one, run in zip(strip.covered, runs, strict=True):
+        first, last = one.ends
+        for position, heights in cubic_pieces(run, one, first, last):
+            rows.append(((before + abs(position - first)) / size, *heights))
+        before += one.size
+    # Where a piece ends the next begins.
+    kept = [row for k, row in enumerate(rows) if k % 4 or k == 0]
+    return ((0.0, *kept[0][1:]), *kept[1:-1], (1.0, *kept[-1][1:]))
+
+
+def holding(one: Covered, band: Band) -> Run:
+    """The run of a piece that holds a band all along."""
+    shared = [length(overlap(run.common(one.low, one.high), band)) for run in one.runs]
+    return one.runs[shared.index(max(shared))]
+
+
+def cubic_pieces(run: Run, one: Covered, first: float, last: float) -> Iterator[tuple[float, Band]]:
+    """Four positions with the run's heights for each piece of a run that is two cubics within rounding."""
+    places = [first + (last - first) * k / 3 for k in range(4)]
+    rows = tuple((k / 3, *run.at(place)) for k, place in enumerate(places))
+    unit = one.piece.carrier.segment.radius if isinstance(one.piece.carrier.segment, Arc) else 1.0
+    off = max(
+        abs(a - b)
+        for share in (1 / 6, 1 / 2, 5 / 6)
+        for a, b in zip(run_at(rows, share), run.at(first + (last - first) * share), strict=True)
+    )
+    if off > CUBIC and abs(last - first) * unit > SHORTEST_PIECE:
+        middle = (first + last) / 2
+        yield from cubic_pieces(run, one, first, middle)
+        yield from cubic_pieces(run, one, middle, last)
+        return
+    yield from ((place, row[1:]) for place, row in zip(places, rows, strict=True))
