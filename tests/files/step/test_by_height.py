@@ -378,7 +378,8 @@ def test_silhouette_has_its_bands(tmp_path: Path) -> None:
     lying = load(write_step(tmp_path / "lying.step", cylinder(7, 80, (0, 0, 0), (1, 0, 0))))
     assert lying.solid is not None
     touched = [face.segment for face in lying.faces if lying.solid.bands[face.number] is not None]
-    assert sorted((one.middle[0], round(one.length, 3)) for one in touched) == [(0, 13.964), (80, 13.964)]
+    for end in (0, 80):
+        assert sum(one.length for one in touched if one.middle[0] == end) == pytest.approx(13.964, abs=1e-3)
     ball = BRepPrimAPI_MakeSphere(gp_Pnt(0, 0, 0), 9).Shape()
     assert load(write_step(tmp_path / "ball.step", ball)).solid is None
     assert load(write_step(tmp_path / "section.step", FLANGED), section=10.0).solid is None
@@ -425,8 +426,13 @@ def test_sections_that_the_library_cannot_unite_do_no_harm(tmp_path: Path) -> No
     for part in (load(path), load(block)):
         assert part.solid is not None
         assert part.bounds == pytest.approx((0.0, 0.0, 90.0, 60.0))
-        assert [len(loop) for loop in part.loops] == [8, 2]
-        assert {tuple(round(z, 9) for z in band or ()) for band in part.solid.bands} == {(2, 38), (0, 40)}
+        # The hole across opens one side.
+        assert [len(loop) for loop in part.loops] == [10, 2]
+        assert {tuple(round(z, 9) for z in band or ()) for band in part.solid.bands} == {
+            (2, 38),
+            (2, 13),
+            (0, 40),
+        }
 
 
 def test_bands_in_files(tmp_path: Path) -> None:

@@ -16,7 +16,7 @@ steep : where an edge stands upright, or so nearly that rounding hides it, so th
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
 from itertools import pairwise
 from math import hypot, pi, tau
@@ -212,6 +212,7 @@ class Branch:
     places : (N,) positions on the carrier there, rising, on a circle without jumps.
     heights : (N,) z in mm there; between two of them the edge only rises or only falls.
     steep : whether it is steep at its first and its last place.
+    known : heights in mm by place, once they were asked for.
     """
 
     edge: EdgeCurve
@@ -220,6 +221,7 @@ class Branch:
     places: NDArray[np.float64]
     heights: NDArray[np.float64]
     steep: tuple[bool, bool]
+    known: dict[float, float] = field(init=False, factory=dict)
 
     @classmethod
     def over(cls, carrier: CutCarrier, wall_edge: WallEdge) -> Iterator[Branch]:
@@ -263,16 +265,27 @@ class Branch:
         share = (place - float(places[k])) / float(places[k + 1] - places[k])
         if len(self.edge.points) == 2 or abs(last - first) <= ONE_HEIGHT or share in (0.0, 1.0):
             return first + share * (last - first)
-        return self.refined(k, place)
+        if place not in self.known:
+            self.known[place] = self.refined(k, place)
+        return self.known[place]
+
+    @cached_property
+    def located(self) -> Callable[[float, float], float]:
+        """The position on the carrier of a point x, y in mm."""
+        segment = self.carrier.segment
+        if isinstance(segment, Arc):
+            return lambda x, y: segment.parameter((x, y))
+        (px, py), (tx, ty) = segment.middle, segment.tangent
+        return lambda x, y: (x - px) * tx + (y - py) * ty
 
     def refined(self, k: int, place: float) -> float:
         """The z in mm at which a curved edge passes a place between its points k and k + 1."""
-        segment, near = self.carrier.segment, float(self.places[k])
-        is_line = isinstance(segment, Line)
+        curve, located, near = self.edge.curve, self.located, float(self.places[k])
+        is_line = isinstance(self.carrier.segment, Line)
 
         def value(parameter: float) -> float:
-            x, y, _ = curve_point(self.edge.curve, parameter)
-            found = segment.parameter((x, y))
+            point = curve.Value(parameter)
+            found = located(point.X(), point.Y())
             return found - place if is_line else near + (found - near + pi) % tau - pi - place
 
         ends = [(float(self.parameters[j]), float(self.places[j]) - place) for j in (k, k + 1)]

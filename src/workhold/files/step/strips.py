@@ -131,8 +131,7 @@ def opened(pieces: Stretch, least: float) -> Iterator[Stretch]:
 
     So it is halved at the same places however it is turned, and whichever way round.
     """
-    band, most = common_band(pieces), longest(pieces)
-    if is_enough(band, most, least) or most < least - SAME_HEIGHT:
+    if is_enough(pieces, common_band(pieces), least) or max(map(most_of, pieces)) < least - SAME_HEIGHT:
         yield pieces
         return
     places = [
@@ -191,9 +190,7 @@ def touched_pieces(one: Covered, least: float) -> list[tuple[Covered, bool]]:
         return one.longest_at(position) - (least - ONE_HEIGHT)
 
     nodes = [one.low, *one.inner(), one.high]
-    peaks = [
-        peak for a, b in pairwise(nodes) for peak in (extreme(spare, a, b, 1.0), extreme(spare, a, b, -1.0))
-    ]
+    peaks = list(turns_past(one, nodes, spare, least))
     nodes = sorted({*nodes, *peaks})
     # What lacks no more than rounding is long enough, if it is so for a while.
     signs = [spare(node) >= ONE_HEIGHT - SAME_HEIGHT for node in nodes]
@@ -205,6 +202,23 @@ def touched_pieces(one: Covered, least: float) -> list[tuple[Covered, bool]]:
             cuts.append(ends[1] if last else ends[0])
     parts = one.parts(cuts)
     return [(part, spare((part.low + part.high) / 2) >= ONE_HEIGHT - SAME_HEIGHT) for part in parts]
+
+
+def turns_past(
+    one: Covered, nodes: Sequence[float], spare: Callable[[float], float], least: float
+) -> Iterator[float]:
+    """Positions between nodes at which the longest run may be just long enough, or just too short.
+
+    Between nodes the ends of runs only rise or only fall, and so they bound its length.
+    """
+    for a, b in pairwise(nodes):
+        first, last = spare(a) >= 0.0, spare(b) >= 0.0
+        if first != last:
+            continue
+        if first and max(length(run.common(a, b)) for run in one.runs) < least:
+            yield extreme(spare, a, b, -1.0)
+        elif not first and max(run.most(a, b) for run in one.runs) >= least:
+            yield extreme(spare, a, b, 1.0)
 
 
 def is_past(value: Callable[[float], float], sign: float, position: float) -> bool:
@@ -230,20 +244,15 @@ def most_of(one: Covered) -> float:
     return max((run.most(one.low, one.high) for run in one.runs), default=0.0)
 
 
-def longest(stretch: Stretch) -> float:
-    """Length in mm of the longest run over a stretch."""
-    return max(longest_of(one) for one in stretch)
-
-
-def longest_of(one: Covered) -> float:
-    """Length in mm of the longest run over a piece."""
-    if all(run.lower.branch.level is not None or run.upper.branch.level is not None for run in one.runs):
-        return most_of(one)
+def longest_of(one: Covered, bound: float) -> float:
+    """Length in mm of the longest run over a piece, or one not above a bound where that is enough to know."""
     nodes = [one.low, *one.inner(), one.high]
-    values = [one.longest_at(node) for node in nodes]
-    best = max(range(len(nodes)), key=values.__getitem__)
-    around = nodes[max(best - 1, 0)], nodes[min(best + 1, len(nodes) - 1)]
-    return max(values[best], one.longest_at(extreme(one.longest_at, *around, 1.0)))
+    best = max(map(one.longest_at, nodes))
+    for a, b in pairwise(nodes):
+        most = max((run.most(a, b) for run in one.runs), default=0.0)
+        if best <= bound < most:
+            best = max(best, one.longest_at(extreme(one.longest_at, a, b, 1.0)))
+    return best
 
 
 def common_band(stretch: Stretch) -> Band:
@@ -267,15 +276,18 @@ def overlap(a: Band, b: Band) -> Band:
     return max(a[0], b[0]), min(a[1], b[1])
 
 
-def is_enough(band: Band, most: float, least: float) -> bool:
-    """Whether a band is long enough to be touched, and half as long as the longest run."""
-    return length(band) >= max(least, most / 2) - SAME_HEIGHT
+def is_enough(stretch: Stretch, band: Band, least: float) -> bool:
+    """Whether the band of a stretch is long enough to be touched, and half as long as the longest run there."""
+    if length(band) < least - SAME_HEIGHT:
+        return False
+    bound = 2 * (length(band) + SAME_HEIGHT)
+    return all(most_of(one) <= bound or longest_of(one, bound) <= bound for one in stretch)
 
 
 def halved(stretch: Stretch, least: float) -> list[Strip]:
     """A stretch halved until its band is long enough, and half as long as the longest run over it."""
     band = common_band(stretch)
-    if is_enough(band, max(map(most_of, stretch)), least) or is_enough(band, longest(stretch), least):
+    if is_enough(stretch, band, least):
         return strips_between(stretch, band)
     carrier = stretch[0].piece.carrier
     size = sum(one.size for one in stretch)
