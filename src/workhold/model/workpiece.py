@@ -156,15 +156,17 @@ class Workpiece:
         else:
             pieces = outer_count(name, drawn)
         order: list[int] = []
+        turned: set[int] = set()
         for index, shape in enumerate(drawn):
             numbers = range(len(order), len(order) + len(used[index]))
             if (signed_area(shape.segments) > 0) != (index < pieces):
                 used[index] = reversed_vertices(used[index])
                 order += reversed(numbers)
+                turned.update(numbers)
             else:
                 order += numbers
         if solid is not None:
-            solid = solid.for_segments(len(order)).reordered(order)
+            solid = solid.for_segments(len(order)).reordered(order, turned)
         return cls(name, tuple(used), remarks_on(straightened, rounded), departure_of(departure), solid)
 
     @classmethod

@@ -60,6 +60,9 @@ Vertex = Annotated[list[Number], Field(min_length=3, max_length=3)]
 LoopForm = Annotated[list[Vertex], Field(min_length=1, max_length=MOST_VERTICES)]
 BandForm = Annotated[list[Annotated[float, Field(ge=0, le=LARGEST)]], Field(min_length=2, max_length=2)]
 Name = Annotated[str, Field(max_length=200)]
+RunForm = Annotated[
+    list[Annotated[list[Number], Field(min_length=3, max_length=3)]], Field(max_length=10_000)
+]
 FacesForm = Annotated[list[Annotated[int, Field(ge=0, le=1_000_000)]], Field(max_length=10_000)]
 AskedForm = TypeVar("AskedForm", bound="Form")
 
@@ -163,6 +166,7 @@ class SolidForm(Form):
     bottom: Annotated[list[LoopForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
     top: Annotated[list[LoopForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
     top_heights: Annotated[list[Number], Field(max_length=MOST_VERTICES)] = Field(default=[])
+    runs: Annotated[list[RunForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
 
 
 class OwnOutlineForm(Form):
@@ -171,6 +175,7 @@ class OwnOutlineForm(Form):
     heights: Point
     loops: Annotated[list[LoopForm], Field(min_length=1, max_length=MOST_VERTICES)]
     bands: Annotated[list[BandForm | None], Field(max_length=MOST_VERTICES)]
+    runs: Annotated[list[RunForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
     solid_faces: Annotated[list[FacesForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
 
 
