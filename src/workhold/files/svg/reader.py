@@ -50,10 +50,11 @@ def read_svg(
         For files that are no SVG, unknown units, and values that make no sense.
     """
     budget = budget or Budget(LIMITS["svg"], len(content))
-    document = read_document(content)
-    styles = Styles(document)
-    root = ShapeElement(document.root, document.name(document.root), styles.of(document.root), (None, None))
-    box = viewbox_of(document.root.get("viewBox"), root.label)
+    document = read_document(content, budget)
+    styles = Styles(document, budget)
+    name = document.name(document.root)
+    root = ShapeElement(document.root, name, styles.of(document.root), (None, None), budget)
+    box = viewbox_of(document.root.get("viewBox"), root.label, budget)
     known = page(root, box, unit, usual_unit)
     placement, remarks = known or (Placement(d=-1.0), [])
     walk = SvgWalk(document, styles, fit, budget)
