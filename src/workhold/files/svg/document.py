@@ -45,8 +45,8 @@ LINK = "{http://www.w3.org/1999/xlink}href"
 ANIMATIONS = {"animate", "animateColor", "animateMotion", "animateTransform", "set"}
 # Letters of an attribute or property that is no list of many, and of a namespace.
 LONGEST, LONGEST_NAME = 10_000, 500
-# Attributes of one element, and declared ones of a document type.
-MOST_ATTRIBUTES, MOST_DECLARED = 10_000, 20
+# Attributes of one element, those that a document type declares, and of these the ones that all elements get.
+MOST_ATTRIBUTES, MOST_DECLARED, MOST_GIVEN = 10_000, 1_000, 20
 ENTITY = re.compile(rb"&(?!(?:amp|lt|gt|quot|apos);)[A-Za-z_:][\w.:-]*;")
 
 
@@ -58,6 +58,11 @@ def local_name(element: Element) -> str:
 def short(text: str, most: int = 60) -> str:
     """The beginning of what a file says, on one line, for messages."""
     return " ".join(text[: 10 * most].split())[:most]
+
+
+def shown(name: str) -> str:
+    """The name of an element as messages tell it: without its namespace."""
+    return short(name.rpartition("}")[2])
 
 
 def href(element: Element) -> str:
@@ -169,14 +174,14 @@ def parsed(content: bytes, lines: dict[Element, int], budget: Budget) -> Element
         nonlocal depth
         depth += 1
         if depth > DEEPEST:
-            raise InputError(f"<{short(name)}> is nested more than {DEEPEST} levels deep: save a plain SVG.")
+            raise InputError(f"<{shown(name)}> is nested more than {DEEPEST} levels deep: save a plain SVG.")
         # What ten attributes take is what an element takes.
         budget.spend(1 + len(attributes) // 10)
         line = parser.CurrentLineNumber
         for key, value in attributes.items():
             if len(value) > LONGEST and key in SHORT:
                 raise InputError(
-                    f"<{short(name)}> on line {line} has {len(value):,} letters in its {key}: correct it."
+                    f"<{shown(name)}> on line {line} has {len(value):,} letters in its {key}: correct it."
                 )
         element = builder.start(expanded(name), {expanded(key): value for key, value in attributes.items()})
         lines[element] = line
@@ -189,15 +194,14 @@ def parsed(content: bytes, lines: dict[Element, int], budget: Budget) -> Element
     def declared(*_: object) -> None:
         raise InputError("the SVG file declares XML entities, which are not read: save it as plain SVG.")
 
-    given = 0
+    given = count = 0
 
     def attribute_declared(_: str, name: str, __: str, default: str | None, ___: int) -> None:
         # Every element gets what is declared: only namespaces, which drawings do declare, stay harmless.
-        nonlocal given
-        given += default is not None
-        if default is not None and (
-            not name.startswith("xmlns") or given > MOST_DECLARED or len(default) > LONGEST_NAME
-        ):
+        nonlocal given, count
+        given, count = given + (default is not None), count + 1
+        harmless = default is None or (name.startswith("xmlns") and len(default) <= LONGEST_NAME)
+        if not harmless or given > MOST_GIVEN or count > MOST_DECLARED:
             raise InputError(
                 "the SVG file declares attributes for all its elements (<!ATTLIST), which is not read: save "
                 "it as plain SVG."
@@ -255,7 +259,7 @@ def refuse_many_attributes(content: bytes) -> None:
     """
     if content.count(b"=") <= MOST_ATTRIBUTES:
         return
-    for tag in re.finditer(rb"<[^<]*", content):
+    for tag in re.finditer(rb"<[^<!?][^<]*", content):
         if tag.end() - tag.start() > MOST_ATTRIBUTES and tag.group().count(b"=") > MOST_ATTRIBUTES:
             line = content.count(b"\n", 0, tag.start()) + 1
             raise InputError(

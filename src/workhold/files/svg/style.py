@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
+from math import pi
 from typing import TypeVar
 from xml.etree.ElementTree import Element
 
@@ -21,7 +22,8 @@ from workhold.files.outline.chain import Chain, cleaned
 from workhold.files.outline.joining import closed_loop
 from workhold.files.svg.document import Declared, Styles, href, local_name, short
 from workhold.files.svg.viewport import LENGTH, ShapeElement
-from workhold.geometry.loop import LoopShape, encloses, loop_segments, refuse_meeting_loops, signed_area
+from workhold.geometry.loop import LoopShape, loop_segments, refuse_meeting_loops, signed_area
+from workhold.kernels.base.distance import turns_around
 
 __all__ = ["INITIAL", "Style", "boundaries", "computed", "link_of", "refuse_effects"]
 
@@ -270,12 +272,9 @@ def boundaries(chains: Sequence[Chain], budget: Budget) -> list[Chain]:
         around = (boxes[:, 0] <= x0) & (boxes[:, 1] <= y0) & (boxes[:, 2] >= x1) & (boxes[:, 3] >= y1)
         around[at] = False
         near = np.flatnonzero(around).tolist()
-        outer = []
-        for m in near:
-            budget.work(1 + len(shapes[m].segments) // 16)
-            if encloses(shapes[m], shape):
-                outer.append(m)
-        outside = sum(turns[m] for m in outer)
+        rows = np.concatenate([shapes[m].rows for m in near] or [shape.rows[:0]])
+        budget.work(len(near) + len(rows) // 16)
+        outside = round(turns_around(*shape.segments[0].start, rows) / (2 * pi))
         if outside and outside + turns[at] and not any(meet(shape, shapes[m], budget) for m in near):
             over.add(k)
     return [chain for k, chain in enumerate(chains) if k not in over]

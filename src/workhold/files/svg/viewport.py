@@ -38,7 +38,6 @@ __all__ = [
     "absolute",
     "convex",
     "fitted",
-    "millimetres",
     "numbers",
     "physical",
     "viewbox_of",
@@ -75,12 +74,6 @@ def absolute(text: str, *, unitless: bool = True) -> float | None:
         return None
     value = float(match.group(1)) * PIXELS[match.group(2).lower()]
     return None if abs(value) > LARGEST or (value and not match.group(2) and not unitless) else value
-
-
-def millimetres(text: str) -> float | None:
-    """A length in mm; None unless it is a number with an absolute unit, or with none."""
-    value = absolute(text)
-    return None if value is None else value * 25.4 / 96
 
 
 def physical(text: str) -> bool:
