@@ -188,7 +188,7 @@ def test_path_data_is_resolved_over_the_joints_of_its_batches(monkeypatch: pytes
     data = "M5 5" + "h1v1h-1z m2 0 q1 1 2 0 t2 0 c0 1 1 1 1 0 s1 1 1 0zh2v2zv-1" * 2
     body = f'<path stroke="red" fill="none" d="{data}"/>'
     whole = drawing(body).chains
-    assert len(whole) == 8
+    assert len(whole) == 7
     for batch in (1, 2, 3, 5):
         monkeypatch.setattr(shapes, "BATCH", batch)
         assert drawing(body).chains == whole

@@ -47,6 +47,7 @@ ANIMATIONS = {"animate", "animateColor", "animateMotion", "animateTransform", "s
 LONGEST, LONGEST_NAME = 10_000, 500
 # Attributes of one element, those that a document type declares, and of these the ones that all elements get.
 MOST_ATTRIBUTES, MOST_DECLARED, MOST_GIVEN = 10_000, 1_000, 20
+START_TAG = re.compile(rb"""<[^<!?](?:[^<>"']++|"[^"<]*+"|'[^'<]*+')*+""")
 ENTITY = re.compile(rb"&(?!(?:amp|lt|gt|quot|apos);)[A-Za-z_:][\w.:-]*;")
 
 
@@ -259,7 +260,7 @@ def refuse_many_attributes(content: bytes) -> None:
     """
     if content.count(b"=") <= MOST_ATTRIBUTES:
         return
-    for tag in re.finditer(rb"<[^<!?][^<]*", content):
+    for tag in START_TAG.finditer(content):
         if tag.end() - tag.start() > MOST_ATTRIBUTES and tag.group().count(b"=") > MOST_ATTRIBUTES:
             line = content.count(b"\n", 0, tag.start()) + 1
             raise InputError(
