@@ -360,8 +360,8 @@ class Styles:
             for important, values in enumerate(self.attribute(element)):
                 layers.append(((important, 1 << 30), values, True))
         found: dict[str, list[Declared]] = defaultdict(list)
+        self.budget.work(sum(1 + len(values) for _, values, _ in layers))
         for _, values, css in sorted(layers, key=lambda layer: layer[0], reverse=True):
-            self.budget.work(1 + len(values))
             for name, text in reversed(values):
                 found[name].append(Declared(text.strip(), css))
         return found

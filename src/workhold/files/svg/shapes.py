@@ -113,10 +113,10 @@ def path_segments(figure: ShapeElement) -> Iterator[Any]:
             raise InputError(
                 f"{figure.label} has path data that cannot be read ('{short(data)}'): correct it."
             ) from error
-        if not batch:
-            return
         figure.budget.spend(len(batch))
         yield from held[len(seeds) :]
+        if len(batch) < BATCH:
+            return
 
 
 class PathStep(NamedTuple):
