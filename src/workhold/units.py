@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from math import ceil
 
 from attrs import frozen
 
 from workhold.errors import InputError
 
-__all__ = ["INCH", "MILLIMETRE", "POUND", "Unit", "unit_named"]
+__all__ = ["INCH", "MILLIMETRE", "PIXELS", "POUND", "Unit", "drawing_unit", "pixels_an_inch", "unit_named"]
 
 # N in a pound-force: 0.453 592 37 kg under 9.806 65 m/s2, both exact by definition (1959 and 1901).
 POUND = 0.45359237 * 9.80665
@@ -139,3 +140,40 @@ def unit_named(name: str) -> Unit:
         return UNITS[name.strip().lower()]
     except KeyError:
         raise InputError(f"Unit '{name[:40]}' is not known: use mm, cm, m or inch.") from None
+
+
+# Pixels to an inch that programs write drawings with: points of print (Illustrator, CorelDRAW), those of
+# Inkscape before 0.92, and those of CSS (CSS Values 4, 6.2).
+PIXELS = (72, 90, 96)
+PIXEL = re.compile(r"px *([0-9]{1,5}(?:\.[0-9]{1,6})?)")
+
+
+def pixels_an_inch(name: str | None) -> float | None:
+    """How many pixels make an inch in a unit such as "px96"; None for other names.
+
+    >>> pixels_an_inch("px72"), pixels_an_inch("mm")
+    (72.0, None)
+    """
+    match = PIXEL.fullmatch((name or "").strip().lower())
+    return None if match is None or float(match[1]) < 1 else float(match[1])
+
+
+def drawing_unit(name: str) -> Unit:
+    """The unit of a drawing: one of length, or pixels of which so many make an inch.
+
+    Raises
+    ------
+    InputError
+        For a unit that is not known.
+
+    Examples
+    --------
+    >>> drawing_unit("px72").millimetres == 25.4 / 72, drawing_unit("cm").millimetres
+    (True, 10.0)
+    """
+    pixels = pixels_an_inch(name)
+    if pixels is not None:
+        return Unit(f"px{pixels:g}", "px", INCH.millimetres / pixels, 4)
+    if name.strip().lower().startswith("px"):
+        raise InputError(f"Unit '{name[:40]}' does not say how many make an inch: use px72, px90 or px96.")
+    return unit_named(name)

@@ -86,6 +86,27 @@ def test_show_in_inches(run: Any, tmp_path: Path) -> None:
     assert (refused.exit_code, refused.stderr.count("\n")) == (2, 1)
 
 
+@pytest.mark.parametrize("option", ["--unit", "--drawing-unit"])
+def test_a_drawing_in_pixels_is_asked_for_and_told_how_many_make_an_inch(
+    run: Any, tmp_path: Path, option: str
+) -> None:
+    """The refusal names the answers; with one of them lengths are in mm, or in the unit of the command."""
+    path = tmp_path / "plate.svg"
+    page = 'width="288px" height="144px" viewBox="0 0 288 144"'
+    body = '<rect x="72" y="36" width="144" height="72"/>'
+    path.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" {page}>{body}</svg>')
+    refused = run("features", path)
+    assert refused.exit_code == 2
+    assert "say which with --unit px72, px90 or px96" in refused.stderr
+    assert "50.800 x 25.400 mm" in run("features", path, option, "px72").stdout
+    assert "38.100 x 19.050 mm" in run("features", path, option, "px96").stdout
+    inches = ("--unit", "inch", "--drawing-unit", "px72")
+    assert "2.0000 x 1.0000 in" in run("features", path, *inches).stdout
+    remarked = run("features", path, "--unit", "mm")
+    assert "144.000 x 72.000 mm" in remarked.stdout
+    assert "give --unit px72, px90 or px96" in remarked.stderr
+
+
 @pytest.mark.parametrize("unit", [None, "inch"])
 def test_pictures_are_in_the_unit_asked(
     run: Any, searched: dict[str, Any], tmp_path: Path, unit: str | None

@@ -209,6 +209,20 @@ def test_a_survey_has_the_part_or_what_is_asked(server: RunningServer) -> None:
     assert [(part["number"], part["holes"]) for part in told["parts"]] == [(1, 0), (2, 0)]
 
 
+def test_a_survey_tells_what_a_drawing_is_in_pixels(server: RunningServer) -> None:
+    """Only where there are pixels, and its unit is asked; the answers are units as any other."""
+    svg = b'<svg xmlns="http://www.w3.org/2000/svg" width="60px" viewBox="0 0 30 9"><path d="M1 1H21V8H1Z"/></svg>'
+    told = survey(server, svg, "plate.svg")
+    assert (told["size"], told["pixels"]) == ([20, 7], [40, 14])
+    assert '"File drawn in" px72, px90 or px96' in told["error"]
+    for count in (72, 90, 96):
+        told = survey(server, svg, "plate.svg", unit=f"px{count}")
+        x0, _, x1, _ = told["part"]["bounds"]
+        assert x1 - x0 == pytest.approx(40 * 25.4 / count)
+        assert told["pixels"] is None
+    assert survey(server, BRACKET.read_bytes(), "bracket.dxf")["pixels"] is None
+
+
 def test_gaps_are_joined_and_layers_chosen_as_asked(server: RunningServer) -> None:
     """Over HTTP, as in a file that leaves them open."""
     lines = ["M0 0H20", "M20.3 0V10", "M20 10H0V0"]

@@ -119,7 +119,8 @@ class PartWords:
         None,
         "UNIT",
         "Unit of lengths given and shown (mm, cm, m, inch), and of a drawing that does not say its own; mm "
-        "if not given. A length may also carry its unit: 0.5in.",
+        "if not given. A length may also carry its unit: 0.5in. For an SVG drawing in pixels, how many make "
+        "an inch: px72, px90, px96; lengths are then in mm.",
     )
     layer: list[str] | None = option(READING, "NAME", "Read only this layer; may be repeated.")
     part_number: str | None = option(
@@ -219,7 +220,8 @@ class PartWords:
             if not at_terminal():
                 raise
             print_remark(str(question))
-            loaded = read(unit=typer.prompt("Unit of the drawing (mm, inch, cm, m)", err=True))
+            pixels = "; px72, px90 or px96 for pixels" if "px72" in str(question) else ""
+            loaded = read(unit=typer.prompt(f"Unit of the drawing (mm, inch, cm, m{pixels})", err=True))
         for remark in loaded.remarks:
             print_remark(remark)
         return loaded

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from workhold.errors import InputError
 from workhold.limits import counting_number, refuse_strong
-from workhold.units import MILLIMETRE, POUND, Unit, unit_named
+from workhold.units import MILLIMETRE, POUND, Unit, pixels_an_inch, unit_named
 
 __all__ = [
     "choice",
@@ -38,14 +38,14 @@ FRACTION = re.compile(r"(?P<sign>[+-]?)(?:(?P<whole>[0-9]+)[ -])?(?P<above>[0-9]
 
 
 def length_unit(name: str | None) -> Unit:
-    """The unit of lengths given and shown, millimetres where none is asked for.
+    """The unit of lengths given and shown, millimetres where none is asked for, or the pixels of a drawing.
 
     Raises
     ------
     InputError
         For a unit that is not known.
     """
-    return MILLIMETRE if name is None else unit_named(name)
+    return MILLIMETRE if name is None or pixels_an_inch(name) is not None else unit_named(name)
 
 
 def length(option: str, text: str, unit: Unit = MILLIMETRE) -> float:

@@ -64,12 +64,21 @@ LIMITS = {
     "svg": FileLimits(
         "an SVG drawing",
         PART_BYTES,
-        1_000_000,
-        "elements, those of <use> written out",
+        250_000,
+        "elements and commands of paths, those of <use> written out",
         200,
         SECONDS,
         SECONDS_PER_MILLION,
         OUTLINE_ONLY,
+    ),
+    # All of a drawing's together, and each style attribute; embedded fonts do not count.
+    "style": FileLimits(
+        "the style sheets of an SVG drawing",
+        500_000,
+        20_000,
+        "selectors",
+        10,
+        remedy="write the styles as attributes",
     ),
     "dxf": FileLimits(
         "a DXF drawing",

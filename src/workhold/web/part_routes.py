@@ -74,7 +74,7 @@ FILE = {
     },
     "parameters": [{"in": "header", "name": "X-Filename", "required": False, "schema": {"type": "string"}}],
 }
-UnitGiven = Literal["mm", "cm", "m", "inch"] | None
+UnitGiven = Literal["mm", "cm", "m", "inch", "px72", "px90", "px96"] | None
 PartGiven = Annotated[
     str | None, Query(max_length=200, description="number of a part, or number or name of a solid")
 ]

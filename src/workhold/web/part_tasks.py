@@ -242,6 +242,7 @@ def survey_answer(seen: Survey, part: dict[str, Any] | None, refusal: str) -> di
         "place": place_in(refusal) if refusal else None,
         "asked": list(seen.asked),
         "size": None if seen.size is None else list(seen.size),
+        "pixels": None if seen.pixels is None else list(seen.pixels),
         "strokes": strokes_answer(seen.chains),
         "layers": [
             {"name": one.name, "hidden": one.hidden, "strokes": strokes_answer(one.chains)}

@@ -74,6 +74,21 @@ def test_the_unit_is_asked_with_both_sizes(walk: Walk, tmp_path: Path, unit: str
     assert loops(walk)[0][1][0] == pytest.approx(120.65)
 
 
+def test_pixels_are_offered_for_a_drawing_that_has_them(walk: Walk, tmp_path: Path) -> None:
+    """With the size that each count to the inch makes of it; a click leads to the part in that size."""
+    page, path = walk.page, tmp_path / "plate.svg"
+    root = 'width="576px" height="288px" viewBox="0 0 288 144"'
+    path.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" {root}><path d="M9 9h144v72h-144z"/></svg>')
+    page.set_input_files("#file", path)
+    words = walk.seen("#file-asks").inner_text()
+    assert "144.00 × 72.00 mm" in words and "72 pixels to the inch: 101.6 × 50.8 mm" in words
+    page.click("#file-asks [data-unit=px96]")
+    walk.seen("#faces button")
+    xs = [x for x, *_ in loops(walk)[0]]
+    assert max(xs) - min(xs) == pytest.approx(76.2)
+    assert page.input_value("#file-unit") == "px96"
+
+
 def test_another_part_of_the_file_is_taken_by_a_click(walk: Walk, tmp_path: Path) -> None:
     """In the drawing or in the list; what was asked about a file is gone with the next."""
     page = walk.page

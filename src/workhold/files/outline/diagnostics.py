@@ -22,7 +22,7 @@ from workhold.files.outline.nesting import DrawnPart
 from workhold.files.questions import JOIN_TOLERANCE, LAYERS, PART_NUMBER, UNIT, UnitAskedError
 from workhold.geometry.loop import loop_segments
 from workhold.geometry.segment import Point, box_around
-from workhold.units import INCH
+from workhold.units import INCH, PIXELS
 
 __all__ = [
     "refuse_nothing_closed",
@@ -43,20 +43,37 @@ def size_of(chains: Sequence[Chain]) -> tuple[float, float] | None:
     return x1 - x0, y1 - y0
 
 
-def unit_asked(lacking: str, chains: Sequence[Chain]) -> UnitAskedError:
-    """The question for the unit of a drawing that lacks it, with what it would be in mm and in inches.
+def unit_asked(
+    lacking: str, chains: Sequence[Chain], pixels: float | None = None, in_pixels: bool = False
+) -> UnitAskedError:
+    """The question for the unit of a drawing that lacks it, with what it would be in each.
 
     Parameters
     ----------
     lacking : what is not known, up to the colon.
     chains : what is drawn, a unit of the drawing for a mm; nothing where that cannot be read.
+    pixels : how many pixels one unit of the drawing is; None where drawings have none.
+    in_pixels : whether the drawing says that it is in pixels.
     """
     size = size_of(chains)
-    shown = ""
+    shown = of_pixels = ""
+    counts = f"{', '.join(f'px{count}' for count in PIXELS[:-1])} or px{PIXELS[-1]}"
     if size is not None:
         wide, inches = f"{size[0]:.5g}", size[0] * INCH.millimetres
         shown = f"it is {wide} mm wide, or {wide} in = {inches:,{'.0f' if inches >= 1000 else '.4g'}} mm; "
-    return UnitAskedError(f"{lacking}: {shown}say which with {UNIT} mm (or inch, cm, m).")
+        by_count = [f"{inches * (pixels or 1.0) / count:.4g}" for count in PIXELS]
+        first = f"{', '.join(map(str, PIXELS[:-1]))} or {PIXELS[-1]}"
+        of_pixels = f"with {first} to the inch it is {', '.join(by_count[:-1])} or {by_count[-1]} mm wide"
+    if in_pixels:
+        of_pixels = f"{of_pixels}; " if of_pixels else ""
+        return UnitAskedError(
+            f"{lacking}: {of_pixels}say which with {UNIT} {counts}, or with {UNIT} mm (or inch, cm, m) if its "
+            "numbers are no pixels."
+        )
+    asked = f"{lacking}: {shown}say which with {UNIT} mm (or inch, cm, m)"
+    if pixels is None:
+        return UnitAskedError(f"{asked}.")
+    return UnitAskedError(f"{asked}, or with {UNIT} {counts} for pixels{of_pixels and f': {of_pixels}'}.")
 
 
 # A stray whose ends are nearer than this share of its size was meant to close.

@@ -32,7 +32,7 @@ from workhold.files.questions import (
     worded,
 )
 from workhold.model.workpiece import Workpiece
-from workhold.units import unit_named
+from workhold.units import drawing_unit
 
 __all__ = ["Loaded", "builtin_parts", "load", "read_workpiece"]
 
@@ -60,8 +60,9 @@ def load(
     part : path of a .json, .dxf, .svg or .step file, or a built-in name such as ``widget``; a file wins. Or a
         geometry of shapely, a document of ezdxf, or a sketch, a face or a solid of build123d or CadQuery.
     name : what to call the part; if None the file's name, before it that of the solid where there are more.
-    unit : "mm", "cm", "m" or "inch"; needed for drawings that do not say, and overrides those that do. A
-        geometry of shapely is in mm if None.
+    unit : "mm", "cm", "m" or "inch"; needed for drawings that do not say, and overrides those that do. Of an
+        SVG drawing in pixels how many make an inch: "px72", "px90", "px96". A geometry of shapely is in mm if
+        None.
     layers : the DXF layers to read, in any mixture of capitals; all visible ones when None.
     part_number : which part to take of a drawing with several, from 1 by decreasing area; the largest when
         None. Solids of a STEP file have numbers by decreasing volume, and may have names.
@@ -148,7 +149,7 @@ def read_workpiece(
     checked_fit(fit)
     for name in (unit, usual_unit):
         if name is not None:
-            unit_named(name)
+            drawing_unit(name)
     options: dict[str, Any] = {
         "unit": unit,
         "usual_unit": usual_unit,

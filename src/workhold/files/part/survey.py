@@ -125,7 +125,7 @@ def loops_of(chains: list[Chain]) -> int | None:
 # A gap wider than this share of the drawing is none: the end was not meant to meet another.
 WIDEST_GAP = 0.1
 # The unit in which a drawing is looked at while it is not known.
-ANY_UNIT = "mm"
+ANY_UNIT, ONE_PIXEL = "mm", "px25.4"
 
 
 @frozen
@@ -145,6 +145,7 @@ class Survey:
     gaps : between loose ends, each once, in increasing order.
     layers : of a DXF file those with lines, arcs or curves on them.
     solids : of a STEP file, the largest first.
+    pixels : width and height in pixels of all that is drawn, where the unit of an SVG drawing is asked.
     """
 
     loaded: Loaded | None
@@ -156,6 +157,7 @@ class Survey:
     gaps: tuple[float, ...]
     layers: tuple[DrawnLayer, ...] = ()
     solids: tuple[FileSolid, ...] = ()
+    pixels: tuple[float, float] | None = None
 
 
 def survey(path: Path, *, called: Mapping[str, str] | None = None, **options: Any) -> Survey:
@@ -198,7 +200,12 @@ def survey(path: Path, *, called: Mapping[str, str] | None = None, **options: An
         parts, solids = loaded.parts, loaded.solids
     else:
         solids = solids_of(content) if kind == "step" else ()
-    return Survey(loaded, worded(sentence, called), asked, size, chains, parts, gaps, layers, solids)
+    pixels = None
+    if unit is not None and kind == "svg":
+        # A unit in which a pixel is a millimetre, so that the size is a number of them.
+        drawn_in_pixels = drawing_of(kind, path, content, {**options, "unit": ONE_PIXEL})
+        pixels = size_of(cleaned(drawn_in_pixels.chains).chains)
+    return Survey(loaded, worded(sentence, called), asked, size, chains, parts, gaps, layers, solids, pixels)
 
 
 MARKS = {mark[1:-1]: mark for mark in re.findall(r"<\w+>", MARK.pattern)}

@@ -23,7 +23,8 @@ from xml.parsers import expat
 from attrs import frozen
 
 from workhold.errors import InputError
-from workhold.files.budget import LIMITS
+from workhold.files.budget import LIMITS, Budget
+from workhold.files.svg.selectors import SelectorMatcher, inner_tokens
 
 __all__ = [
     "DEEPEST",
@@ -42,6 +43,11 @@ DEEPEST = LIMITS["svg"].deepest or 0
 SVG_SPACE = "http://www.w3.org/2000/svg"
 LINK = "{http://www.w3.org/1999/xlink}href"
 ANIMATIONS = {"animate", "animateColor", "animateMotion", "animateTransform", "set"}
+# Letters of an attribute or property that is no list of many, and of a namespace.
+LONGEST, LONGEST_NAME = 10_000, 500
+# Attributes of one element, those that a document type declares, and of these the ones that all elements get.
+MOST_ATTRIBUTES, MOST_DECLARED, MOST_GIVEN = 10_000, 1_000, 20
+START_TAG = re.compile(rb"""<[^<!?](?:[^<>"']++|"[^"<]*+"|'[^'<]*+')*+""")
 ENTITY = re.compile(rb"&(?!(?:amp|lt|gt|quot|apos);)[A-Za-z_:][\w.:-]*;")
 
 
@@ -53,6 +59,11 @@ def local_name(element: Element) -> str:
 def short(text: str, most: int = 60) -> str:
     """The beginning of what a file says, on one line, for messages."""
     return " ".join(text[: 10 * most].split())[:most]
+
+
+def shown(name: str) -> str:
+    """The name of an element as messages tell it: without its namespace."""
+    return short(name.rpartition("}")[2])
 
 
 def href(element: Element) -> str:
@@ -102,19 +113,20 @@ class Document:
         return str(element.tag).rpartition("}")[0] == str(self.root.tag).rpartition("}")[0]
 
 
-def read_document(content: bytes) -> Document:
+def read_document(content: bytes, budget: Budget) -> Document:
     """The tree of an SVG file.
 
     Raises
     ------
     InputError
         For files that are no SVG, style sheets outside the file, and animations. Also for XML that is broken
-        (with line and column), nested without end or declares entities, which can blow up to any size.
+        (with line and column), nested without end, asks for more than ``budget`` has, or declares entities or
+        attributes, which can blow up to any size.
     """
     if content.startswith(b"\x1f\x8b"):
         raise InputError("the SVG file is compressed (svgz): unpack it first.")
     lines: dict[Element, int] = {}
-    root = parsed(content, lines)
+    root = parsed(content, lines, budget)
     space, _, name = str(root.tag).rpartition("}")
     if name != "svg" or space not in ("", "{" + SVG_SPACE):
         raise InputError(f"this is XML, but not an SVG drawing (its root is <{short(name)}>).")
@@ -141,26 +153,39 @@ def read_document(content: bytes) -> Document:
     return document
 
 
-def parsed(content: bytes, lines: dict[Element, int]) -> Element:
+def parsed(content: bytes, lines: dict[Element, int], budget: Budget) -> Element:
     """The root element; the line of each element goes into ``lines``.
 
-    Raises InputError for XML that is broken, too deep, or asks for what is not in the file.
+    Raises InputError for XML that is broken, too deep, too large, or asks for what is not in the file.
     """
+    refuse_many_attributes(content)
     parser = expat.ParserCreate(namespace_separator="}")
     parser.buffer_text = True
     builder = ElementTree.TreeBuilder()
+    # The same text for the same name, however often it is there.
+    names: dict[str, str] = {}
     depth = 0
 
     def expanded(name: str) -> str:
-        return "{" + name if "}" in name else name
+        if name not in names:
+            names[name] = "{" + name if "}" in name else name
+        return names[name]
 
     def started(name: str, attributes: dict[str, str]) -> None:
         nonlocal depth
         depth += 1
         if depth > DEEPEST:
-            raise InputError(f"<{short(name)}> is nested more than {DEEPEST} levels deep: save a plain SVG.")
+            raise InputError(f"<{shown(name)}> is nested more than {DEEPEST} levels deep: save a plain SVG.")
+        # What ten attributes take is what an element takes.
+        budget.spend(1 + len(attributes) // 10)
+        line = parser.CurrentLineNumber
+        for key, value in attributes.items():
+            if len(value) > LONGEST and key in SHORT:
+                raise InputError(
+                    f"<{shown(name)}> on line {line} has {len(value):,} letters in its {key}: correct it."
+                )
         element = builder.start(expanded(name), {expanded(key): value for key, value in attributes.items()})
-        lines[element] = parser.CurrentLineNumber
+        lines[element] = line
 
     def ended(name: str) -> None:
         nonlocal depth
@@ -169,6 +194,26 @@ def parsed(content: bytes, lines: dict[Element, int]) -> Element:
 
     def declared(*_: object) -> None:
         raise InputError("the SVG file declares XML entities, which are not read: save it as plain SVG.")
+
+    given = count = 0
+
+    def attribute_declared(_: str, name: str, __: str, default: str | None, ___: int) -> None:
+        # Every element gets what is declared: only namespaces, which drawings do declare, stay harmless.
+        nonlocal given, count
+        given, count = given + (default is not None), count + 1
+        harmless = default is None or (name.startswith("xmlns") and len(default) <= LONGEST_NAME)
+        if not harmless or given > MOST_GIVEN or count > MOST_DECLARED:
+            raise InputError(
+                "the SVG file declares attributes for all its elements (<!ATTLIST), which is not read: save "
+                "it as plain SVG."
+            )
+
+    def named(prefix: str | None, space: str | None) -> None:
+        if len(space or "") > LONGEST_NAME:
+            raise InputError(
+                f"the XML namespace '{short(space or '')}' on line {parser.CurrentLineNumber} is longer than "
+                f"{LONGEST_NAME} letters: save the file as plain SVG."
+            )
 
     def typed(name: str, system: str | None, public: str | None, subset: object) -> None:
         # With an external document type, which is not read, expat drops unknown entities in attributes in
@@ -189,6 +234,8 @@ def parsed(content: bytes, lines: dict[Element, int]) -> Element:
     parser.EndElementHandler = ended
     parser.CharacterDataHandler = builder.data
     parser.EntityDeclHandler = declared
+    parser.AttlistDeclHandler = attribute_declared
+    parser.StartNamespaceDeclHandler = named
     parser.StartDoctypeDeclHandler = typed
     parser.ProcessingInstructionHandler = instructed
     try:
@@ -206,6 +253,22 @@ def parsed(content: bytes, lines: dict[Element, int]) -> Element:
     return builder.close()
 
 
+def refuse_many_attributes(content: bytes) -> None:
+    """Refuses an element with very many attributes before it is read, which is done at once.
+
+    Raises InputError, with its line.
+    """
+    if content.count(b"=") <= MOST_ATTRIBUTES:
+        return
+    for tag in START_TAG.finditer(content):
+        if tag.end() - tag.start() > MOST_ATTRIBUTES and tag.group().count(b"=") > MOST_ATTRIBUTES:
+            line = content.count(b"\n", 0, tag.start()) + 1
+            raise InputError(
+                f"the element on line {line} has more than {MOST_ATTRIBUTES:,} attributes: save the file as "
+                "plain SVG."
+            )
+
+
 # Properties and their values, in the order of the file.
 Block = list[tuple[str, str]]
 
@@ -219,9 +282,16 @@ ONLY_STYLES = {"translate", "rotate", "scale", "transform-box", "overflow-x", "o
 ONLY_STYLES |= {"mask-border", "marker", "offset", "offset-path", "animation", "animation-name", "zoom"}
 ONLY_STYLES |= {"all"}
 KNOWN = ATTRIBUTES | ONLY_STYLES
+# What may be as long as a drawing is large.
+LISTS = {"d", "transform"}
+# Attributes that are looked at and hold no list of many.
+SHORT = ATTRIBUTES - LISTS | {"x1", "y1", "x2", "y2", "refX", "refY", "viewBox", "preserveAspectRatio"}
+SHORT |= {"requiredExtensions", "systemLanguage", "requiredFeatures", "clipPathUnits", "type", "media", "rel"}
 HARMLESS_RULES = {"charset", "font-face", "page", "keyframes", "-webkit-keyframes", "counter-style"}
 HARMLESS_RULES |= {"property"}
 SCREENS = {"", "all", "screen", "only screen"}
+# A font or a picture in base64.
+EMBEDDED = re.compile(r"[A-Za-z0-9+/=]{1000,}")
 
 
 @frozen
@@ -235,6 +305,10 @@ class Declared:
 class Styles:
     """The declared values of a document's elements.
 
+    Parameters
+    ----------
+    budget : what reading the drawing may still take.
+
     Raises
     ------
     InputError
@@ -242,9 +316,14 @@ class Styles:
         line.
     """
 
-    def __init__(self, document: Document) -> None:
+    def __init__(self, document: Document, budget: Budget) -> None:
         self.document = document
+        self.budget = budget
         self.matched: dict[Element, list[tuple[tuple[Any, ...], Block]]] = {}
+        # Style attributes by their text: drawings repeat them.
+        self.attributes: dict[str, tuple[Block, Block]] = {}
+        # Whether gradients and patterns are seen, see ``files.svg.style``.
+        self.painted: dict[Element, bool] = {}
         styles = [element for element in document.root.iter() if local_name(element) == "style"]
         styles = [one for one in styles if one.get("type", "").strip().lower() in ("", "text/css")]
         if styles:
@@ -252,23 +331,25 @@ class Styles:
 
     def match(self, styles: list[Element]) -> None:
         """Note which rules select which elements."""
-        import cssselect2
-
-        matcher = cssselect2.Matcher()
+        sheets = Sheets(self.budget)
         for style in styles:
             place = f"the style sheet on line {self.document.places[style][1]}"
             refuse_media(style.get("media", ""), place)
-            for selectors, declarations in rules("".join(style.itertext()), place):
-                for selector in selectors:
-                    if selector.pseudo_element is None:
-                        matcher.add_selector(selector, declarations)
-        for wrapper in cssselect2.ElementWrapper.from_xml_root(self.document.root).iter_subtree():
-            found = [
-                ((important, *specificity, order), values)
-                for specificity, order, _, declarations in matcher.match(wrapper)
-                for important, values in enumerate(declarations)
-            ]
-            self.matched[wrapper.etree_element] = found
+            sheets.read("".join(style.itertext()), place)
+        if not sheets.rules:
+            return
+        # Elements that the same rules select share their list.
+        shared: dict[tuple[int, ...], list[tuple[tuple[Any, ...], Block]]] = {}
+        for element, selected in sheets.selectors.matched(self.document.root, self.budget):
+            key = tuple(number for *_, number in selected)
+            if key not in shared:
+                self.budget.spend(len(key))
+                shared[key] = [
+                    ((important, *rank), values)
+                    for rank in selected
+                    for important, values in enumerate(sheets.rules[rank[-1]])
+                ]
+            self.matched[element] = shared[key]
 
     def of(self, element: Element) -> dict[str, list[Declared]]:
         """The declared values of an element's properties, the strongest first."""
@@ -276,13 +357,85 @@ class Styles:
         layers = [((0, -1), [item for item in element.items() if item[0] in ATTRIBUTES], False)]
         layers += [(key, values, True) for key, values in self.matched.get(element, ())]
         if element.get("style"):
-            place = f"the style of {self.document.name(element)}"
-            for important, values in enumerate(declared(element.get("style", ""), place)):
+            for important, values in enumerate(self.attribute(element)):
                 layers.append(((important, 1 << 30), values, True))
         found: dict[str, list[Declared]] = defaultdict(list)
+        self.budget.work(sum(1 + len(values) for _, values, _ in layers))
         for _, values, css in sorted(layers, key=lambda layer: layer[0], reverse=True):
             for name, text in reversed(values):
                 found[name].append(Declared(text.strip(), css))
+        return found
+
+    def attribute(self, element: Element) -> tuple[Block, Block]:
+        """The declarations of an element's style attribute."""
+        text = element.get("style", "")
+        if text not in self.attributes:
+            place = f"the style of {self.document.name(element)}"
+            self.attributes[text] = declared(tokens_of(text, place, self.budget), place)
+        return self.attributes[text]
+
+
+class Sheets:
+    """The rules of a drawing's style sheets: their selectors, and by their numbers what they declare.
+
+    Parameters
+    ----------
+    budget : what reading the drawing may still take.
+    """
+
+    def __init__(self, budget: Budget) -> None:
+        self.budget = budget
+        self.selectors = SelectorMatcher(Budget(LIMITS["style"]))
+        self.rules: list[tuple[Block, Block]] = []
+        self.letters = 0
+
+    def read(self, text: str, place: str) -> None:
+        """Adds the rules of a style sheet.
+
+        Raises
+        ------
+        InputError
+            For rules that are not read and could change an outline, and for very many.
+        """
+        self.letters += css_letters(text)
+        refuse_long_style(self.letters, place)
+        self.add(tokens_of(text, place, self.budget), place)
+
+    def add(self, tokens: list[Any], place: str, counts: bool = True) -> bool:
+        """Adds rules, unless they do not count; returns whether any could change an outline."""
+        import cssselect2
+        import tinycss2
+
+        found = False
+        for rule in tinycss2.parse_stylesheet(tokens, skip_comments=True, skip_whitespace=True):
+            self.budget.work(16)
+            if rule.type == "at-rule":
+                keyword, condition = rule.lower_at_keyword, tinycss2.serialize(rule.prelude).strip()
+                if keyword == "media" and rule.content is not None:
+                    usual = " ".join(condition.lower().split()) in SCREENS
+                    if self.add(rule.content, f"@media of {place}", counts and usual):
+                        refuse_media(condition, f"@media of {place}")
+                        found = True
+                elif keyword not in HARMLESS_RULES and (
+                    keyword == "import" or rule.content is None or self.add(rule.content, place, False)
+                ):
+                    raise InputError(
+                        f"{place} has @{short(keyword)} {short(condition)}, which is not read: write plain "
+                        "rules."
+                    )
+            elif rule.type == "qualified-rule":
+                words = tinycss2.serialize(rule.prelude).strip()
+                declarations = declared(rule.content, f"{short(words)} in {place}")
+                if not any(declarations):
+                    continue
+                found = True
+                try:
+                    if counts:
+                        self.rules += [declarations] * len(self.selectors.add(rule.prelude))
+                except cssselect2.SelectorError as error:
+                    raise InputError(
+                        f"{place} has the selector '{short(words)}', which is not read: use classes."
+                    ) from error
         return found
 
 
@@ -294,42 +447,40 @@ def refuse_media(media: str, place: str) -> None:
         )
 
 
-def rules(text: str, place: str) -> list[tuple[Any, tuple[Block, Block]]]:
-    """The rules of a style sheet: compiled selectors, and declarations (plain, important).
+def css_letters(text: str) -> int:
+    """The letters of CSS, but for embedded fonts and pictures, which take little time."""
+    return len(text) if len(text) <= LONGEST else len(EMBEDDED.sub("", text))
 
-    Raises InputError for rules that are not read and could change an outline.
+
+def refuse_long_style(letters: int, place: str) -> None:
+    """Refuses more CSS than a drawing has, which takes seconds to read; raises InputError."""
+    limits = LIMITS["style"]
+    if letters > (limits.most_bytes or 0):
+        raise InputError(
+            f"{place} has more than the {limits.most_bytes:,} letters that {limits.what} may have: "
+            f"{limits.remedy}."
+        )
+
+
+def tokens_of(text: str, place: str, budget: Budget) -> list[Any]:
+    """The tokens of CSS.
+
+    Raises InputError for CSS that is too long or too deep, and for numbers that cannot be read.
     """
-    import cssselect2
     import tinycss2
 
-    found = []
-    for rule in tinycss2.parse_stylesheet(text, skip_comments=True, skip_whitespace=True):
-        if rule.type == "at-rule":
-            keyword, condition = rule.lower_at_keyword, tinycss2.serialize(rule.prelude).strip()
-            if keyword == "media" and rule.content is not None:
-                body = tinycss2.serialize(rule.content)
-                inner = rules(body, f"@media of {place}")
-                if inner:
-                    refuse_media(condition, f"@media of {place}")
-                found += inner
-            elif keyword not in HARMLESS_RULES and (
-                keyword == "import" or rule.content is None or rules(tinycss2.serialize(rule.content), place)
-            ):
-                raise InputError(
-                    f"{place} has @{keyword} {short(condition)}, which is not read: write plain rules."
-                )
-        elif rule.type == "qualified-rule":
-            words = tinycss2.serialize(rule.prelude).strip()
-            declarations = declared(rule.content, f"{short(words)} in {place}")
-            if not any(declarations):
-                continue
-            try:
-                found.append((cssselect2.compile_selector_list(rule.prelude), declarations))
-            except cssselect2.SelectorError as error:
-                raise InputError(
-                    f"{place} has the selector '{short(words)}', which is not read: use classes."
-                ) from error
-    return found
+    refuse_long_style(css_letters(text), place)
+    budget.work(1 + len(text) // 16)
+    try:
+        tokens: list[Any] = tinycss2.parse_component_value_list(text)
+    except ValueError as error:  # whole numbers of thousands of digits
+        raise InputError(f"{place} has a number that cannot be read: correct it.") from error
+    level, depth = tokens, 0
+    while level := [inner for token in level for inner in inner_tokens(token)]:
+        depth += 1
+        if depth > (LIMITS["style"].deepest or 0):
+            raise InputError(f"{place} has brackets nested {depth} levels deep: write plain rules.")
+    return tokens
 
 
 def declared(content: Any, place: str) -> tuple[Block, Block]:
@@ -348,6 +499,8 @@ def declared(content: Any, place: str) -> tuple[Block, Block]:
             continue
         name = item.lower_name.removeprefix("-webkit-")
         if name in KNOWN:
-            text = tinycss2.serialize([token for token in item.value if token.type != "comment"])
-            (important if item.important else plain).append((name, text.strip()))
+            text = tinycss2.serialize([token for token in item.value if token.type != "comment"]).strip()
+            if len(text) > LONGEST and name not in LISTS:
+                raise InputError(f"{place} has {len(text):,} letters in its {name}: correct it.")
+            (important if item.important else plain).append((name, text))
     return plain, important

@@ -17,10 +17,11 @@ from workhold.errors import InputError
 from workhold.files.budget import LIMITS, Budget
 from workhold.files.outline.chain import Drawing, Placement
 from workhold.files.outline.diagnostics import unit_asked
+from workhold.files.questions import UNIT
 from workhold.files.svg.document import Styles, read_document
-from workhold.files.svg.viewport import ShapeElement, ViewBox, absolute, millimetres, physical, viewbox_of
+from workhold.files.svg.viewport import ShapeElement, ViewBox, absolute, fitted, physical, viewbox_of
 from workhold.files.svg.walk import ElementNesting, SvgWalk
-from workhold.units import unit_named
+from workhold.units import INCH, drawing_unit, pixels_an_inch
 
 __all__ = ["read_svg"]
 
@@ -50,10 +51,13 @@ def read_svg(
         For files that are no SVG, unknown units, and values that make no sense.
     """
     budget = budget or Budget(LIMITS["svg"], len(content))
-    document = read_document(content)
-    styles = Styles(document)
-    root = ShapeElement(document.root, document.name(document.root), styles.of(document.root), (None, None))
-    box = viewbox_of(document.root.get("viewBox"), root.label)
+    document = read_document(content, budget)
+    # What is written counts, and then what is shown: the same or less, but for what <use> repeats.
+    budget.elements = 0
+    styles = Styles(document, budget)
+    name = document.name(document.root)
+    root = ShapeElement(document.root, name, styles.of(document.root), (None, None), budget)
+    box = viewbox_of(document.root.get("viewBox"), root.label, budget)
     known = page(root, box, unit, usual_unit)
     placement, remarks = known or (Placement(d=-1.0), [])
     walk = SvgWalk(document, styles, fit, budget)
@@ -67,12 +71,22 @@ def read_svg(
             raise
         walk.chains = []
     if known is None:
-        raise unit_asked("the drawing has no physical size (width and height in mm, cm or in)", walk.chains)
+        pixels = file_scales(root, 1.0, (width, height), box) or (1.0, 1.0)
+        lacking = "the drawing has no physical size (width and height in mm, cm or in)"
+        if in_pixels(root):
+            lacking += ", but one in pixels"
+        raise unit_asked(lacking, walk.chains, pixels[0], in_pixels(root))
     if walk.hidden and not walk.chains:
         raise InputError(
             "no shape of the drawing is seen: each is switched off, transparent, or without fill and stroke."
         )
     return Drawing(tuple(walk.chains), (*remarks, *walk.remarks()), walk.curves.found)
+
+
+# Sizes are written with few digits: what differs by less than this share is meant to be the same.
+FEW_DIGITS = 1e-3
+
+Size = tuple[float | None, float | None]
 
 
 def page(
@@ -81,50 +95,91 @@ def page(
     """The map from user units to mm with y up, and a remark when the user's unit overrides the file's size.
 
     None when the size of a user unit is not known.
-
-    Raises InputError when the size of a user unit differs between x and y.
     """
     given = [root.given(name) for name in ("width", "height")]
     sized = any(side is not None and physical(side.text) for side in given)
-    width, height = (None if side is None or not sized else millimetres(side.text) for side in given)
-    scale = file_scale(root, width, height, box)
-    remarks = []
-    if scale is None and unit is None:
-        unit = usual_unit
-    if unit is not None:
-        asked = unit_named(unit).millimetres
-        if scale is not None and abs(scale - asked) > 1e-9 * asked:
-            remarks.append(
-                f"The file's size makes a user unit {scale:.6g} mm; it was read as 1 {unit} as asked."
-            )
-        scale = asked
-    if scale is None:
+    if not sized:
+        unit = usual_unit if unit is None else unit
+    asked = None if unit is None else drawing_unit(unit)
+    an_inch = 96.0  # CSS Values 4, 6.2
+    pixels = None if sized else pixels_an_inch(unit)
+    if pixels is not None and any(side is not None and absolute(side.text) for side in given):
+        # It is the size of the pixel that was asked for, in which the file gives its own.
+        an_inch, asked, sized = pixels, None, True
+    lengths = (None if side is None or not sized else absolute(side.text) for side in given)
+    width, height = (None if side is None else side * INCH.millimetres / an_inch for side in lengths)
+    scales = file_scales(root, INCH.millimetres / an_inch, (width, height), box) if sized else None
+    if asked is not None:
+        return uniform(asked.millimetres, box), overriding(root, scales, unit or "", asked.millimetres)
+    if scales is None:
         return None
     left, low = (0.0, 0.0) if box is None else (box[0], box[1] + box[3])
-    if box is None and height is not None and unit is None:
-        low = height / scale
-    return Placement(scale, 0.0, 0.0, -scale, -scale * left, scale * low), remarks
+    if box is None and height is not None:
+        low = height / scales[1]
+    placement = Placement(scales[0], 0.0, 0.0, -scales[1], -scales[0] * left, scales[1] * low)
+    if box is None or width is None or height is None or same(width / box[2], height / box[3]):
+        return placement, []
+    # Where the page has another shape than the drawing, this is where the drawing lies on it.
+    aspect = fitted(box, width, height, root.element.get("preserveAspectRatio", ""), root.label)
+    return Placement(d=-1.0, f=height).after(aspect), []
 
 
-def file_scale(
-    root: ShapeElement, width: float | None, height: float | None, box: ViewBox | None
-) -> float | None:
-    """Millimetres per user unit by the file's own physical size in mm; None when it has none.
+def uniform(scale: float, box: ViewBox | None) -> Placement:
+    """The map of a user unit of so many mm, with y up and the lower left corner of the viewBox as origin."""
+    left, low = (0.0, 0.0) if box is None else (box[0], box[1] + box[3])
+    return Placement(scale, 0.0, 0.0, -scale, -scale * left, scale * low)
 
-    Raises InputError when x and y would be scaled unequally.
+
+def overriding(
+    root: ShapeElement, scales: tuple[float, float] | None, unit: str, millimetres: float
+) -> list[str]:
+    """A remark when a unit that was asked for is not what the file says."""
+    if scales is not None and max(abs(scale - millimetres) for scale in scales) > 1e-9 * millimetres:
+        return [f"The file's size makes a user unit {scales[0]:.6g} mm; it was read as 1 {unit} as asked."]
+    if in_pixels(root) and scales is None:
+        return [
+            f"The file's size is in pixels; a user unit was read as 1 {unit} as asked. Where 72, 90 or 96 "
+            f"pixels are an inch, give {UNIT} px72, px90 or px96."
+        ]
+    return []
+
+
+def in_pixels(root: ShapeElement) -> bool:
+    """Whether a drawing says that its size is in pixels."""
+    given = (root.given(name) for name in ("width", "height"))
+    return any(side is not None and side.text.lower().endswith("px") for side in given)
+
+
+def same(one: float, other: float) -> bool:
+    """Whether two scales differ by no more than the few digits of the sizes that give them."""
+    return abs(one - other) <= FEW_DIGITS * max(one, other)
+
+
+def file_scales(
+    root: ShapeElement, pixel: float, size: Size, box: ViewBox | None
+) -> tuple[float, float] | None:
+    """Millimetres per user unit in x and y by the page's size in mm; None where there is none.
+
+    Parameters
+    ----------
+    pixel : a user unit in mm where there is no viewBox.
+
+    Raises
+    ------
+    InputError
+        For a size that is not positive.
     """
-    if width is None and height is None:
+    if size == (None, None):
         return None
-    for size in (width, height):
-        if size is not None and not size > 0:
+    for side in size:
+        if side is not None and not side > 0:
             raise InputError("the drawing's width or height is not positive: correct it.")
     if box is None:
-        return 25.4 / 96  # a user unit is a CSS pixel, 1/96 inch (CSS Values 4, section 6.2)
-    scales = [size / side for size, side in ((width, box[2]), (height, box[3])) if size is not None]
+        return pixel, pixel
+    scales = [side / whole for side, whole in zip(size, box[2:], strict=True) if side is not None]
     if len(scales) == 2 and abs(scales[0] - scales[1]) > 1e-9 * max(scales):
-        aspect = root.element.get("preserveAspectRatio", "xMidYMid meet")
-        # Sizes are written with few digits; a drawing distorted on purpose is far from square.
-        if aspect.strip().startswith("none") and abs(scales[0] - scales[1]) > 1e-3 * max(scales):
-            raise InputError("width, height and viewBox scale x and y unequally: make them agree.")
-        return max(scales) if aspect.strip().endswith("slice") else min(scales)
-    return scales[0]
+        aspect = root.element.get("preserveAspectRatio", "xMidYMid meet").strip()
+        if aspect.startswith("none") and not same(scales[0], scales[1]):
+            return scales[0], scales[1]
+        return (max(scales) if aspect.endswith("slice") else min(scales),) * 2
+    return scales[0], scales[0]

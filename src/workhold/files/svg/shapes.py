@@ -11,7 +11,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from math import asin, cos, hypot, isfinite, pi, sin, tan
+from itertools import islice
+from math import asin, cos, hypot, pi, sin, tan
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,14 +22,14 @@ from workhold.conventions import CIRCULAR, HALF_CIRCLE
 from workhold.errors import InputError
 from workhold.files.outline.chain import arc_bulges
 from workhold.files.svg.document import short
-from workhold.files.svg.viewport import NUMBER, ShapeElement, numbers
+from workhold.files.svg.viewport import LARGEST, NUMBER, ShapeElement, numbers
 from workhold.geometry.rational import Pieces, ellipse_pieces, polynomial_pieces
 from workhold.geometry.segment import Point
 
 __all__ = ["SHAPES", "Shape"]
 
 COUNTS = {"M": 2, "Z": 0, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 7}
-SEPARATOR = r"\s*(?:,\s*(?=[-+.\d]))?"
+SEPARATOR = r"\s*(?:,\s*(?=[-+.0-9]))?"
 COMMAND = re.compile(r"\s*([MmZzLlHhVvCcSsQqTtAa])\s*")
 ARGUMENT = re.compile(rf"({NUMBER}){SEPARATOR}")
 FLAG = re.compile(rf"([01]){SEPARATOR}")
@@ -64,18 +65,10 @@ def path(figure: ShapeElement) -> Iterator[Shape]:
 
     Raises InputError for path data that cannot be read.
     """
-    from svgelements import Path
-
-    label, data = figure.label, path_data(figure)
-    try:
-        segments = list(Path(" ".join(plain_commands(data))))
-    except Exception as error:  # svgelements raises many kinds for wrong path data
-        raise InputError(
-            f"{label} has path data that cannot be read ('{short(data)}'): correct it."
-        ) from error
+    label = figure.label
     start: Point = (0.0, 0.0)
     steps: list[PathStep] = []
-    for number, segment in enumerate(segments):
+    for number, segment in enumerate(path_segments(figure)):
         kind = type(segment).__name__
         if kind == "Move":
             if steps:
@@ -91,6 +84,39 @@ def path(figure: ShapeElement) -> Iterator[Shape]:
             start, steps = steps[-1].end, []
     if steps:
         yield subpath(start, steps)
+
+
+# Commands that are resolved at a time.
+BATCH = 256
+
+
+def path_segments(figure: ShapeElement) -> Iterator[Any]:
+    """The segments of a path as svgelements resolves them.
+
+    Raises InputError for path data that cannot be read, or asks for more than the budget has.
+    """
+    from svgelements import Move, Path
+
+    data = path_data(figure).rstrip()
+    commands = plain_commands(data)
+    held: list[Any] = []
+    while True:
+        # What follows depends on the last segment, and closing on where the subpath begins.
+        move = next((one for one in reversed(held) if isinstance(one, Move)), None)
+        seeds = [] if move is None else [move] if held[-1] is move else [move, held[-1]]
+        resolved = Path(*seeds)
+        try:
+            batch = list(islice(commands, BATCH))
+            resolved.parse(" ".join(batch))
+            held = list(resolved)
+        except Exception as error:  # svgelements raises many kinds for wrong path data
+            raise InputError(
+                f"{figure.label} has path data that cannot be read ('{short(data)}'): correct it."
+            ) from error
+        figure.budget.spend(len(batch))
+        yield from held[len(seeds) :]
+        if len(batch) < BATCH:
+            return
 
 
 class PathStep(NamedTuple):
@@ -131,7 +157,7 @@ def plain_commands(data: str) -> Iterator[str]:
     Raises ValueError for path data that is not of SVG's grammar.
     """
     position, first = 0, True
-    while position < len(data.rstrip()):
+    while position < len(data):
         match = COMMAND.match(data, position)
         if match is None or (first and match.group(1) not in "Mm"):
             raise ValueError(data[position : position + 10])
@@ -169,6 +195,8 @@ def steps_of(segment: Any, kind: str, label: str) -> list[PathStep]:
     if end == start:
         return []  # SVG 2, 9.5.1
     radius, other = float(segment.rx), float(segment.ry)
+    if not max(radius, other) <= LARGEST:
+        raise InputError(f"{label} is an arc with a radius that is too large: correct it.")
     if abs(radius - other) > CIRCULAR * max(radius, other):
         cx, cy = xy(segment.center, label)
         major, minor = ((x - cx, y - cy) for x, y in (xy(segment.prx, label), xy(segment.pry, label)))
@@ -199,9 +227,9 @@ def arc_sweep(start: Point, end: Point, radius: float, rough: float) -> float:
 
 
 def xy(point: Any, label: str) -> Point:
-    """A point of svgelements; raises InputError when it is missing or not finite."""
-    if point is None or not (isfinite(point.x) and isfinite(point.y)):
-        raise InputError(f"{label} has path data with a number missing or not finite: correct it.")
+    """A point of svgelements; raises InputError when it is missing, not finite or too large."""
+    if point is None or not (abs(point.x) <= LARGEST and abs(point.y) <= LARGEST):
+        raise InputError(f"{label} has path data with a number missing, too large or not finite: correct it.")
     return float(point.x), float(point.y)
 
 
@@ -284,7 +312,7 @@ def rect(figure: ShapeElement) -> Iterator[Shape]:
 
 def polyline(figure: ShapeElement, close: bool = False) -> Iterator[Shape]:
     """A <polyline> or <polygon>; raises InputError for an odd number of coordinates."""
-    values = numbers(figure.element.get("points", ""), f"{figure.label}: points")
+    values = numbers(figure.element.get("points", ""), f"{figure.label}: points", figure.budget)
     if len(values) % 2:
         raise InputError(f"{figure.label} has an odd number of coordinates: correct its points.")
     points = list(zip(values[::2], values[1::2], strict=True))

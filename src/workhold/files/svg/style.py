@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
+from math import pi
 from typing import TypeVar
 from xml.etree.ElementTree import Element
 
@@ -16,11 +17,13 @@ import numpy as np
 from attrs import frozen
 
 from workhold.errors import InputError
+from workhold.files.budget import Budget
 from workhold.files.outline.chain import Chain, cleaned
 from workhold.files.outline.joining import closed_loop
 from workhold.files.svg.document import Declared, Styles, href, local_name, short
 from workhold.files.svg.viewport import LENGTH, ShapeElement
-from workhold.geometry.loop import LoopShape, encloses, loop_segments, refuse_meeting_loops, signed_area
+from workhold.geometry.loop import LoopShape, loop_segments, refuse_meeting_loops, signed_area
+from workhold.kernels.base.distance import turns_around
 
 __all__ = ["INITIAL", "Style", "boundaries", "computed", "link_of", "refuse_effects"]
 
@@ -28,12 +31,15 @@ Value = TypeVar("Value")
 Declarations = dict[str, list[Declared]]
 
 HEX = re.compile(r"#(?:[0-9a-f]{3,4}|[0-9a-f]{6}|[0-9a-f]{8})$")
-URL = re.compile(r"""url\(\s*(?:"([^"]*)"|'([^']*)'|([^"')\s]*))\s*\)\s*(.*)$""", re.DOTALL | re.IGNORECASE)
+# Without ways back over blanks, which would take the square of their number.
+URL = re.compile(
+    r"""url\(\s*+(?:"([^"]*)"|'([^']*)'|([^"')\s]*+))\s*+\)\s*+(.*)$""", re.DOTALL | re.IGNORECASE
+)
 DISPLAYS = re.compile(
     r"(?:none|contents|inline|list-item|run-in|compact|marker|flow-root"
     r"|(?:inline-)?(?:table|flex|grid|block)|ruby|table-[a-z-]+)$"
 )
-PROFILE = re.compile(r"\s+(?:icc|device)-[a-z]+\(.*$")
+PROFILE = re.compile(r"(?<!\s)\s+(?:icc|device)-[a-z]+\(.*$")
 # What a paint of these kinds shows.
 NONE, SEEN, CURRENT = "none", "seen", "currentcolor"
 PAINT_SERVERS = ("linearGradient", "radialGradient", "pattern")
@@ -191,7 +197,10 @@ def opaque(text: str) -> bool | None:
         return len(text) in (4, 7) or int(text[1:], 16) % (16 if len(text) == 5 else 256) > 0
     from tinycss2.color4 import parse_color
 
-    color = parse_color(text)
+    try:
+        color = parse_color(text)
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError):  # of what is no colour
+        return None
     return None if color is None or color == CURRENT else color.alpha > 0
 
 
@@ -221,28 +230,40 @@ def paint(text: str, styles: Styles) -> str | None:
 
 def paints(server: Element, styles: Styles, deepest: int = 50) -> bool:
     """Whether a gradient has a visible stop, or a pattern has content, itself or by what it links to."""
-    content = [
-        child for child in server if (local_name(child) == "stop") == (local_name(server) != "pattern")
-    ]
-    if content:
-        return any(
-            local_name(child) != "stop"
-            or all(positive(d.text) is not False for d in styles.of(child)["stop-opacity"][:1])
-            for child in content
+    if server not in styles.painted:
+        content = [
+            child for child in server if (local_name(child) == "stop") == (local_name(server) != "pattern")
+        ]
+        linked = styles.document.linked(href(server))
+        styles.painted[server] = (
+            any(
+                local_name(child) != "stop"
+                or all(positive(d.text) is not False for d in styles.of(child)["stop-opacity"][:1])
+                for child in content
+            )
+            if content
+            else linked is not None and deepest > 0 and paints(linked, styles, deepest - 1)
         )
-    linked = styles.document.linked(href(server))
-    return linked is not None and deepest > 0 and paints(linked, styles, deepest - 1)
+    return styles.painted[server]
 
 
-def boundaries(chains: Sequence[Chain]) -> list[Chain]:
+def boundaries(chains: Sequence[Chain], budget: Budget) -> list[Chain]:
     """The chains that have paint on one side only, by the nonzero rule.
 
     How often the loops around a point turn about it, less those that turn the other way, is not zero where
     there is paint. A loop that meets others stays, to be refused with its place.
+
+    Raises
+    ------
+    InputError
+        Where time is up.
     """
     clean = [cleaned([chain]).chains for chain in chains]
     known = [k for k, found in enumerate(clean) if found and len(found[0].bulges) > 1]
-    shapes = [LoopShape.of(loop_segments(closed_loop(clean[k][0]).vertices)) for k in known]
+    shapes = []
+    for k in known:
+        budget.work(len(clean[k][0].bulges))
+        shapes.append(LoopShape.of(loop_segments(closed_loop(clean[k][0]).vertices)))
     turns = [int(np.sign(signed_area(shape.segments))) for shape in shapes]
     boxes = np.array([shape.box for shape in shapes]).reshape(-1, 4)
     over = set()
@@ -251,15 +272,17 @@ def boundaries(chains: Sequence[Chain]) -> list[Chain]:
         around = (boxes[:, 0] <= x0) & (boxes[:, 1] <= y0) & (boxes[:, 2] >= x1) & (boxes[:, 3] >= y1)
         around[at] = False
         near = np.flatnonzero(around).tolist()
-        outer = [m for m in near if encloses(shapes[m], shape)]
-        outside = sum(turns[m] for m in outer)
-        if outside and outside + turns[at] and not any(meet(shape, shapes[m]) for m in near):
+        rows = np.concatenate([shapes[m].rows for m in near] or [shape.rows[:0]])
+        budget.work(len(near) + len(rows) // 16)
+        outside = round(turns_around(*shape.segments[0].start, rows) / (2 * pi))
+        if outside and outside + turns[at] and not any(meet(shape, shapes[m], budget) for m in near):
             over.add(k)
     return [chain for k, chain in enumerate(chains) if k not in over]
 
 
-def meet(one: LoopShape, other: LoopShape) -> bool:
+def meet(one: LoopShape, other: LoopShape, budget: Budget) -> bool:
     """Whether two loops cross or touch."""
+    budget.work(len(one.segments) + len(other.segments))
     try:
         refuse_meeting_loops(one, other, str, str)
     except InputError:

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import re
-from math import cos, degrees, isfinite, radians, sin, tan
+from math import cos, degrees, radians, sin, tan
 
 from workhold.errors import InputError
 from workhold.files.outline.chain import Placement
 from workhold.files.svg.document import short
-from workhold.files.svg.viewport import ANGLES, LENGTH, ShapeElement, absolute, numbers
+from workhold.files.svg.viewport import ANGLES, LARGEST, LENGTH, ShapeElement, absolute, numbers
 
 __all__ = ["transform_of"]
 
-FUNCTION = re.compile(r"\s*,?\s*(\w+)\s*\(([^()]*)\)")
+FUNCTION = re.compile(r"\s*(?:,\s*)?(\w+)\s*\(([^()]*)\)")
 CSS_FUNCTION = re.compile(r"\s*(\w+)\(([^()]*)\)")
 PROPERTIES = ("transform", "translate", "rotate", "scale")
 SIDES = {"left": (0, 0.0), "right": (0, 1.0), "top": (1, 0.0), "bottom": (1, 1.0)}
@@ -51,9 +51,9 @@ def transform_of(figure: ShapeElement) -> Placement:
         if name in given:
             # The words are the function's arguments, but for commas.
             words = given[name].text.removeprefix("z ")
-            placement = placement.after(functions(f"{name}({', '.join(words.split())})", True, label))
+            placement = placement.after(functions(f"{name}({', '.join(words.split())})", True, figure))
     if "transform" in given:
-        placement = placement.after(functions(given["transform"].text, given["transform"].css, label))
+        placement = placement.after(functions(given["transform"].text, given["transform"].css, figure))
     return placement.after(Placement(e=-x, f=-y))
 
 
@@ -91,17 +91,18 @@ def origin(figure: ShapeElement) -> tuple[float, float]:
     return place[0], place[1]
 
 
-def functions(text: str, css: bool, label: str) -> Placement:
+def functions(text: str, css: bool, figure: ShapeElement) -> Placement:
     """The map of a list of transform functions; raises InputError for functions that are not read."""
-    text = text.strip()
+    text, label = text.strip(), figure.label
     placement = Placement()
     position = 0
     while position < len(text):
+        figure.budget.work()
         match = (CSS_FUNCTION if css else FUNCTION).match(text, position)
         step = None
         if match is not None:
             name, words = match.group(1), match.group(2)
-            values = css_values(name, words) if css else numbers(words, f"{label}: transform")
+            values = css_values(name, words) if css else numbers(words, f"{label}: transform", figure.budget)
             if values is not None and (len(values) in ATTRIBUTE.get(name, ()) or css):
                 step = single_transform(name, values)
         if match is None or step is None:
@@ -118,7 +119,7 @@ def css_values(name: str, text: str) -> list[float] | None:
     values: list[float] = []
     for word in text.split(","):
         match = LENGTH.match(word)
-        if match is None or not isfinite(float(match.group(1))):
+        if match is None or abs(float(match.group(1))) > LARGEST:
             return None
         number, unit = float(match.group(1)), match.group(2).lower()
         if number == 0 and not unit:

@@ -14,19 +14,21 @@ from __future__ import annotations
 
 import re
 from itertools import pairwise
-from math import atan2, hypot, isfinite, pi, sqrt
+from math import atan2, hypot, pi, sqrt
 from typing import Literal
 from xml.etree.ElementTree import Element
 
 from attrs import frozen
 
 from workhold.errors import InputError
+from workhold.files.budget import Budget
 from workhold.files.outline.chain import Chain, Placement
 from workhold.files.svg.document import GEOMETRY, Declared, short
 from workhold.geometry.segment import Point
 
 __all__ = [
     "ANGLES",
+    "LARGEST",
     "LENGTH",
     "NUMBER",
     "ShapeElement",
@@ -36,15 +38,17 @@ __all__ = [
     "absolute",
     "convex",
     "fitted",
-    "millimetres",
     "numbers",
     "physical",
     "viewbox_of",
 ]
 
-NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+# Without ways back, so that no text takes longer than its length.
+NUMBER = r"(?>[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)"
 LENGTH = re.compile(rf"\s*({NUMBER})([a-zA-Z]*|%)\s*$")
-NUMBERS = re.compile(rf"\s*(?:(?>{NUMBER})\s*(?:,\s*(?=[-+.\d]))?)*+\s*$")
+LISTED = re.compile(rf"\s*({NUMBER})\s*(?:,\s*(?=[-+.0-9]))?")
+# Numbers of a drawing beyond this are none: products of a few are still numbers of the computer.
+LARGEST = 1e30
 # CSS Values 4, 6.2: 96 px to the inch.
 PIXELS = {
     "": 1.0,
@@ -69,13 +73,7 @@ def absolute(text: str, *, unitless: bool = True) -> float | None:
     if match is None or match.group(2).lower() not in PIXELS:
         return None
     value = float(match.group(1)) * PIXELS[match.group(2).lower()]
-    return None if not isfinite(value) or (value and not match.group(2) and not unitless) else value
-
-
-def millimetres(text: str) -> float | None:
-    """A length in mm; None unless it is a number with an absolute unit, or with none."""
-    value = absolute(text)
-    return None if value is None else value * 25.4 / 96
+    return None if abs(value) > LARGEST or (value and not match.group(2) and not unitless) else value
 
 
 def physical(text: str) -> bool:
@@ -84,18 +82,25 @@ def physical(text: str) -> bool:
     return match is not None and match.group(2).lower() in PIXELS and match.group(2).lower() not in ("", "px")
 
 
-def numbers(text: str, what: str) -> list[float]:
+def numbers(text: str, what: str, budget: Budget) -> list[float]:
     """All numbers of a list separated by blanks and commas.
 
     Raises
     ------
     InputError
-        For anything else in the list.
+        For anything else in the list, and for more numbers than ``budget`` has.
     """
-    if not NUMBERS.match(text):
-        raise InputError(f"{what} '{short(text)}' is not a list of numbers: correct it.")
-    values = [float(word) for word in re.findall(NUMBER, text)]
-    if not all(map(isfinite, values)):
+    values: list[float] = []
+    text, position = text.rstrip(), 0
+    while position < len(text):
+        match = LISTED.match(text, position)
+        if match is None:
+            raise InputError(f"{what} '{short(text)}' is not a list of numbers: correct it.")
+        values.append(float(match.group(1)))
+        position = match.end()
+        if len(values) % budget.PERIOD == 0:
+            budget.spend(budget.PERIOD // 2)
+    if not all(abs(value) <= LARGEST for value in values):
         raise InputError(f"{what} '{short(text)}' has a number that is too large: correct it.")
     return values
 
@@ -110,12 +115,14 @@ class ShapeElement:
     label : what messages call it.
     declarations : its declared values.
     viewport : what percentages are of.
+    budget : what reading the drawing may still take.
     """
 
     element: Element
     label: str
     declarations: dict[str, list[Declared]]
     viewport: Viewport
+    budget: Budget
 
     def given(self, name: str) -> Declared | None:
         """The value of a geometry property or attribute; None when there is none."""
@@ -153,7 +160,8 @@ class ShapeElement:
             side = None if width is None or height is None else hypot(width, height) / sqrt(2)
         else:
             side = height if name in HEIGHTS else width
-        return None if match is None or side is None else float(match.group(1)) / 100 * side
+        value = None if match is None or side is None else float(match.group(1)) / 100 * side
+        return value if value is not None and abs(value) <= LARGEST else None
 
 
 # A window's edge and an outline on it, relative to the window's size, may differ by the rounding of a
@@ -165,7 +173,7 @@ ALIGNMENT = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}
 ASPECT = re.compile(r"x(Min|Mid|Max)Y(Min|Mid|Max)(?: (meet|slice))?$")
 
 
-def viewbox_of(text: str | None, label: str) -> ViewBox | None:
+def viewbox_of(text: str | None, label: str, budget: Budget) -> ViewBox | None:
     """Left, top, width and height of a viewBox; None when there is none.
 
     Raises
@@ -175,7 +183,7 @@ def viewbox_of(text: str | None, label: str) -> ViewBox | None:
     """
     if text is None:
         return None
-    values = numbers(text, f"the viewBox of {label}")
+    values = numbers(text, f"the viewBox of {label}", budget)
     if len(values) != 4 or not (values[2] > 0 and values[3] > 0):
         raise InputError(
             f"the viewBox '{short(text)}' of {label} is not usable: it must be x y width height."
@@ -191,7 +199,7 @@ def fitted(box: ViewBox, width: float, height: float, aspect: str, label: str) -
     InputError
         For a ``preserveAspectRatio`` that is not SVG's.
     """
-    words = aspect.split() or ["xMidYMid"]
+    words = aspect.removeprefix("defer").split() or ["xMidYMid"]
     sx, sy = width / box[2], height / box[3]
     if words[0] == "none":
         return Placement(a=sx, d=sy, e=-sx * box[0], f=-sy * box[1])
@@ -231,12 +239,19 @@ class Window:
     corners: tuple[Point, ...]
     label: str
 
-    def shows(self, chain: Chain) -> Literal["all", "some", "nothing"]:
-        """How much of a chain is inside, as far as the window's edges, taken one by one, show."""
+    def shows(self, chain: Chain, budget: Budget) -> Literal["all", "some", "nothing"]:
+        """How much of a chain is inside, as far as the window's edges, taken one by one, show.
+
+        Raises
+        ------
+        InputError
+            Where time is up.
+        """
         area = sum(u * y - v * x for (u, v), (x, y) in pairwise(self.corners))
         size = max(hypot(x - u, y - v) for (u, v), (x, y) in pairwise(self.corners))
         whole, outside = True, False
         for (u, v), (x, y) in pairwise(self.corners):
+            budget.work(len(chain.points))
             side = hypot(x - u, y - v) * (1 if area > 0 else -1)
             if side == 0:
                 continue

@@ -8,7 +8,7 @@ from xml.etree.ElementTree import Element
 
 from attrs import evolve, frozen
 
-from workhold.errors import InputError
+from workhold.errors import InputError, shortened
 from workhold.files.budget import Budget
 from workhold.files.outline.chain import Chain, Placement, counted
 from workhold.files.outline.curves import CurveReader
@@ -16,7 +16,15 @@ from workhold.files.svg.document import DEEPEST, Declared, Document, Styles, hre
 from workhold.files.svg.shapes import SHAPES
 from workhold.files.svg.style import INITIAL, Style, boundaries, computed, link_of, refuse_effects
 from workhold.files.svg.transforms import transform_of
-from workhold.files.svg.viewport import ShapeElement, Viewport, Window, convex, fitted, viewbox_of
+from workhold.files.svg.viewport import (
+    LARGEST,
+    ShapeElement,
+    Viewport,
+    Window,
+    convex,
+    fitted,
+    viewbox_of,
+)
 
 __all__ = ["ElementNesting", "SvgWalk"]
 
@@ -24,6 +32,8 @@ CONTAINERS = {"g", "a", "switch"}
 SILENT = {"defs", "symbol", "style", "title", "desc", "metadata", "clipPath", "mask", "marker", "pattern"}
 SILENT |= {"filter", "linearGradient", "radialGradient", "view", "namedview"}
 FEATURES = "http://www.w3.org/TR/SVG11/feature#"
+# Letters that tell where a <use> is in others, and mm for a user unit.
+LONGEST_SUFFIX, MOST_SCALE = 300, 1e15
 MARKED = ("path", "line", "polyline", "polygon")
 
 
@@ -77,6 +87,18 @@ class SvgWalk:
             return
         figure = self.figure(element, nest)
         label = figure.label
+        with self.budget.nested(label):
+            try:
+                self.visit_figure(figure, nest)
+            except ArithmeticError as error:
+                raise InputError(
+                    f"{label} has numbers too large or too small to be reckoned with: correct them."
+                ) from error
+
+    def visit_figure(self, figure: ShapeElement, nest: ElementNesting) -> None:
+        """Collects an element with its values and those inside it."""
+        element, label = figure.element, figure.label
+        tag = local_name(element)
         style = computed(figure.declarations, nest.style, self.styles, label)
         if not (style.displayed and suits(element, label)):
             self.hidden += 1
@@ -85,6 +107,7 @@ class SvgWalk:
         placement = nest.placement.after(transform_of(figure))
         if tag == "use":
             placement = placement.after(Placement(e=figure.length("x"), f=figure.length("y")))
+        refuse_absurd(placement, label)
         inner = self.clipped(figure, evolve(nest, placement=placement, style=style))
         if element is self.document.root:
             if placement != nest.placement:
@@ -108,7 +131,7 @@ class SvgWalk:
     def figure(self, element: Element, nest: ElementNesting) -> ShapeElement:
         """An element with its values and what messages call it."""
         label = self.document.name(element) + nest.suffix
-        return ShapeElement(element, label, self.styles.of(element), nest.viewport)
+        return ShapeElement(element, label, self.styles.of(element), nest.viewport, self.budget)
 
     def visit_children(self, parent: Element, nest: ElementNesting) -> None:
         """Visits the elements in a container; of a <switch>, the first that suits (SVG 2, 5.9.2)."""
@@ -145,12 +168,12 @@ class SvgWalk:
             raise InputError(f"{label} has a transform that crushes it to a line: correct it.")
         found = list(self.placed(figure, nest))
         if not style.stroked and not style.even_odd and len(found) > 1:
-            bounding = boundaries(found)
+            bounding = boundaries(found, self.budget)
             self.painted_over += len(found) - len(bounding)
             found = bounding
         self.hidden += not found
         for window in nest.windows:
-            shown = {window.shows(chain) for chain in found}
+            shown = {window.shows(chain, self.budget) for chain in found}
             if shown == {"nothing"}:
                 self.hidden += 1
                 return
@@ -185,10 +208,11 @@ class SvgWalk:
             raise InputError(f"{label} shows '{short(link)}', which is not in the file: unlink or remove it.")
         if link in nest.links or len(nest.links) >= DEEPEST:
             raise InputError(f"{label} shows itself: unlink it.")
-        inner = evolve(nest, suffix=f" of {label}", links=(*nest.links, link))
+        inner = evolve(nest, suffix=shortened(f" of {label}", LONGEST_SUFFIX), links=(*nest.links, link))
         tag = local_name(target)
         if tag in ("symbol", "svg"):
-            self.visit_target(target, figure, inner)
+            with self.budget.nested(label):
+                self.visit_target(target, figure, inner)
         else:
             self.visit(target, inner)
 
@@ -232,7 +256,7 @@ class SvgWalk:
         element, label = figure.element, figure.label
         if transform_of(figure) != Placement():
             raise InputError(f"{label} has a transform, which programs draw differently: put it on a group.")
-        box = viewbox_of(element.get("viewBox"), label)
+        box = viewbox_of(element.get("viewBox"), label, self.budget)
         sides: list[float | None] = []
         for name in ("width", "height"):
             asked = sizes.given(name)
@@ -297,9 +321,10 @@ class SvgWalk:
             style = computed(values, style, self.styles, label)
             if "clip-path" in values or not (style.displayed and style.shown) or not suits(part, label):
                 raise error
-            own = ShapeElement(part, self.document.name(part), values, nest.viewport)
+            own = ShapeElement(part, self.document.name(part), values, nest.viewport, self.budget)
             refuse_effects(evolve(own, label=label))
             placement = placement.after(transform_of(own))
+            refuse_absurd(placement, label)
         if len(shapes) != 1 or not self.document.drawn(shapes[0]):
             raise error
         tag = local_name(shapes[0])
@@ -327,6 +352,17 @@ class SvgWalk:
                 "transparent, empty, or without fill and stroke); make them visible to read them."
             )
         return remarks
+
+
+def refuse_absurd(placement: Placement, label: str) -> None:
+    """Refuses a map to mm with which nothing can be reckoned; raises InputError, naming the element."""
+    numbers = (placement.a, placement.b, placement.c, placement.d)
+    if not (
+        all(abs(number) <= MOST_SCALE for number in numbers)
+        and abs(placement.e) <= LARGEST
+        and abs(placement.f) <= LARGEST
+    ):
+        raise InputError(f"{label} has a transform or size that is too large: correct it.")
 
 
 def suits(element: Element, label: str) -> bool:

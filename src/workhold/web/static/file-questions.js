@@ -21,6 +21,10 @@ const LISTED = 24;
 
 /** The size in its own unit of a drawing whose unit was asked. @type {number[]|null} */
 let bare = null;
+/** Its size in pixels; only SVG drawings have one. @type {number[]|null} */
+let barePixels = null;
+/** Pixels to an inch that programs write drawings with. */
+const PIXELS = [72, 90, 96];
 
 /** Whether anything is asked. */
 let any = false;
@@ -45,7 +49,7 @@ export function noQuestions() {
  * @returns {boolean} whether there is anything to ask
  */
 export function askQuestions(survey, how, answer) {
-  if (survey.asked.includes("unit")) bare = survey.size;
+  if (survey.asked.includes("unit")) [bare, barePixels] = [survey.size, survey.pixels];
   if (!how.unit && !survey.asked.includes("unit")) bare = null;
   const unit = unitQuestion(how, answer);
   // Sizes of parts and gaps mean nothing before there is a unit.
@@ -66,15 +70,15 @@ function question(words, ...children) {
 /** The unit, with the size that the drawing has in each. */
 function unitQuestion(how, answer) {
   if (!bare) return null;
-  const [wide, high] = bare;
-  const size = (factor, decimals) => `${number(wide * factor, decimals)} × ${number(high * factor, decimals)}`;
+  const size = (factor, decimals, sides = bare) => `${number(sides[0] * factor, decimals)} × ${number(sides[1] * factor, decimals)}`;
   const choice = (unit, words) => make("button", {
     type: "button", "data-unit": unit, "aria-pressed": String(how.unit === unit), click: () => answer({ unit }),
   }, words);
   return question("The drawing does not say its unit. Which size is right?", make("div.row-of-buttons", {},
     choice("mm", `Drawn in mm: ${size(1, 2)} mm`),
     choice("inch", `Drawn in inches: ${size(1, 3)} in = ${size(MM_PER_INCH, 0)} mm`),
-    choice("cm", `cm: ${size(10, 0)} mm`)));
+    choice("cm", `cm: ${size(10, 0)} mm`),
+    ...(barePixels ? PIXELS : []).map((count) => choice(`px${count}`, `${count} pixels to the inch: ${size(MM_PER_INCH / count, 1, barePixels)} mm`))));
 }
 
 /** Which of several parts. */

@@ -1,0 +1,255 @@
+"""Which rules of style sheets select which elements, in time that grows with rules times elements.
+
+cssselect2 judges what stands between two combinators, of one element alone. What the combinators say is
+followed from the root inward, so that nothing is tried twice: matching from the inside outward takes as many
+ways as there are choices of ancestors, a power of the depth.
+
+Glossary
+--------
+compound selector : what is said of one element, such as ``rect.a:not(.b)`` (Selectors 4, 3.1).
+combinator : what stands between two of them: a blank, ``>``, ``+`` or ``~``.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from typing import Any
+from xml.etree.ElementTree import Element
+
+from attrs import define
+
+from workhold.files.budget import Budget
+
+__all__ = ["SelectorMatcher", "inner_tokens"]
+
+CHILD, NEXT, LATER, WITHIN = ">", "+", "~", " "
+LOGICAL = ("is", "where", "not", "has")
+# Parts of one compound selector: each is asked of every element.
+MOST_PARTS = 200
+Tokens = Sequence[Any]
+
+
+def inner_tokens(token: Any) -> Tokens:
+    """The tokens of tinycss2 in a block or a function; nothing in others."""
+    if token.type == "function":
+        return list(token.arguments)
+    return list(token.content) if token.type.endswith(" block") else []
+
+
+@define
+class OpenElement:
+    """An element whose children are being looked at.
+
+    Sets of compound selectors are the bits of whole numbers, those of one selector side by side.
+
+    Parameters
+    ----------
+    element : None around the root.
+    reached : the compound selectors that it fulfils with all that stand before them.
+    around : those that it or an element around it does.
+    last, before : those that its child visited last does, and any child visited before.
+    """
+
+    element: Element | None
+    reached: int = 0
+    around: int = 0
+    last: int = 0
+    before: int = 0
+
+
+class SelectorMatcher:
+    """Selectors, and which elements they select.
+
+    Parameters
+    ----------
+    sheets : what the style sheets of the drawing may still take; compound selectors are its elements.
+    """
+
+    def __init__(self, sheets: Budget) -> None:
+        import cssselect2
+
+        self.sheets = sheets
+        # The names of elements, their classes and ids are looked up; all else is asked one by one.
+        self.simple = cssselect2.Matcher()
+        self.asked: list[tuple[Any, bool]] = []
+        # Compound selectors by what stands before them; the first ones of selectors have nothing.
+        self.after: defaultdict[str, int] = defaultdict(int)
+        self.compounds = 0
+        # By the compound selector that is its last: number and specificity of a selector.
+        self.selectors: dict[int, tuple[int, tuple[int, ...]]] = {}
+        self.count = 0
+
+    def add(self, prelude: Tokens) -> list[int]:
+        """Adds a list of selectors; returns a number for each, but for those of pseudo-elements.
+
+        Raises
+        ------
+        cssselect2.SelectorError
+            For selectors that are not CSS's, or would take too long.
+        InputError
+            For very many.
+        """
+        return [number for tokens in split_at_commas(prelude) for number in self.added(tokens)]
+
+    def added(self, tokens: Tokens) -> list[int]:
+        """Adds one selector; returns its number, or none for that of a pseudo-element."""
+        import cssselect2
+
+        chain = compound_selectors(tokens)
+        compiled = []
+        for _, compound in chain:
+            refuse_slow(compound)
+            self.sheets.spend(1 + part_count(compound) // 10)
+            try:
+                compiled += cssselect2.compile_selector_list(compound)
+            except cssselect2.SelectorError:
+                raise
+            except Exception as error:  # cssselect2 raises many kinds for what it does not know
+                raise cssselect2.SelectorError(None, "not known") from error
+        if len(compiled) != len(chain):
+            raise cssselect2.SelectorError(None, "an empty selector")
+        pseudo = [one.pseudo_element is not None for one in compiled]
+        if any(pseudo[:-1]):
+            raise cssselect2.SelectorError(None, "something in a pseudo-element")
+        if pseudo[-1]:
+            return []
+        for (combinator, compound), one in zip(chain, compiled, strict=True):
+            slow = any(token.type in ("[] block", "function") or token == ":" for token in compound)
+            matcher = cssselect2.Matcher() if slow else self.simple
+            matcher.add_selector(one, self.compounds)
+            if slow:
+                self.asked.append((matcher, has_descendants(compound)))
+            self.after[combinator] |= 1 << self.compounds
+            self.compounds += 1
+        weights = tuple(map(sum, zip(*(one.specificity for one in compiled), strict=True)))
+        self.selectors[self.compounds - 1] = self.count, weights
+        self.count += 1
+        return [self.count - 1]
+
+    def matched(self, root: Element, budget: Budget) -> Iterator[tuple[Element, list[tuple[Any, ...]]]]:
+        """The elements of a tree, each with specificity and number of the selectors that select it.
+
+        Raises
+        ------
+        InputError
+            Where time is up.
+        """
+        import cssselect2
+
+        after, open_elements = self.after, [OpenElement(None)]
+        for wrapper in cssselect2.ElementWrapper.from_xml_root(root).iter_subtree():
+            parent = None if wrapper.parent is None else wrapper.parent.etree_element
+            while open_elements[-1].element is not parent:
+                open_elements.pop()
+            around = open_elements[-1]
+            fulfilled = self.fulfilled(wrapper, budget)
+            possible = (
+                after[""]
+                | after[WITHIN] & around.around << 1
+                | after[CHILD] & around.reached << 1
+                | after[NEXT] & around.last << 1
+                | after[LATER] & around.before << 1
+            )
+            found = [compound for compound in fulfilled if possible >> compound & 1]
+            reached = sum(1 << compound for compound in found)
+            around.last, around.before = reached, around.before | reached
+            open_elements.append(OpenElement(wrapper.etree_element, reached, around.around | reached))
+            selected = [self.selectors[compound] for compound in found if compound in self.selectors]
+            yield wrapper.etree_element, sorted((*weights, number) for number, weights in selected)
+
+    def fulfilled(self, wrapper: Any, budget: Budget) -> list[int]:
+        """The compound selectors that an element fulfils by itself."""
+        budget.work(1 + self.compounds // 32)
+        found = [compound for *_, compound in self.simple.match(wrapper)]
+        for matcher, descends in self.asked:
+            # Some look at all the children around, or at all that is inside.
+            below = sum(1 for _ in wrapper.etree_element.iter()) if descends else 0
+            budget.work(1 + len(wrapper.etree_siblings) + below)
+            found += [compound for *_, compound in matcher.match(wrapper)]
+        return found
+
+
+def split_at_commas(tokens: Tokens) -> list[list[Any]]:
+    """The selectors of a list, without comments."""
+    parts: list[list[Any]] = [[]]
+    for token in tokens:
+        if token == ",":
+            parts.append([])
+        elif token.type != "comment":
+            parts[-1].append(token)
+    return parts
+
+
+def compound_selectors(tokens: Tokens) -> list[tuple[str, list[Any]]]:
+    """The compound selectors of one selector, each with what combines it with the one before.
+
+    Raises cssselect2.SelectorError for combinators with nothing before or after them.
+    """
+    import cssselect2
+
+    chain: list[tuple[str, list[Any]]] = []
+    combinator = ""
+    for token in trimmed(tokens):
+        if token.type == "whitespace":
+            combinator = combinator or WITHIN
+        elif token in (CHILD, NEXT, LATER):
+            if combinator not in ("", WITHIN) or not chain:
+                raise cssselect2.SelectorError(token, "a combinator without a selector")
+            combinator = token.value
+        elif combinator or not chain:
+            chain.append((combinator, [token]))
+            combinator = ""
+        else:
+            chain[-1][1].append(token)
+    if combinator or not chain:
+        raise cssselect2.SelectorError(None, "a selector without an end")
+    return chain
+
+
+def trimmed(tokens: Tokens) -> list[Any]:
+    """Tokens without blanks at their ends."""
+    blank = [token.type == "whitespace" for token in tokens]
+    if all(blank):
+        return []
+    return list(tokens[blank.index(False) : len(blank) - blank[::-1].index(False)])
+
+
+def refuse_slow(compound: Tokens, relational: bool = False) -> None:
+    """Refuses what cssselect2 would try in very many ways, or in a recursion as deep as the drawing is wide.
+
+    Raises cssselect2.SelectorError for many parts, combinators within a part, ``:has`` in ``:has``, and the
+    "of" of ``:nth-child``.
+    """
+    import cssselect2
+
+    error = cssselect2.SelectorError(None, "too much to ask of every element")
+    if part_count(compound) > MOST_PARTS:
+        raise error
+    for token in compound:
+        if token.type != "function":
+            continue
+        if token.lower_name not in LOGICAL:
+            if any(one.type == "ident" and one.value == "of" for one in token.arguments):
+                raise error
+            continue
+        has = token.lower_name == "has"
+        for tokens in map(trimmed, split_at_commas(token.arguments)):
+            if has and tokens and tokens[0] in (CHILD, NEXT, LATER):
+                tokens = trimmed(tokens[1:])
+            if tokens and (len(compound_selectors(tokens)) > 1 or (has and relational)):
+                raise error
+            refuse_slow(tokens, relational or has)
+
+
+def part_count(tokens: Tokens) -> int:
+    """How many tokens there are, those in blocks and functions too."""
+    return sum(1 + part_count(inner_tokens(token)) for token in tokens)
+
+
+def has_descendants(tokens: Tokens) -> bool:
+    """Whether a compound selector asks what is in an element."""
+    return any(
+        (token.type == "function" and token.lower_name == "has") or has_descendants(inner_tokens(token))
+        for token in tokens
+    )
