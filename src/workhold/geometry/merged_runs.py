@@ -13,7 +13,7 @@ run : neighbouring segments of a loop that one line or arc through the ends of t
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from math import atan2, cos, dist, inf, isfinite, pi, sin, tan, tau
 
 import numpy as np
@@ -21,7 +21,7 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import DISGUISE, DRAWN_ON, READING, SHORTEST
-from workhold.geometry.curve_fit import circle_of_points
+from workhold.geometry.curve_fit import circle_of_points, go_on
 from workhold.geometry.loop import runs_around
 from workhold.geometry.rational import arc_pieces, departure, joined_pieces
 from workhold.geometry.segment import Arc, Line, Point, Segment
@@ -174,7 +174,12 @@ class Piece:
     departure: float = 0.0
 
 
-def merged_chords(vertices: Array, fit: float | None = None, kept: Sequence[bool] = ()) -> MergedLoop:
+def merged_chords(
+    vertices: Array,
+    fit: float | None = None,
+    kept: Sequence[bool] = (),
+    interrupt: Callable[[], None] = go_on,
+) -> MergedLoop:
     """One line or arc for each run of segments that is nowhere farther from it than ``DISGUISE``.
 
     Parameters
@@ -182,6 +187,7 @@ def merged_chords(vertices: Array, fit: float | None = None, kept: Sequence[bool
     vertices : (N, 3) array of a loop.
     fit : how far chords may be from an arc that stands for them, in mm, where that is more.
     kept : for each segment whether it stays as it is; none does if this is empty.
+    interrupt : is called before every run, and may raise an error.
     """
     pieces = [
         Piece((float(x), float(y)), float(b), k, bool(kept) and kept[k])
@@ -194,11 +200,11 @@ def merged_chords(vertices: Array, fit: float | None = None, kept: Sequence[bool
         pieces = whole
     elif count > 2:
         drawn = from_a_corner(pieces)
-        pieces = all_merged(drawn, tolerance)
+        pieces = all_merged(drawn, tolerance, interrupt)
         if 1 < len(pieces) < count:
             # Where a run has ended the loop can begin: no other goes across.
             number = next(k for k, piece in enumerate(drawn) if piece.first == pieces[1].first)
-            pieces = all_merged(drawn[number:] + drawn[:number], tolerance)
+            pieces = all_merged(drawn[number:] + drawn[:number], tolerance, interrupt)
     if len(pieces) == count:
         return MergedLoop(vertices, tuple(range(count)), 0, 0.0)
     begin = min(range(len(pieces)), key=lambda k: pieces[k].first)
@@ -208,11 +214,11 @@ def merged_chords(vertices: Array, fit: float | None = None, kept: Sequence[bool
     return MergedLoop(rows, tuple(piece.first for piece in pieces), count - len(pieces), away)
 
 
-def all_merged(pieces: list[Piece], tolerance: float) -> list[Piece]:
+def all_merged(pieces: list[Piece], tolerance: float, interrupt: Callable[[], None]) -> list[Piece]:
     """A row of pieces with its runs merged, first those with vertices on them to a file's digits."""
     for near in (min(DRAWN_ON, tolerance), tolerance):
-        pieces = runs_merged(pieces, near, tolerance, LEAST_CHORDS)
-    return runs_merged(pieces, DISGUISE, DISGUISE, 2)
+        pieces = runs_merged(pieces, near, tolerance, LEAST_CHORDS, interrupt)
+    return runs_merged(pieces, DISGUISE, DISGUISE, 2, interrupt)
 
 
 def from_a_corner(pieces: list[Piece]) -> list[Piece]:
@@ -269,7 +275,13 @@ def worth(pieces: Sequence[Piece], least: int) -> bool:
     return len(pieces) >= (2 if arcs == len(pieces) else least)
 
 
-def runs_merged(pieces: list[Piece], near: float, tolerance: float, least: int) -> list[Piece]:
+def runs_merged(
+    pieces: list[Piece],
+    near: float,
+    tolerance: float,
+    least: int,
+    interrupt: Callable[[], None] = go_on,
+) -> list[Piece]:
     """The longest runs one after the other; those of fewer than ``LEAST_CHORDS`` chords are lines only.
 
     Parameters
@@ -286,6 +298,7 @@ def runs_merged(pieces: list[Piece], near: float, tolerance: float, least: int) 
     out: list[Piece] = []
     k = 0
     while k < len(pieces):
+        interrupt()
         stop = int(stops[np.searchsorted(stops, k + 1)])
         # Two arcs can be a run, and so many chords; then steps that double and afterwards halve.
         best, taken, step, growing = None, k + 1, 1, True

@@ -19,13 +19,13 @@ from workhold.errors import InputError
 from workhold.fixels.carrier import WALL
 from workhold.geometry.hull import HullEdge, hull_edges
 from workhold.geometry.loop import (
+    Comparisons,
     Face,
     LoopShape,
     checked_vertices,
     faces_of_loop,
     loop_segments,
-    near_pairs,
-    refuse_meeting_loops,
+    refuse_meeting,
     refuse_no_area,
     refuse_self_crossing,
     reversed_vertices,
@@ -131,6 +131,7 @@ class Workpiece:
             label = f" ({labels[loop][k]})" if labels else ""
             return f"{name}: loop {loop}, segment {k}{label}"
 
+        comparisons = Comparisons(name)
         straightened = rounded = 0
         used: list[NDArray[np.float64]] = []
         drawn: list[LoopShape] = []
@@ -142,17 +143,14 @@ class Workpiece:
             vertices, changed = on_one_circle(vertices, segments)
             rounded += changed
             shape = LoopShape.of(loop_segments(vertices) if changed else segments)
-            refuse_self_crossing(shape, place)
+            refuse_self_crossing(shape, place, comparisons)
             refuse_no_area(shape, f"{name}: loop {index}")
             used.append(vertices)
             drawn.append(shape)
-        boxes = np.array([shape.box for shape in drawn])
-        for a, b in near_pairs(boxes, boxes):
-            if a < b:
-                refuse_meeting_loops(drawn[a], drawn[b], partial(segment_place, a), partial(segment_place, b))
+        refuse_meeting(drawn, segment_place, comparisons)
         pieces = 1
         if solid is None:
-            refuse_misplaced_holes(name, drawn)
+            refuse_misplaced_holes(name, drawn, comparisons)
         else:
             pieces = outer_count(name, drawn)
         order: list[int] = []

@@ -151,10 +151,10 @@ def drawing_of_object(
         scale = unit_named(unit or usual_unit or "mm").millimetres
         return ObjectPart(Drawing(tuple(geometry_chains(part, scale))), "polygon", part_number)
     if hasattr(part, "modelspace") and hasattr(part, "header"):
-        from workhold.files.dxf.reader import read_document
+        from workhold.files.dxf.reader import code_said, read_document
 
         refuse_axis(view)
-        code = int(part.header.get("$INSUNITS", 0))
+        code = code_said(part.header.get("$INSUNITS", 0))
         drawing = read_document(part, code, unit=unit, usual_unit=usual_unit, layers=layers, fit=fit)
         return ObjectPart(
             drawing, Path(getattr(part, "filename", None) or "drawing").stem, part_number, layered=True

@@ -117,7 +117,8 @@ def drawn_layers(
 def loops_of(chains: list[Chain]) -> int | None:
     """How many closed outlines chains make; None where they could go on in more than one way."""
     try:
-        return len(join(cleaned(chains).chains, 1e-3).loops)
+        joined = join(cleaned(chains).chains, 1e-3)
+        return None if joined.junctions else len(joined.loops)
     except InputError:
         return None
 
@@ -238,6 +239,8 @@ def gaps_and_parts(
         strays = join(chains, 0.0).strays
         joined = join(chains, tolerance)
     except InputError:
+        return (), ()
+    if joined.junctions:
         # Ends that could go on in more than one way; the refusal says where.
         return (), ()
     ends = np.array(
