@@ -101,7 +101,7 @@ def refuse_layers(layers: Sequence[str] | None) -> None:
 
 
 def refuse_fit(fit: float | None) -> None:
-    """Refuses a fit for a file that holds lines and arcs only.
+    """Refuses a fit for the outline of a solid in a result file.
 
     Raises
     ------
@@ -109,7 +109,7 @@ def refuse_fit(fit: float | None) -> None:
         When a fit was given.
     """
     if fit is not None:
-        raise InputError(f"a JSON file holds lines and arcs only: leave {FIT} out.")
+        raise InputError(f"the outline of a solid is as it was read: leave {FIT} out.")
 
 
 def refuse_axis(options: Mapping[str, object]) -> None:

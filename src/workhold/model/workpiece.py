@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from attrs import define, field
+from attrs import define, evolve, field
 from numpy.typing import ArrayLike, NDArray
 
 from workhold.conventions import READING, SHORTEST
@@ -31,7 +31,7 @@ from workhold.geometry.loop import (
     reversed_vertices,
     signed_area,
 )
-from workhold.geometry.merged_runs import merged_chords, on_one_circle
+from workhold.geometry.merged_runs import chorded_arcs, chords_remark, merged_chords, on_one_circle
 from workhold.geometry.segment import Point, Segment, bounding_box
 from workhold.limits import real
 from workhold.model.numbered_outlines import NumberedOutlines, outer_count, refuse_misplaced_holes, unlike
@@ -198,12 +198,15 @@ class Workpiece:
         """
         if fit is not None and not (isfinite(real(fit)) and fit > 0):
             raise InputError(f"the fit {fit} is not usable: give a length above 0, in mm.")
-        loops, away = [], 0.0
+        loops, away, chorded = [], 0.0, []
         for index, points in enumerate([outline, *holes]):
             merged = merged_chords(corners_of(points, f"{name}: loop {index}"), fit)
             loops.append(merged.vertices)
             away = max(away, merged.departure)
-        return cls.from_loops(name, loops, departure=away)
+            left = chorded_arcs(merged.vertices)
+            chorded += [left] if left is not None and (fit is None or left.fit > fit) else []
+        part = cls.from_loops(name, loops, departure=away)
+        return evolve(part, remarks=(*part.remarks, *chords_remark(chorded, "fit")))
 
     def __repr__(self) -> str:
         faces, holes, (x0, y0, x1, y1) = len(self.faces), len(self.loops) - self.pieces, self.bounds

@@ -23,7 +23,7 @@ from workhold.files.outline.chain import Chain, CurveReading, Placement, at, cou
 from workhold.files.outline.joining import Loop
 from workhold.files.questions import FIT, LAYERS
 from workhold.geometry.curve_fit import FittedCurve, fitted_curve
-from workhold.geometry.merged_runs import merged_chords
+from workhold.geometry.merged_runs import ChordedArcs, chorded_arcs, chords_remark, merged_chords
 from workhold.geometry.rational import Pieces, arc_pieces, joined_pieces, mapped
 
 __all__ = [
@@ -220,10 +220,13 @@ def with_chords_merged(
     """
     interrupt = (budget or Budget(UNLIMITED)).check_time
     out, away, merged = [], 0.0, 0
+    chorded = list[ChordedArcs]()
     for loop in loops:
         kept = [label in found and not found[label].is_disguise for label in loop.labels]
         one = merged_chords(loop.vertices, fit, kept, interrupt)
         out.append(evolve(loop, vertices=one.vertices, labels=tuple(loop.labels[k] for k in one.firsts)))
+        left = chorded_arcs(one.vertices, [kept[k] for k in one.firsts], interrupt)
+        chorded += [left] if left is not None and (fit is None or left.fit > fit) else []
         away = max(away, one.departure)
         merged += (one.merged + len(one.firsts)) * (one.departure > SAME_POINT)
     total = sum(len(loop.labels) for loop in out)
@@ -232,7 +235,10 @@ def with_chords_merged(
     return (
         tuple(out),
         away,
-        [f"{remark}{off}: the outline has {counted(total, 'segment', 'segments')}."] if merged else [],
+        [
+            *([f"{remark}{off}: the outline has {counted(total, 'segment', 'segments')}."] if merged else []),
+            *chords_remark(chorded, FIT),
+        ],
     )
 
 

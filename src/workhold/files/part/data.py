@@ -21,11 +21,13 @@ import numpy as np
 from attrs import frozen
 
 from workhold.errors import InputError
+from workhold.files.budget import LIMITS, Budget
 from workhold.files.outline.chain import Chain, Drawing
 from workhold.files.outline.joining import Loop
 from workhold.files.outline.nesting import as_one, chosen_part
 from workhold.files.part.loaded import Loaded, built, refuse_large
-from workhold.files.questions import DRAWING_UNIT, by_height, refuse_axis, refuse_fit, refuse_layers
+from workhold.files.outline.curves import with_chords_merged
+from workhold.files.questions import DRAWING_UNIT, FIT, by_height, refuse_axis, refuse_fit, refuse_layers
 from workhold.files.text import json_value
 from workhold.model.solid import SolidOutline
 from workhold.units import unit_named
@@ -51,8 +53,8 @@ def read_json(path: Path, content: bytes, options: Mapping[str, Any], own: bool)
         For content that is not JSON, or not of this shape, naming the place. Also for choices that do not
         apply to JSON.
     """
-    refuse_fit(options["fit"])
     refuse_layers(options["layers"])
+    fit = options["fit"]
     if options["unit"] is not None:
         raise InputError(f'the JSON file gives its own "units": leave {DRAWING_UNIT} out.')
     try:
@@ -65,6 +67,8 @@ def read_json(path: Path, content: bytes, options: Mapping[str, Any], own: bool)
     if isinstance(data, dict) and str(data.get("format", "")).startswith("workhold-result"):
         solid = solid_of(data)
         data = data.get("workpiece")
+    if solid is not None:
+        refuse_fit(fit)
     if not isinstance(data, dict):
         raise InputError(
             'The file holds no workpiece: it must be {"name": ..., "units": "mm", "loops": [...]}.'
@@ -80,10 +84,22 @@ def read_json(path: Path, content: bytes, options: Mapping[str, Any], own: bool)
     refuse_large(sum(map(len, data["loops"])))
     loops = [Loop(np.array(loop).reshape(-1, 3) * (scale, scale, 1.0), ()) for loop in data["loops"]]
     departure = scale * (data.get("departure") or 0.0)
-    workpiece = built(data.get("name") or path.stem, loops, False, departure, solid)
+    name = data.get("name") or path.stem
+    workpiece = built(name, loops, False, departure, solid)
+    of_chords = list[str]()
+    if solid is None:
+        # What is checked has no arcs of absurd sizes, which the chords would be compared with.
+        budget = Budget(LIMITS["dxf"], len(content))
+        drawn = [Loop(loop, ("",) * len(loop)) for loop in workpiece.loops]
+        merged, away, of_chords = with_chords_merged(drawn, {}, fit, budget)
+        if fit is not None:
+            workpiece = built(name, merged, False, departure + away, None)
+        else:
+            # Without a fit a file of numbers is read as it is.
+            of_chords = [said for said in of_chords if FIT in said]
     part = (as_one([Loop(loop, ("",) * len(loop)) for loop in workpiece.loops]),)
     chosen_part(part, options["part_number"])
-    return Loaded(workpiece, workpiece.remarks, part)
+    return Loaded(workpiece, (*workpiece.remarks, *of_chords), part)
 
 
 def solid_of(content: Mapping[str, Any]) -> SolidOutline | None:

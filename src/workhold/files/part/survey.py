@@ -22,8 +22,15 @@ import numpy as np
 from attrs import evolve, frozen
 
 from workhold.errors import InputError
-from workhold.files.budget import LIMITS, Budget
-from workhold.files.dxf.reader import opened, refuse_other_formats, scale_of, unit_code
+from workhold.files.budget import LIMITS, Budget, OverBudgetError
+from workhold.files.dxf.reader import (
+    damaged,
+    opened,
+    refuse_crowded,
+    refuse_other_formats,
+    scale_of,
+    unit_code,
+)
 from workhold.files.dxf.walk import BlockNesting, DxfWalk
 from workhold.files.outline.chain import Chain, Drawing, Placement, cleaned
 from workhold.files.outline.diagnostics import size_of
@@ -62,8 +69,8 @@ class DrawnLayer:
 class LayerWalk(DxfWalk):
     """Visits everything, on hidden layers too, whatever is wrong with it."""
 
-    def __init__(self, document: Any) -> None:
-        super().__init__(document, None, None, Budget(LIMITS["dxf"]))
+    def __init__(self, document: Any, budget: Budget) -> None:
+        super().__init__(document, None, None, budget)
         self.kinds: dict[str, Counter[str]] = {}
 
     def visit(self, entity: Any, nest: BlockNesting) -> None:
@@ -73,6 +80,8 @@ class LayerWalk(DxfWalk):
             self.kinds.setdefault(self.effective_layer(entity, nest), Counter())[kind] += 1
         try:
             super().visit(entity, nest)
+        except OverBudgetError:
+            raise
         except InputError:
             self.level = None
 
@@ -97,16 +106,33 @@ def drawn_layers(
         raise InputError(f"{file.name}: only DXF files have layers.")
     try:
         refuse_other_formats(content)
+        budget = Budget(LIMITS["dxf"], len(content))
+        refuse_crowded(content, budget)
         document, _ = opened(file)
+        with np.errstate(all="ignore"):
+            return layers_of(document, unit_code(document, content), unit, usual_unit, budget)
     except InputError as error:
         raise InputError(f"{file.name}: {error}") from error
-    known = scale_of(unit_code(document, content), unit, usual_unit)
+
+
+def layers_of(
+    document: Any, code: int | str, unit: str | None, usual_unit: str | None, budget: Budget
+) -> tuple[tuple[DrawnLayer, ...], bool]:
+    """The layers of a document, see :func:`drawn_layers`."""
+    known = scale_of(code, unit, usual_unit)
     scale = 1.0 if known is None else known[0]
-    walk = LayerWalk(document)
-    walk.visit_all(document.modelspace(), BlockNesting(Placement(a=scale, d=scale, height_scale=scale)))
+    try:
+        walk, space = LayerWalk(document, budget), document.modelspace()
+    except Exception as error:  # tables and layouts of a damaged file may fail in any way
+        raise damaged(error) from error
+    walk.visit_all(space, BlockNesting(Placement(a=scale, d=scale, height_scale=scale)))
     layers = []
+    on_layer: dict[str | None, list[Chain]] = {}
+    for chain in walk.chains:
+        on_layer.setdefault(walk.layers.get(chain.labels[0]), []).append(chain)
     for name in sorted(walk.kinds, key=str.casefold):
-        chains = [chain for chain in walk.chains if walk.layers.get(chain.labels[0]) == name]
+        budget.check_time()
+        chains = on_layer.get(name, [])
         hidden = name.casefold() in walk.hidden_layers
         layers.append(
             DrawnLayer(name, walk.kinds[name], hidden, loops_of(chains), size_of(chains), tuple(chains))
