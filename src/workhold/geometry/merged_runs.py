@@ -217,7 +217,7 @@ def merged_chords(
 # mm. Vertices this near to a circle are drawn on it, with the digits of a file that gives few.
 CHORDS_ON = 0.01
 # Steps of the fits that are proposed.
-FITS = (1.0, 2.0, 5.0)
+FITS = (1.0, 2.0, 5.0, 10.0, 20.0)
 
 
 @frozen
@@ -269,7 +269,7 @@ def chorded_arcs(
         return None
     away = max(piece.departure for piece, _ in arcs)
     scale = 10.0 ** floor(log10(away))
-    fit = next(step * scale for step in (*FITS, 10.0) if step * scale >= 1.05 * away)
+    fit = next(step * scale for step in FITS if step * scale >= 1.05 * away)
     fit = float(f"{fit:.1g}")
     merged = merged_chords(vertices, fit, kept, interrupt)
     chords = len(vertices) - len(merged.vertices)

@@ -23,10 +23,10 @@ from attrs import frozen
 from workhold.errors import InputError
 from workhold.files.budget import LIMITS, Budget
 from workhold.files.outline.chain import Chain, Drawing
+from workhold.files.outline.curves import with_chords_merged
 from workhold.files.outline.joining import Loop
 from workhold.files.outline.nesting import as_one, chosen_part
 from workhold.files.part.loaded import Loaded, built, refuse_large
-from workhold.files.outline.curves import with_chords_merged
 from workhold.files.questions import DRAWING_UNIT, FIT, by_height, refuse_axis, refuse_fit, refuse_layers
 from workhold.files.text import json_value
 from workhold.model.solid import SolidOutline
