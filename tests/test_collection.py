@@ -6,6 +6,11 @@ What needs an extra skips where it is missing, before anything of it is imported
 from __future__ import annotations
 
 import ast
+import os
+import re
+import subprocess
+import sys
+import tomllib
 from importlib import import_module
 from pathlib import Path
 
@@ -48,6 +53,7 @@ def test_of_two_lists_every_value_is_tried(
 
 
 TESTS = Path(__file__).parent
+ROOT = TESTS.parent
 # What the extra for tests does not install.
 OPTIONAL = {"OCP", "anywidget", "build123d", "cadquery", "distributed", "fsspec", "mcp", "pandas", "pyarrow"}
 
@@ -73,3 +79,42 @@ def test_no_test_needs_an_extra_to_be_collected() -> None:
 def test_an_import_before_the_question_is_found() -> None:
     assert imported_first("import os\nfrom OCP.gp import gp_Pnt\n") == {"OCP"}
     assert imported_first("import pytest\npytest.importorskip('OCP')\nimport OCP\n") == set()
+
+
+def test_the_examples_of_the_sources_are_collected_without_extras() -> None:
+    """Also of modules that ask a library for something later on; those that import it as they are loaded are left out."""
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT / "src"), str(TESTS)])}
+    command = [
+        sys.executable,
+        "-m",
+        "pytest",
+        "-p",
+        "without_extras",
+        "-p",
+        "no:cacheprovider",
+        "--collect-only",
+    ]
+    done = subprocess.run(
+        [*command, "src"], cwd=ROOT, env=environment, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "src/workhold/files/step/solids.py" in done.stdout
+
+
+def test_the_check_on_a_bare_machine_begins_with_what_the_readme_says() -> None:
+    """In a clone, by the commands as they stand there, before what only extras need is installed."""
+    script = (ROOT / ".ci" / "run").read_text(encoding="utf-8")
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    clone, extras = script.index("git clone"), script.index("chromium-headless-shell")
+    said = set(re.findall(r"^    (make (?:demo|test))(?:  |$)", readme, re.MULTILINE))
+    done = re.findall(r"^    (make .*)$", script[clone:extras], re.MULTILINE)
+    assert said == set(done) == {"make demo", "make test"} and len(done) == 2
+    assert re.findall(r"^make (\w+)", script[:extras], re.MULTILINE) == []
+
+
+def test_the_check_on_a_bare_machine_tries_every_extra() -> None:
+    """With what tests them; the compiler comes with that."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    extras = set(project["project"]["optional-dependencies"]) - {"numba"}
+    found = re.findall(r"EXTRAS=(\S+)", (ROOT / ".ci" / "run").read_text(encoding="utf-8"))
+    assert len(found) == 2 and all(set(one.split(",")) == extras for one in found)

@@ -163,7 +163,8 @@ class ArchiveWriter:
 
     def close(self, name: str, text: str, mark: str) -> None:
         """Writes the text under its name, the directory and the mark."""
-        content = text.encode()
+        # Half a letter in a string of JSON becomes its escape.
+        content = text.encode("utf-8", "backslashreplace")
         last = self.members[-1]
         member = ArchiveMember(name.encode(), last.content + last.size, len(content), crc32(content))
         if self.done < self.rows:

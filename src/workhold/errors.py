@@ -7,9 +7,19 @@ it is. What it quotes, such as names of parts and layers from files, is made fit
 from __future__ import annotations
 
 import errno
+import re
 from collections.abc import Sequence
 
-__all__ = ["NO_ROOM", "InputError", "WorkholdError", "lacks_memory", "listed", "plain", "shortened"]
+__all__ = [
+    "NO_ROOM",
+    "InputError",
+    "WorkholdError",
+    "encodable",
+    "lacks_memory",
+    "listed",
+    "plain",
+    "shortened",
+]
 
 # Letters of a sentence: enough for any of the program's own.
 LONGEST = 1000
@@ -27,6 +37,29 @@ def plain(text: str) -> str:
     if text.isprintable():
         return text
     return "".join(letter if letter.isprintable() else " " if letter.isspace() else "?" for letter in text)
+
+
+# What Python makes of bytes in a file's name that are no UTF-8, and other halves of letters.
+HALVES = re.compile("[\ud800-\udfff]")
+FIRST_BYTE = 0xDC00
+
+
+def encodable(text: str) -> str:
+    """Text that can be written in UTF-8: bytes of a file's name that are none stand as ``\\xfc``.
+
+    Examples
+    --------
+    >>> print(encodable("Fl\udcfcgel"))
+    Fl\xfcgel
+    """
+    if text.isascii():
+        return text
+    return HALVES.sub(
+        lambda half: (
+            f"\\x{ord(half[0]) - FIRST_BYTE:02x}" if 0x80 <= ord(half[0]) - FIRST_BYTE < 0x100 else "\\ufffd"
+        ),
+        text,
+    )
 
 
 def shortened(text: str, most: int = LONGEST) -> str:

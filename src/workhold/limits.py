@@ -8,7 +8,8 @@ where these are read (``files.part.loaded``, ``web.guard``).
 from __future__ import annotations
 
 import os
-from math import ceil, inf, nan
+from collections.abc import Callable
+from math import ceil, inf, nan, sqrt
 from typing import Any
 
 from workhold.errors import InputError
@@ -202,7 +203,9 @@ def thread_count(threads: int | None) -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def refuse_much_work(ways: float, extent: tuple[float, float], pitch: tuple[float, float]) -> None:
+def refuse_much_work(
+    ways: float, extent: tuple[float, float], pitch: tuple[float, float], ways_at: Callable[[float], float]
+) -> None:
     """Refuses a search for two clamps on a lattice that would take hours, and more memory than there is.
 
     Parameters
@@ -210,17 +213,21 @@ def refuse_much_work(ways: float, extent: tuple[float, float], pitch: tuple[floa
     ways : in which two pairs of contacts may go together, see ``MOST_WAYS``.
     extent : width and height of the part in mm.
     pitch : of the lattice in mm.
+    ways_at : the same ways with another pitch in mm.
 
     Raises
     ------
     InputError
-        With a pitch that would do.
+        With a pitch that does.
     """
     if ways > MOST_WAYS:
-        # As many holes less lie along the part as the pitch is larger, and four contacts stand in them.
-        enough = ceil(max(pitch) * (ways / MOST_WAYS) ** 0.25 / 5) * 5
+        enough, left = sqrt(pitch[0] * pitch[1]), ways
+        while left > MOST_WAYS:
+            # As many holes less lie along the part as the pitch is larger, and four contacts stand in them.
+            enough = max(ceil(enough * (left / MOST_WAYS) ** 0.25 / 5) * 5, enough // 5 * 5 + 5)
+            left = ways_at(enough)
         raise InputError(
             f"the part is {extent[0]:.6g} x {extent[1]:.6g} mm large, too large for two clamps on holes "
             f"{pitch[0]:g} x {pitch[1]:g} mm apart, which leave {ways:.1g} ways to look at: use a pitch of "
-            f"{enough} mm or more, fewer columns and rows, or a small range of angles."
+            f"{enough:g} mm or more, fewer columns and rows, or a small range of angles."
         )

@@ -84,6 +84,8 @@ def test_heights_are_those_that_were_given(
         (["--peg-height", "8"], "give its --thickness"),
         (["--thickness", "10", "--rapid", "bent"], "--rapid"),
         (["--thickness", "10", "--zero", "3"], "--zero '3' is not a place here"),
+        (["--thickness", "10", "--start", "3,4"], "--start '3,4' is not a place: give three lengths"),
+        (["--thickness", "10", "--whole-numbers", "tenths"], "--whole-numbers"),
         (["--thickness", "10", "--program-clearance", "-1"], "clearance"),
     ],
 )
@@ -92,6 +94,25 @@ def test_what_is_missing_is_asked_for(
 ) -> None:
     outcome = run("design", "widget", *HELD, "--program", file, *words)
     assert outcome.exit_code == 2 and said in outcome.stderr and searched["asked"] is None
+
+
+def test_a_start_and_thousandths_reach_the_program(run: Any, searched: dict[str, Any], file: Path) -> None:
+    """Where the command asks for them it names its own options, and so does a file of jobs."""
+    file.write_text("(T1 D=6 - mill)\nG21 G90\nT1 M6\nG0 Z5.\nG1 Z-4. F200\nX30\nG0 Z5.\nM30\n")
+    words = ["--program", file, "--thickness", "10"]
+    refused = run("design", "widget", *HELD, *words)
+    assert refused.exit_code == 2 and "line 5: the tool cuts at a place" in refused.stderr
+    assert "give where the tip is at the start with --start X,Y,Z." in refused.stderr
+    assert "--start X,Y,Z" in run("program", file).stderr
+    for more, end in (([], 30.0), (["--whole-numbers", "thousandths"], 0.03)):
+        outcome = run("design", "widget", *HELD, *words, "--start", "-10,-1cm,5", *more)
+        assert outcome.exit_code == 0, outcome.stderr
+        moves = searched["asked"].program.moves
+        assert moves.start[0].tolist() == [-10.0, -10.0, 15.0] and moves.end[1, 0] == pytest.approx(end)
+    said = run("program", file, "--start", "-10,-1cm,5", "--whole-numbers", "thousandths").stdout
+    assert (
+        "The tip starts at X-10 Y-10 Z5 mm, as given." in said and "multiples of 0.001 mm, as asked" in said
+    )
 
 
 def test_words_about_no_program_are_refused(run: Any, searched: dict[str, Any]) -> None:

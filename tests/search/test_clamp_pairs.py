@@ -451,6 +451,20 @@ def test_a_part_far_too_large_for_the_pitch_is_refused_with_one_that_does() -> N
             assert ranges.shares >= 1
 
 
+@pytest.mark.parametrize("pitch", [20.0, (25.0, 10.0)], ids=str)
+def test_the_pitch_that_a_refusal_names_is_counted(pitch: float | tuple[float, float]) -> None:
+    """Of a panel with many slanted holes, in which more contacts are left than the number of holes lets expect."""
+    step, ring = 36, np.exp(-2j * np.pi * np.arange(5) / 5) * 8
+    holes = [ring + step * (1 + i + 1j * (1 + j)) for i in range(5) for j in range(5)]
+    corners = [np.array([0, 216, 216 + 216j, 216j]), *holes]
+    panel = Workpiece.from_loops("panel", [[[z.real, z.imag, 0] for z in loop] for loop in corners])
+    with pytest.raises(InputError, match=r"use a pitch of (\d+) mm or more") as told:
+        design(panel, Plate(pitch, 3, clamps=2))
+    named = float(str(told.value).split("pitch of ")[1].split(" mm")[0])
+    with lattice_shares.LatticeShares.of(Query(panel, Plate(named, 3, clamps=2)), 1, None) as ranges:
+        assert ranges.shares >= 1
+
+
 def test_restrictions_leave_what_filtering_the_whole_list_leaves() -> None:
     """Faces to avoid and angles act on pairs before the best is taken."""
     workpiece, plate = part(NOTCHED), Plate((20, 16), 3, columns=4, rows=4, clamps=2)

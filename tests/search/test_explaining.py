@@ -13,7 +13,7 @@ from attrs import evolve
 
 from workhold import Fence, Plate, Query, Vise, Workpiece, answer, design, load
 from workhold.model.requirements import Restrictions, circle_zone
-from workhold.model.search_report import Explanation
+from workhold.model.search_report import Explanation, asked_note, no_fixture_notes
 from workhold.search import explaining
 from workhold.search.explaining import explain
 from workhold.search.toolkit_search import count_contacts
@@ -176,3 +176,89 @@ def test_another_number_of_clamps_helps() -> None:
     )
     changed = [item for item in explaining.changes(pairs, MILLIMETRE) if item[0] == "with one clamp"]
     assert [item[1]().toolkit for item in changed] == [evolve(one, rows=2, directions=None)]
+
+
+PLAIN_PLATE_LOOP = [[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]]
+PLAIN_PLATE = Workpiece.from_loops("plate", [PLAIN_PLATE_LOOP])
+WIDE = Vise(pitch=20, columns=1, peg_radius=3)
+TURNED = ((1.0, 1.001),)
+
+
+def test_what_was_asked_for_is_named_where_closure_is_the_last_rule() -> None:
+    """Four pegs that close touch the face to avoid: it takes the last fixture, not the part's shape."""
+    query = Query(PLAIN_PLATE, WIDE, restrictions=Restrictions(avoid=(2,)))
+    explanation = explain(query)
+    assert (explanation.last_rule, explanation.taken_by) == ("closure", ("faces to avoid",))
+    assert explanation.asked_words.endswith("what was asked for: faces to avoid.")
+    (item,) = (item for item in explanation.helps if item.rules)
+    assert item.fixtures == len(design(PLAIN_PLATE, WIDE)) > 0
+
+
+def test_nothing_that_was_asked_for_is_named_where_it_takes_nothing() -> None:
+    """A large gap is a rule of the vise; a contact margin beside it does no harm."""
+    explanation = explain(Query(PLAIN_PLATE, evolve(WIDE, min_gap=200.0), contact_margin=0.1))
+    assert (explanation.taken_by, explanation.asked_words) == ((), "")
+
+
+@pytest.mark.parametrize(
+    ("vise", "asked", "margin", "needed"),
+    [
+        (WIDE, {"avoid": (2,), "angles": TURNED}, 0.01, ("faces to avoid", "angles of the part")),
+        (evolve(WIDE, rows=1), {"avoid": (2,)}, 0.01, ("faces to avoid", "rows of holes")),
+        (
+            evolve(WIDE, rows=1),
+            {"angles": TURNED},
+            15.0,
+            ("angles of the part", "contact margin", "rows of holes"),
+        ),
+    ],
+    ids=["faces, angles", "faces, rows", "angles, margin, rows"],
+)
+def test_what_takes_the_last_fixture_together_is_left_out_together(
+    vise: Vise, asked: dict[str, Any], margin: float, needed: tuple[str, ...]
+) -> None:
+    """Each of them alone takes all, so no single change helps; a margin that takes nothing is not named."""
+    explanation = explain(Query(PLAIN_PLATE, vise, None, margin, Restrictions(**asked)))
+    (item,) = explanation.helps
+    assert set(item.rules) == set(explanation.taken_by) == set(needed)
+    assert explanation.asked_words.endswith("together.")
+    rest: dict[str, Any] = {} if "contact margin" in needed else {"contact_margin": margin}
+    assert item.fixtures == len(design(PLAIN_PLATE, WIDE, **rest)) > 0
+
+
+def reasons(workpiece: Workpiece, toolkit: Any, margin: float = 0.0, **asked: Any) -> tuple[str, ...]:
+    """Why a search finds nothing."""
+    result = answer(Query(workpiece, toolkit, None, margin, Restrictions(**asked)))
+    assert not any(result.found.values()) and result.complete
+    return result.reasons
+
+
+def test_a_search_names_what_was_asked_for_after_its_reason() -> None:
+    """And nothing where nothing was; the reason itself is the same."""
+    loose = no_fixture_notes(WIDE.wording)[3]
+    assert reasons(PLAIN_PLATE, WIDE, avoid=(2,)) == (loose, asked_note(["faces to avoid"]))
+    assert asked_note(["angles of the part", "contact margin"]) in reasons(
+        PLAIN_PLATE, WIDE, 15.0, angles=TURNED
+    )
+    assert len(reasons(PLAIN_PLATE, evolve(WIDE, min_gap=200.0))) == 1
+
+
+def test_a_part_is_called_round_only_if_it_is() -> None:
+    """With its straight sides avoided a plate with a hole is none; a disc is one with any zone."""
+    bored = Workpiece.from_loops("bored", [PLAIN_PLATE_LOOP, [[20, 20, 1], [40, 20, 1]]])
+    disc, small = (
+        Workpiece.from_loops("disc", [[[-20, 0, 1], [20, 0, 1]]]),
+        Vise(pitch=8, columns=2, peg_radius=2),
+    )
+    concentric = no_fixture_notes(small.wording)[0]
+    (said, _) = reasons(bored, small, avoid=(0, 1, 2, 3))
+    assert said != concentric and "faces to avoid" in said and "one centre" in said
+    assert reasons(disc, small, zones=(circle_zone(20.0, 0.0, 3.0),))[0] == concentric
+
+
+def test_the_pitch_is_to_blame_only_if_it_is() -> None:
+    """Two pegs of one jaw reach the part in more rows than the one asked for; on a wide pitch they do not anyway."""
+    too_far = no_fixture_notes(WIDE.wording)[1]
+    (said, _) = reasons(PLAIN_PLATE, evolve(WIDE, rows=1))
+    assert said != too_far and "rows of holes" in said and "pitch" not in said
+    assert reasons(PLAIN_PLATE, evolve(WIDE, pitch=500, rows=1))[0] == too_far

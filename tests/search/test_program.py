@@ -280,6 +280,44 @@ def test_an_explanation_names_the_program_and_its_line(toolkit: Toolkit) -> None
     assert any(help.change.startswith("without the program, of which line ") for help in why.helps)
 
 
+EYES = [[[16.1245154965971, -8, 0], [53.8754845034029, -8, 4.265564437074636]]]
+EYES[0] += [[53.8754845034029, 8, 0], [16.1245154965971, 8, 4.265564437074636]]
+
+
+@pytest.mark.parametrize("low", [4.0, 40.0])
+def test_a_program_that_leaves_faces_that_hold_nothing_is_the_reason(low: float) -> None:
+    """Of two eyes on a web the tools leave one; high above the pegs they leave all, and are not named."""
+    part = Workpiece.from_loops("eyes", EYES)
+    cuts = path(END_MILL, [(10, -13, low), (70, -23, low), (70, 23, low), (10, 13, low)], [0.0, 1.0, 0.0])
+    result = answer(asked(part, Vise(12.0, 1, 3.0), program_of(cuts, clearance=3.0)), threads=1)
+    if low > THICKNESS:
+        assert len(result)
+    else:
+        (reason,) = result.notes
+        assert reason.startswith(
+            "Every face that the program's tools leave, of which line 5 takes the most, is an arc"
+        )
+
+
+@pytest.mark.parametrize("toolkit", [Vise(20.0, 2, 3.0), Fence(20.0, 3.0, wall_offset=6.0)])
+def test_a_reason_says_that_the_tools_take_places_away(toolkit: Toolkit) -> None:
+    """Also where pegs still touch, or lie beside a wall; a program that takes nothing is not named."""
+    points = [(0, 0), (60, 0), (60, 30), (40, 44), (0, 40)]
+    part = Workpiece.from_points("plate", points)
+    x0, y0, x1, y1 = box_of(part)
+    around_most = [(x0 - 12, y0 - 2, 4.0), (x1 + 2, y0 - 2, 4.0), (x1 + 2, y1 + 2, 4.0)]
+    none = answer(asked(part, toolkit, program_of(path(END_MILL, around_most), clearance=9.0)), threads=1)
+    assert not len(none)
+    assert (
+        "clear of the program's tools, of which line " in none.notes[0]
+        and "is most in the way" in none.notes[0]
+    )
+    round_part = Workpiece.from_loops("disc", [[[10, 0, 1], [-10, 0, 1]]])
+    above = program_of(path(END_MILL, [(0.0, -11.0, 4.0), (3.0, -11.0, 4.0)]))
+    blamed = answer(asked(round_part, Vise(10.0, 1, 3.0), above), threads=1)
+    assert blamed.notes[0].startswith("Every face is an arc about one centre")
+
+
 def test_heights_are_asked_for_where_nobody_knows_them() -> None:
     part, program = random_outline(Random(5), 6), program_of(path(END_MILL, [(0.0, 0.0, 1.0)]))
     with pytest.raises(InputError, match="give its thickness, and the peg height"):

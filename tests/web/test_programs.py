@@ -43,6 +43,14 @@ def test_a_program_is_described_with_its_paths(server: RunningServer) -> None:
     assert "L600 -190" in slot
 
 
+def test_a_start_and_thousandths_are_taken(server: RunningServer) -> None:
+    """As the page's fields give them."""
+    text = "G21 G90\nT1 M6\nG0 Z5000\nG1 Z-1000 F90\nX40.\n"
+    form = {**PROGRAM, "text": text, "start": [1, 2, 30], "whole_numbers": "thousandths"}
+    told = server.client.post("/api/programs", json={"program": form}).json()
+    assert told["box"] == [[1, 2, 11], [40, 2, 42]] and told["moves"] == 3
+
+
 def test_a_search_keeps_clear_of_it_and_names_the_nearest_move(server: RunningServer) -> None:
     """The list is that of the program's own query, and a fixture says which line comes nearest, and where."""
     url = server.done(SEARCH)
@@ -91,6 +99,13 @@ def test_without_a_program_nothing_is_passed(server: RunningServer) -> None:
         ({"clearance": -1.0}, "clearance"),
         ({"rapid": "curved"}, "rapid"),
         ({"text": 5}, "text"),
+        (
+            {"text": "G21 G90\nT1 M6\nG0 Z5.\nG1 Z-1. F9\n"},
+            "line 4: the tool cuts at a place that the program does not say, as X and Y are not named before: write X "
+            'and Y with G0 before it, or give where the tip is at the start with "tip starts at".',
+        ),
+        ({"start": [1, 2]}, "start"),
+        ({"whole_numbers": "tenths"}, "whole_numbers"),
     ],
 )
 def test_what_cannot_be_read_is_refused_in_the_words_of_the_page(

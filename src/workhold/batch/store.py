@@ -4,8 +4,10 @@ The record of an answer is a result file (``files.result.writer``) of the best f
 that takes one can open. That of a drawing holds the part in the form that ``files.part.data`` reads, and what
 is to be said about it. What cannot be read or asked is a record too: it would be refused again.
 
-A folder keeps each record in a file under its task's name, written whole or not at all. Two runs may use one
-folder at a time: a record that both write has the same bytes, and takes its name at once. An object store or
+A folder keeps each record in a file under its task's name, written whole or not at all. Beside it stands the
+checksum of its name and its bytes, which is written first: a record that has been changed, cut or swapped
+since is none. Two runs may use one folder at a time: a record that both write has the same bytes, and takes its
+name at once. An object store or
 another machine keeps them wherever fsspec can write: ``s3://bucket/folder``, ``sftp://host/folder``. Workers
 of a cluster write there themselves, so that no record passes through the machine that asks.
 """
@@ -16,6 +18,7 @@ import json
 import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
+from hashlib import sha256
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Protocol
@@ -73,13 +76,20 @@ def ended(content: dict[str, Any]) -> bytes:
     return json.dumps(content).encode() + b"\n"
 
 
-def is_whole(content: bytes) -> bool:
-    """Whether bytes begin and end as a record does: a file that lost its end with the power is none.
+def checksum(name: str, content: bytes) -> bytes:
+    """The line that stands beside a record: the SHA-256 of its task's name and its bytes."""
+    return sha256(name.encode() + b"\n" + content).hexdigest().encode() + b"\n"
 
-    >>> is_whole(refusal_record("no")), is_whole(refusal_record("no")[:-1]), is_whole(b"")
-    (True, False, False)
+
+def is_whole(name: str, content: bytes, line: bytes) -> bool:
+    """Whether bytes are the record of a task: they begin and end as one does, and have its checksum.
+
+    >>> record = refusal_record("no")
+    >>> line = checksum("a", record)
+    >>> [is_whole("a", *one) for one in ((record, line), (record[:-1], line), (b"", line), (record, b""))]
+    [True, False, False, False]
     """
-    return content.startswith(FIRST) and content.endswith(LAST)
+    return content.startswith(FIRST) and content.endswith(LAST) and line == checksum(name, content)
 
 
 def plain_record(content: bytes) -> dict[str, Any]:
@@ -96,6 +106,15 @@ def workpiece_of(record: dict[str, Any]) -> Workpiece:
     if "outlines" not in record:
         return workpiece
     return with_own_outlines(workpiece, record["outlines"], record["heights"])
+
+
+# What the file of a checksum ends in, in place of the record's own ending.
+CHECKSUM = ".sha256"
+
+
+def beside(path: str) -> str:
+    """The path of the checksum of the record at a path of an object store."""
+    return path.removesuffix(".json") + CHECKSUM
 
 
 # Letters of a name that its folder has: so no folder has too many files.
@@ -151,11 +170,12 @@ class FolderStore(Store):
 
     def read(self, name: str) -> bytes | None:
         """A record, if it is whole."""
+        path = self.path(name)
         try:
-            content = self.path(name).read_bytes()
+            content, line = path.read_bytes(), path.with_suffix(CHECKSUM).read_bytes()
         except OSError:
             return None
-        return content if is_whole(content) else None
+        return content if is_whole(name, content, line) else None
 
     @contextmanager
     def file(self, name: str) -> Iterator[Path]:
@@ -167,6 +187,7 @@ class FolderStore(Store):
         path = self.path(name)
         with plain_errors(path):
             path.parent.mkdir(parents=True, exist_ok=True)
+        write_bytes(path.with_suffix(CHECKSUM), checksum(name, record))
         write_bytes(path, record)
 
 
@@ -197,15 +218,17 @@ class UrlStore(Store):
         system, path = self.at(name)
         try:
             content: bytes = system.cat_file(path)
+            line: bytes = system.cat_file(beside(path))
         except OSError:
             return None
-        return content if is_whole(content) else None
+        return content if is_whole(name, content, line) else None
 
     def write(self, name: str, record: bytes) -> None:
         """Keeps a record; see :meth:`workhold.batch.store.Store.write`. One that is cut short is none."""
         system, path = self.at(name)
         try:
             system.makedirs(path.rpartition("/")[0], exist_ok=True)
+            system.pipe_file(beside(path), checksum(name, record))
             system.pipe_file(path, record)
         except OSError as error:
             raise InputError(f"{self.place(name)} cannot be written: {error.strerror or error}.") from error

@@ -18,6 +18,7 @@ from attrs import frozen
 from workhold.batch.durations import Measured
 from workhold.batch.run import Job
 from workhold.batch.store import Store, plain_record
+from workhold.errors import encodable
 from workhold.files.atomic import binary_file, text_file
 from workhold.model.quality import FIGURES, PROGRAM_FIGURE, SEATING_FIGURES
 from workhold.model.query import Query
@@ -198,6 +199,8 @@ def write_tables(rows: Iterator[JobRow], folder: Path) -> Iterator[JobRow]:
 
 def cell(value: Any) -> Any:
     """A value as a cell shows it."""
+    if isinstance(value, str):
+        return encodable(value)
     if isinstance(value, bool):
         return str(value).lower()
     return f"{value:.12g}" if isinstance(value, float) else value
@@ -231,7 +234,11 @@ def parquet_table(path: Path, columns: Mapping[str, type]) -> Iterator[AddRows]:
 
         def add(rows: Sequence[Row]) -> None:
             if rows:
-                writer.write_table(pyarrow.Table.from_pylist(list(rows), schema=schema))
+                written = [
+                    {key: encodable(value) if isinstance(value, str) else value for key, value in row.items()}
+                    for row in rows
+                ]
+                writer.write_table(pyarrow.Table.from_pylist(written, schema=schema))
 
         yield add
         # Beside the schema it would stand too far from the end to be looked for.

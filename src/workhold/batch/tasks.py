@@ -15,6 +15,7 @@ import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from hashlib import sha256
+from math import inf
 from pathlib import Path
 from threading import Event
 from time import perf_counter
@@ -25,6 +26,7 @@ from attrs import define, evolve, field, frozen
 
 from workhold.batch.store import part_record, plain_record, refusal_record, workpiece_of
 from workhold.errors import NO_ROOM, InputError, WorkholdError, lacks_memory
+from workhold.files.budget import SECONDS, SECONDS_PER_MILLION
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.query import Query
 from workhold.model.result import Result
@@ -45,6 +47,8 @@ __all__ = [
 PACKAGE = Path(__file__).resolve().parents[1]
 # What only shows or checks outcomes, or brings the work to where it is done.
 WITHOUT_SAY = ("cli", "drawing", "verification", "web")
+# The clock's seconds for each of the processor's on a machine that others use too.
+MOST_BUSY = 10.0
 # Letters of a name: 128 bits, so that no two of any number of tasks share one.
 LETTERS = 32
 
@@ -89,6 +93,11 @@ class Task:
     title: str
     program: str = field(factory=program, kw_only=True)
 
+    @property
+    def most_seconds(self) -> float:
+        """Seconds within which it is done or will never be, whatever else is allowed."""
+        return inf
+
     def prepare(self) -> None:
         """Loads what the work needs.
 
@@ -124,6 +133,11 @@ class Reading(Task):
     ending: str
     content: bytes = field(repr=False)
     options: Mapping[str, Any]
+
+    @property
+    def most_seconds(self) -> float:
+        """Ten times the processor time after which readers give a file up, for a machine that is busy."""
+        return MOST_BUSY * (SECONDS + SECONDS_PER_MILLION * len(self.content) / 1e6)
 
     def prepare(self) -> None:
         """Loads the readers' kernels."""

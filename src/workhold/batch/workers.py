@@ -12,16 +12,18 @@ from collections import Counter, deque
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from itertools import islice
+from math import inf
 from multiprocessing import get_context, resource_tracker
 from multiprocessing.connection import Connection, wait
 from threading import Event
+from time import monotonic
 from typing import Any
 
 from attrs import define, evolve, field
 
 from workhold.batch.tasks import Outcome, Task, Watcher, done
 from workhold.errors import InputError
-from workhold.web.worker import worker_main
+from workhold.web.worker import discard_folder, worker_main
 
 __all__ = ["LocalWorkers"]
 
@@ -33,7 +35,7 @@ MOST_TRIES = 2
 MOST_FAILED_STARTS = 3
 # Bytes of address space that a worker has at least; it takes a third of this before any work.
 LEAST_MEMORY = 2 << 30
-# Seconds that no task takes: there is no limit to its time.
+# Seconds that no task takes, where there is no limit to its time.
 ENDLESS = 1e8
 
 
@@ -60,13 +62,17 @@ class Worker:
     connection: Connection
     is_ready: bool = False
     task: Task | None = None
+    folder: str | None = None
+    seconds: float = ENDLESS
+    ends_at: float = inf
 
     def end(self) -> None:
-        """End the process at once and let go of it."""
+        """End the process at once and let go of it and of what it wrote for a time."""
         self.process.kill()
         self.process.join()
         with suppress(OSError):
             self.connection.close()
+        discard_folder(self.folder)
 
 
 @define(eq=False)
@@ -78,11 +84,13 @@ class LocalWorkers:
     count : how many.
     watcher : is notified of what happens.
     memory_bytes : that each may take; None is an equal share of this machine's.
+    seconds : that a task may take, after which its worker is ended and the task has failed.
     """
 
     count: int
     watcher: Watcher
     memory_bytes: int | None = None
+    seconds: float = ENDLESS
     workers: list[Worker] = field(factory=list, init=False)
     failed_starts: int = field(default=0, init=False)
 
@@ -111,9 +119,20 @@ class LocalWorkers:
                         waiting.appendleft(one.task)
                 if outcome is not None:
                     yield outcome
+            yield from self.late()
         # What was begun is given up; its worker could not be stopped at once.
         for one in [one for one in self.workers if one.task is not None]:
             self.drop(one)
+
+    def late(self) -> Iterator[Outcome]:
+        """Ends the workers whose tasks take longer than they may, and says so."""
+        for one in [one for one in self.workers if one.task is not None and monotonic() > one.ends_at]:
+            task = one.task
+            assert task is not None
+            self.drop(one)
+            words = f"This was given up after {one.seconds:,.0f} s, the most that it may take."
+            self.watcher.notify(f"{one.title} was ended: {task.title} took longer than {one.seconds:,.0f} s.")
+            yield Outcome(task.name, None, words, one.seconds, one.title)
 
     def hand_out(self, waiting: deque[Task]) -> None:
         """Gives what waits to the workers that are ready, and start some where there are too few of them."""
@@ -144,7 +163,8 @@ class LocalWorkers:
 
     def give(self, one: Worker, task: Task) -> None:
         """Gives a task to a worker; that a dead one cannot take it shows when it is heard."""
-        one.task = task
+        one.task, one.seconds = task, min(self.seconds, task.most_seconds)
+        one.ends_at = monotonic() + one.seconds
         self.watcher.begun(one.title, task.title)
         with suppress(OSError):
             one.connection.send((1, "task", ENDLESS, task))
@@ -158,13 +178,14 @@ class LocalWorkers:
         """What a worker says: an outcome; None when it is ready for the first time, or is no more."""
         try:
             kind, _, value = one.connection.recv()
-        except (EOFError, OSError):
+        except Exception:
+            # The end of the pipe, or half a message of a worker that was ended.
             self.drop(one)
             if not one.is_ready:
                 self.refuse_failed_starts(one)
             return None
         if kind == "ready":
-            one.is_ready, self.failed_starts = True, 0
+            one.is_ready, one.folder, self.failed_starts = True, value, 0
             return None
         task, one.task = one.task, None
         self.watcher.ended(one.title)

@@ -79,7 +79,7 @@ def design(asked: DesignArguments, folder: Path, cancel: Event) -> Answer:
     out = asked.out or str(folder / f"result-{len(list(folder.iterdir())) + 1}.json")
     refuse_output(out, (asked.part, asked.toolkit), asked.force, "force")
     loaded, result = answered(asked, cancel)
-    save(result, out)
+    save(result, out, overwrite=True)
     found = result_data(result, entries(result), asked.count)
     data = {**found, "result_file": out, "remarks": list(loaded.remarks)}
     return Answer(data, result.draw() if asked.picture and len(result) else None)
@@ -100,6 +100,7 @@ def explain(asked: DesignArguments, folder: Path, cancel: Event) -> Answer:
 
     explanation = explained(result.query)
     words = explanation.nearest.words if explanation.nearest else " ".join(result.notes)
+    words = f"{explanation.asked_words} {words}".lstrip()
     return Answer(
         {"found": 0, "complete": True, "sentence": words, **explanation_data(explanation, result.toolkit)}
     )
@@ -206,7 +207,8 @@ def sheet(asked: SheetArguments, folder: Path, cancel: Event) -> Answer:
     refuse_output(asked.path, (asked.result_file,), asked.force, "force")
     result = result_with(asked.result_file, asked.rank)
     wishes = asked.model_dump(exclude={"result_file", "rank", "path", "force"})
-    result[asked.rank - 1].save_sheet(asked.path, result_file=asked.result_file, **wishes)
+    fixture, force = result[asked.rank - 1], asked.force
+    fixture.save_sheet(asked.path, result_file=asked.result_file, overwrite=force, **wishes)
     return Answer({"written": [asked.path]})
 
 

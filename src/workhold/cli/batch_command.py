@@ -26,7 +26,7 @@ from workhold.cli.toolkit_lists import (
     toolkits_to_try,
     words_of,
 )
-from workhold.cli.values import length_unit, optional_count
+from workhold.cli.values import length_unit, optional_count, positive_number
 from workhold.errors import InputError
 from workhold.limits import thread_count
 
@@ -49,6 +49,8 @@ AskedWords = tuple[QueryWords, SeatingWords, ProgramWords]
 TOOLKITS, WORK = "Toolkits to try", "The work"
 # Fixtures that are kept of each job.
 USUAL_BEST = "10"
+# Far more than any job of docs/benchmarks.md takes.
+USUAL_SECONDS = "3600"
 RECORDS, MEASURED, REPORT, SHEETS = "work", "measured.csv", "report.html", "sheets"
 # Parts that cannot be read or failed, as named on the terminal; the report names all.
 MOST_NAMED = 10
@@ -89,6 +91,12 @@ def batch(
     force: bool = FORCE,
     json_: bool = JSON,
     workers: str | None = option(WORK, "N", "Worker processes; one for each processor if not given."),
+    seconds: str = option(
+        WORK,
+        "S",
+        "How long one job may take at most; its row then says so, and the others go on.",
+        default=USUAL_SECONDS,
+    ),
     cluster: str | None = option(
         WORK,
         "ADDRESS",
@@ -124,6 +132,9 @@ def batch(
         raise InputError(
             "a cluster takes Dask, which is not installed: install distributed>=2024.8 and fsspec>=2024.6."
         )
+    longest = positive_number("--seconds", seconds)
+    if (cluster is not None or processes is not None) and seconds != USUAL_SECONDS:
+        raise InputError("--seconds is of the workers of this machine: a cluster has no such limit.")
     folder = Path(out)
     from workhold.batch.tables import has_parquet, table_names
 
@@ -144,7 +155,8 @@ def batch(
             if any(is_seated(held) for request in requests for held in request.held_in):
                 compile_seating(stop)
         with batch_progress() as progress, ExitStack() as workshop:
-            queue = place_to_work(progress, count, cluster, processes, None if records is None else store)
+            where = None if records is None else store
+            queue = place_to_work(progress, count, cluster, processes, where, longest)
             workshop.enter_context(queue)
             measured = Measured(folder / MEASURED)
             done = run_batch(requests, kept, BatchRun(store, queue, measured, progress, stop))
@@ -188,12 +200,13 @@ def place_to_work(
     cluster: str | None,
     processes: int | None,
     store: Store | None,
+    seconds: float,
 ) -> LocalWorkers | ClusterWorkers:
     """Makes the queue asked for; the workers of a cluster write records to ``store`` themselves."""
     if cluster is None and processes is None:
         from workhold.batch.workers import LocalWorkers
 
-        return LocalWorkers(count or thread_count(None), progress)
+        return LocalWorkers(count or thread_count(None), progress, seconds=seconds)
     from workhold.batch.cluster import ClusterWorkers
 
     return ClusterWorkers(progress, cluster, processes or 0, store)

@@ -244,7 +244,7 @@ def answered(query: Query, engine: str, streamed: str | None, threads: int | Non
     if streamed is not None:
         from workhold.files.result.columns import answer_to_file
 
-        return answer_to_file(query, streamed, threads=threads, **watching)
+        return answer_to_file(query, streamed, overwrite=True, threads=threads, **watching)
     from workhold.search.design import answer
 
     return answer(query, threads=threads, **watching)

@@ -141,6 +141,8 @@ def print_explanation(explanation: Explanation, toolkit: Toolkit, unit: Unit, st
         for removal in explanation.removals:
             table.add_row(removal.rule, f"{removal.before:,}", f"{removal.removed:,}", f"{removal.after:,}")
         print_tables(table, f"The last were removed by: {explanation.last_rule}.", stream=stream)
+    if explanation.asked_words:
+        print_tables(explanation.asked_words, stream=stream)
     if explanation.nearest is not None:
         _, _, _, pegs = fixture_tables(explanation.nearest.fixture, toolkit, 1, 1, unit)
         print_tables("", f"Nearest miss: {explanation.nearest.words}", pegs, stream=stream)

@@ -8,10 +8,8 @@ says. Remarks and errors go to standard error as always, and the exit codes are 
 from __future__ import annotations
 
 import json
-import os
 import sys
 from collections.abc import Iterable
-from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +18,7 @@ from workhold.cli.ending import Interrupted, keep_what_is_found
 from workhold.cli.table import print_tables
 from workhold.cli.values import choice, picture_ending
 from workhold.errors import InputError
+from workhold.files import replacing
 
 if TYPE_CHECKING:
     from workhold.model.result import Result
@@ -44,103 +43,22 @@ __all__ = [
 
 FORCE = flag(None, "Replace files of these names that workhold has not written.", "--force")
 
-# What stands within the first or the last so many bytes of everything that workhold writes, and of nothing
-# else.
-ENDS = 4096
-MARKS = (
-    b'{"format": "workhold-result/',
-    b'{"format": "workhold-family/',
-    b'{"format": "workhold-benchmark',
-    b"format workhold-benchmark/1",
-    b"\0workhold-result/",
-    b"number,type,theta_deg,x,y,jaw_separation,",
-    b"toolkit,fixtures,type_",
-    b"hole,carrier,column,row,x,y,diameter,length,unit,dowel,face\n",
-    b"part,file,toolkit,",
-    b"workhold-table/1",
-    b"<!-- workhold -->",
-    b"tEXtSoftware\0workhold",
-    b"/Producer (workhold)",
-    b"$LASTSAVEDBY\n  1\nworkhold\n",
-    b"'workhold','",
-    b'"generator":"workhold"',
-)
+# What the permission to replace a file is called here.
+CALLED = "--force"
 
 
 def refuse_output(
-    path: str | Path, inputs: Iterable[str | Path | None], force: bool, called: str = "--force"
+    path: str | Path, inputs: Iterable[str | Path | None], force: bool, called: str = CALLED
 ) -> None:
-    """Refuses an output file before any work is done for it.
-
-    Parameters
-    ----------
-    inputs : what the command reads: files, names of other things, and None for what is not given.
-    force : whether a file that workhold has not written may be replaced.
-    called : what that is called where it is asked for.
-
-    Raises
-    ------
-    InputError
-        When it cannot be written, is one of the inputs (also through links), or is a foreign file.
-    """
-    from workhold.files.atomic import refuse_unwritable
-
-    refuse_unwritable(path)
-    refuse_replacing(Path(path), inputs, force, called)
+    """Refuses an output file of a command, see :func:`workhold.files.replacing.refuse_output`."""
+    replacing.refuse_output(path, inputs, force, called)
 
 
 def refuse_output_folder(
     folder: Path, names: Iterable[str], inputs: Iterable[str | Path | None], force: bool
 ) -> None:
-    """Refuses an output folder, or the files of some names that a command would write into it.
-
-    Raises
-    ------
-    InputError
-        See :func:`refuse_output`.
-    """
-    from workhold.files.atomic import refuse_unwritable_folder
-
-    refuse_unwritable_folder(folder)
-    inputs = list(inputs)
-    for name in names:
-        refuse_replacing(folder / name, inputs, force)
-
-
-def refuse_replacing(
-    path: Path, inputs: Iterable[str | Path | None], force: bool, called: str = "--force"
-) -> None:
-    """Refuses to write over an input, and over a foreign file unless that is asked for.
-
-    Raises
-    ------
-    InputError
-        Naming the file.
-    """
-    if not path.is_file():
-        return
-    if any(is_same(path, given) for given in inputs if given is not None):
-        raise InputError(f"{path} is also what is read: give the output another name.")
-    if not force and not is_own(path):
-        raise InputError(f"{path} was not written by workhold: give another name, or {called} to replace it.")
-
-
-def is_same(path: Path, given: str | Path) -> bool:
-    """Whether a path and another name lead to the same file."""
-    try:
-        return path.samefile(given)
-    except (OSError, ValueError):
-        return False
-
-
-def is_own(path: Path) -> bool:
-    """Whether workhold has written a file, or the file is empty."""
-    with suppress(OSError), path.open("rb") as stream:
-        first = stream.read(ENDS)
-        stream.seek(-min(ENDS, os.fstat(stream.fileno()).st_size), os.SEEK_END)
-        ends = first + stream.read(ENDS)
-        return not ends or any(mark in ends for mark in MARKS)
-    return False
+    """Refuses an output folder of a command, see :func:`workhold.files.replacing.refuse_output_folder`."""
+    replacing.refuse_output_folder(folder, names, inputs, force, CALLED)
 
 
 def asked_picture(draw: str | None, inputs: Iterable[str | Path | None], force: bool) -> Path | None:
@@ -186,12 +104,13 @@ def output_form(out: str | None, asked: str | None) -> str:
     Raises
     ------
     InputError
-        For a form that is not known, and for one that no terminal can take.
+        For a form that is not known, one that no terminal can take, and a name of a file of another kind.
     """
-    if asked is None:
-        ending = "" if out is None else out.lower().rpartition(".")[2]
-        return ending if ending in FORMS else "json"
-    form = choice("--format", asked, FORMS)
+    ending = "" if out is None else out.lower().rpartition(".")[2]
+    form = (ending if ending in FORMS else "json") if asked is None else choice("--format", asked, FORMS)
+    if out is not None:
+        own = [f".{one}" for one in FORMS] if asked is None else [f".{form}"]
+        replacing.refuse_other_ending(out, own, "such a result file")
     if form == "npz" and out == STANDARD_OUTPUT:
         raise InputError("--format npz needs a file: name one with --out.")
     return form
@@ -208,7 +127,7 @@ def write_output(result: Result, out: str, form: str) -> None:
     if out != STANDARD_OUTPUT:
         from workhold.files.result.save import save
 
-        save(result, out, form)
+        save(result, out, form, overwrite=True)
         return
     if form == "csv":
         from workhold.files.result.fixture_text import result_csv_text as text_of

@@ -18,7 +18,9 @@ from workhold.cli.program_options import (
     CUTTING_FORCE,
     MATERIAL,
     POWER,
+    START_WORDS,
     TEETH,
+    WHOLE_NUMBERS_WORDS,
     ProgramWords,
     asked_reading,
     asked_zero,
@@ -56,6 +58,8 @@ def program(
         "Whether rapid moves are straight, or may go anywhere in the box of their ends.",
         default="straight",
     ),
+    start: str | None = option(READING, "X,Y,Z", START_WORDS),
+    whole_numbers: str = option(READING, "units|thousandths", WHOLE_NUMBERS_WORDS, default="units"),
     zero: str = option(PLACE, "X,Y", "Where the program's X0 Y0 is on the part.", default="0,0"),
     z_zero: str = option(
         PLACE, "top|bottom|LENGTH", "Where its Z0 is: a side of the part, or a height.", default="top"
@@ -90,6 +94,8 @@ def program(
         z_zero=z_zero,
         rapid=rapid,
         program_unit=program_unit,
+        start=start,
+        whole_numbers=whole_numbers,
         cutting_force=cutting_force,
         power=power,
         material=material,

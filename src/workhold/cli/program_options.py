@@ -21,6 +21,7 @@ from workhold.cli.values import (
     length,
     optional_force,
     optional_positive_length,
+    three_lengths,
     two_lengths,
     whole_number,
 )
@@ -40,9 +41,11 @@ __all__ = [
     "MATERIAL",
     "POWER",
     "ProgramWords",
+    "START_WORDS",
     "TEETH",
     "asked_reading",
     "asked_zero",
+    "WHOLE_NUMBERS_WORDS",
 ]
 
 FORCES = "Cutting forces"
@@ -68,6 +71,12 @@ POWER_WORDS = re.compile(r"\s*(?P<number>.*?)\s*(?P<unit>kW|hp)?\s*", re.IGNOREC
 # kW in a unit; 550 foot-pounds a second.
 POWERS = {"kw": 1.0, "hp": 0.7456998715822702}
 PROGRAM = "The program"
+START_WORDS = "Where the tip is at its start, from its own zero, where the program does not say it."
+WHOLE_NUMBERS_WORDS = (
+    "What its lengths without a decimal point count; thousandths are 0.001 mm or 0.0001 inch."
+)
+# What the questions of a program's reader are called here.
+CALLED = {"start": "--start X,Y,Z"}
 SOLIDS = (".step", ".stp")
 
 
@@ -104,6 +113,8 @@ class ProgramWords:
         default="straight",
     )
     program_unit: str | None = option(PROGRAM, "mm|inch", "Unit of a program without G20 and G21.")
+    start: str | None = option(PROGRAM, "X,Y,Z", START_WORDS)
+    whole_numbers: str = option(PROGRAM, "units|thousandths", WHOLE_NUMBERS_WORDS, default="units")
     cutting_force: str | None = CUTTING_FORCE
     power: str | None = POWER
     material: str | None = MATERIAL
@@ -254,6 +265,17 @@ def asked_zero(text: str, unit: Unit) -> tuple[float, float]:
     return two_lengths("--zero", text, unit, "a place here: give two lengths, such as 10,5.")
 
 
+def asked_start(text: str, unit: Unit) -> tuple[float, float, float]:
+    """The place of the tip at the start of the program, in mm from its own zero.
+
+    Raises
+    ------
+    InputError
+        For anything but three lengths.
+    """
+    return three_lengths("--start", text, unit, "a place: give three lengths, such as 0,0,50.")
+
+
 def zero_on(workpiece: Workpiece | None, text: str, unit: Unit) -> tuple[float, float]:
     """The place of the program's zero in mm, which the part's own places may name as on the setup sheet.
 
@@ -289,6 +311,9 @@ def asked_reading(
         "z_zero": height if height in ("top", "bottom") else length("--z-zero", height, unit),
         "thickness": thickness,
         "rapid": choice("--rapid", words.rapid, ("straight", "box")),
+        "start": None if words.start is None else asked_start(words.start, unit),
+        "whole_numbers": choice("--whole-numbers", words.whole_numbers, ("units", "thousandths")),
+        "called": CALLED,
         "cutting": asked_cutting(words, unit),
     }
 

@@ -166,7 +166,7 @@ def supports(
     if out is not None:
         from workhold.files.supports_file import write_supports
 
-        write_supports(found, out)
+        write_supports(found, out, overwrite=True)
     if models:
         from workhold.model.support_triples import ChosenSupports
         from workhold.presenting.assembly import Assembly, shape_in

@@ -112,6 +112,21 @@ def two_lengths(option: str, text: str, unit: Unit, remedy: str) -> tuple[float,
     return length(option, words[0], unit), length(option, words[1], unit)
 
 
+def three_lengths(option: str, text: str, unit: Unit, remedy: str) -> tuple[float, float, float]:
+    """Three lengths in mm with commas between them; ``remedy`` is as of :func:`two_lengths`.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    words = text.split(",")
+    if len(words) != 3:
+        raise InputError(f"{option} {text!r} is not {remedy}")
+    x, y, z = (length(option, word, unit) for word in words)
+    return x, y, z
+
+
 def number(text: str) -> float:
     """Reads a number, or a fraction such as 1/2 or 1-1/2; NaN or infinite for anything else."""
     fraction = FRACTION.fullmatch(text)

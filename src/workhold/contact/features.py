@@ -137,9 +137,10 @@ def allowed_features(
             for part in clear_parts(feature.segment, zone.segments, body_radius)
         ]
     if not left:
+        other, avoid = (" on another face", ", or avoid fewer faces") if avoided else ("", "")
         raise InputError(
-            f"the keep-out zones cover every place along {workpiece.name} where a peg could stand: make them "
-            "smaller."
+            f"the keep-out zones cover every place along {workpiece.name} where a peg could stand{other}: make "
+            f"them smaller{avoid}."
         )
     clear = left
     for pieces, beyond in swept:

@@ -170,7 +170,9 @@ def bands_of_pegs(
     supports, solid = details.supports, numbered_solid(workpiece)
     if supports is not None:
         reach = supports.supports.query.peg_height
-        given = supports.supports.request.for_fixture(fixture, solid, reach).peg_bands(len(fixture.pegs))
+        given = supports.supports.request.for_fixture(fixture, solid, reach, workpiece.numbered).peg_bands(
+            len(fixture.pegs)
+        )
         return tuple((float(low), float(high)) for low, high in given)
     if solid is not None:
         return tuple(solid.bands[peg.face] for peg in fixture.pegs)

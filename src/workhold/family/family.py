@@ -18,6 +18,7 @@ import numpy as np
 from attrs import define, evolve, frozen
 
 from workhold.errors import InputError
+from workhold.errors import listed as words_listed
 from workhold.family.covering import LossTable, Point, curve_of, table_of
 from workhold.family.members import OTHER_SIDE, Member, Threshold, member_of, other_side, zero_of_other_side
 from workhold.family.plan import Holding, Plan, SetUp, plan_of
@@ -221,7 +222,10 @@ def reason_of(member: Member, has_patterns: bool) -> str:
     """Why a part is no member."""
     inside = member.query.toolkit.wording.inside
     if not member.fixtures:
-        return f"it has no fixture {inside}"
+        asked = member.query.asked
+        return (
+            f"it has no fixture {inside}{f' with what was asked for: {words_listed(asked)}' if asked else ''}"
+        )
     if has_patterns:
         return "no fixture of it that may be used is within the largest loss"
     return f"none of its {member.fixtures:,} fixtures {inside} may be used"

@@ -17,7 +17,7 @@ from typing import Any
 
 from attrs import frozen
 
-from workhold.errors import InputError
+from workhold.errors import InputError, encodable, lacks_memory
 from workhold.files.part.finding import found
 from workhold.files.part.load import Loaded, read_workpiece
 
@@ -105,7 +105,8 @@ def part_list(given: Iterable[str | Path], leave_out: Iterable[str | Path] = ())
             )
     times = Counter(name for name, _, _ in parts.values())
     return tuple(
-        ListedPart(name if times[name] == 1 else str(typed), file) for name, typed, file in parts.values()
+        ListedPart(encodable(name if times[name] == 1 else str(typed)), file)
+        for name, typed, file in parts.values()
     )
 
 
@@ -172,8 +173,11 @@ def read_listed(part: ListedPart, **options: Any) -> ReadPart:
         return ReadPart(part, read_workpiece(part.path, **options))
     except InputError as error:
         return ReadPart(part, None, str(error))
-    except (ArithmeticError, LookupError, ValueError, RecursionError):
-        sentence = (
-            f"{part.path.name}: the file is damaged, or holds what this program cannot read: save it anew."
+    except Exception as error:
+        # Whatever it is, it must not cost the other parts.
+        why = (
+            "reading it takes more memory than there is: save less in it"
+            if lacks_memory(error)
+            else "the file is damaged, or holds what this program cannot read: save it anew"
         )
-        return ReadPart(part, None, sentence)
+        return ReadPart(part, None, f"{part.path.name}: {why}.")

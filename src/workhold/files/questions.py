@@ -1,4 +1,4 @@
-"""Questions that the readers of a part leave to the user, in words that any surface can fill in.
+"""Questions that the readers of a part and of a program leave to the user, in words that any surface can fill in.
 
 A sentence names a question by its mark, such as ``<axis>``. Where a part comes in
 (``files.part.load.read_workpiece``) the mark becomes what the question is called there: an option of the
@@ -25,6 +25,7 @@ __all__ = [
     "PART_NUMBER",
     "PEG_HEIGHT",
     "SECTION",
+    "START",
     "UNIT",
     "UnitAskedError",
     "by_height",
@@ -47,11 +48,13 @@ AXIS, SECTION, PEG_HEIGHT, HEAD_ROOM, LEAST_BAND, HEIGHTS = (
     "<least_band>",
     "<heights>",
 )
+# Where the tip of a program is at its start.
+START = "<start>"
 OF_SOLIDS = (AXIS, SECTION, PEG_HEIGHT, HEAD_ROOM, LEAST_BAND)
 OTHERS = (UNIT, DRAWING_UNIT, PART_NUMBER, LAYERS, JOIN_TOLERANCE, FIT)
-MARK = re.compile("|".join((*OTHERS, *OF_SOLIDS, HEIGHTS)))
-# The arguments of ``workhold.load``; it knows one unit.
-IN_PYTHON = {"drawing_unit": "unit"}
+MARK = re.compile("|".join((*OTHERS, *OF_SOLIDS, HEIGHTS, START)))
+# The arguments of ``workhold.load``, which knows one unit, and of ``Program.read``.
+IN_PYTHON = {"drawing_unit": "unit", "start": "start=(x, y, z)"}
 
 
 class UnitAskedError(InputError):

@@ -11,6 +11,7 @@ from attrs import asdict
 
 from workhold.errors import InputError
 from workhold.files.atomic import text_file
+from workhold.files.replacing import refuse_other_ending, refuse_output
 from workhold.files.result.fixture_text import fixture_lines
 from workhold.files.result.parts import checked_head
 from workhold.files.result.reader import checked_table, collected, measured
@@ -114,14 +115,20 @@ def clamp_of(part: ClampFiguresPart, point: tuple[float, float] | None) -> Clamp
     return ClampFigures((x, y), part.clamp_needed, part.support_force, part.arm, part.share, part.lift)
 
 
-def write_supports(supports: Supports, path: str | Path) -> None:
+def write_supports(supports: Supports, path: str | Path, *, overwrite: bool = False) -> None:
     """Writes a file of supports, a line for each triple.
+
+    Parameters
+    ----------
+    overwrite : whether a file that workhold has not written may be replaced.
 
     Raises
     ------
     InputError
-        When the fixture is not one of a result, or the file cannot be written.
+        When the fixture is not one of a result, or the file cannot be written or replaced.
     """
+    refuse_other_ending(path, [".json"], "a file of supports")
+    refuse_output(path, force=overwrite)
     entry = supports_entry(supports)
     triples = entry.pop("triples")
     lines = [f"{json.dumps(key)}: {json.dumps(value)},\n" for key, value in entry.items()]

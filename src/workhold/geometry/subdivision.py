@@ -307,17 +307,43 @@ def border_pieces(carriers: Sequence[CutCarrier], inside: Callable[[Point], bool
     inside : whether a point (x, y) that lies on no carrier belongs to the region.
     """
     found = []
-    for carrier in carriers:
+    pieces = [(carrier, low, high) for carrier in carriers for low, high in carrier.pieces()]
+    middles = [carrier.at((low + high) / 2) for carrier, low, high in pieces]
+    free = clearances([carrier for carrier, _, _ in pieces], middles, carriers)
+    for (carrier, low, high), (x, y), room in zip(pieces, middles, free, strict=True):
         unit = 1.0 if isinstance(carrier.segment, Line) else carrier.segment.radius
-        for low, high in carrier.pieces():
-            middle = (low + high) / 2
-            (x, y), (nx, ny) = carrier.at(middle), carrier.left(middle)
-            beside = min(BESIDE, BESIDE_SHARE * (high - low) * unit)
-            left = inside((x + beside * nx, y + beside * ny))
-            right = inside((x - beside * nx, y - beside * ny))
-            if left != right:
-                found.append(BorderPiece(carrier, low, high, left))
+        nx, ny = carrier.left((low + high) / 2)
+        beside = min(BESIDE, BESIDE_SHARE * (high - low) * unit, room / 2)
+        left = inside((x + beside * nx, y + beside * ny))
+        right = inside((x - beside * nx, y - beside * ny))
+        if left != right:
+            found.append(BorderPiece(carrier, low, high, left))
     return found
+
+
+def clearances(
+    own: Sequence[CutCarrier], points: Sequence[Point], carriers: Sequence[CutCarrier]
+) -> list[float]:
+    """How far in mm points of carriers are from what is covered of the others, where that is very near.
+
+    Other carriers do not meet these points, which lie between cuts; one that nearly touches there lies between
+    a point and a place that is looked at beside it.
+    """
+    places = np.array(points).reshape(-1, 2)
+    free = [2 * BESIDE] * len(points)
+    for carrier in carriers:
+        segment = carrier.segment
+        if isinstance(segment, Arc):
+            away = np.abs(
+                np.hypot(places[:, 0] - segment.center[0], places[:, 1] - segment.center[1]) - segment.radius
+            )
+        else:
+            (x, y), (tx, ty) = segment.middle, segment.tangent
+            away = np.abs((places[:, 0] - x) * ty - (places[:, 1] - y) * tx)
+        for k in np.flatnonzero((away < 2 * BESIDE) & (away > ONE)).tolist():
+            if own[k] is not carrier and carrier.covers(carrier.position(points[k])):
+                free[k] = min(free[k], float(away[k]))
+    return free
 
 
 def border_loops(pieces: Sequence[BorderPiece], reach: float = 1e-4) -> list[list[BorderPiece]]:

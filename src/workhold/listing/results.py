@@ -6,6 +6,7 @@ each of a toolkit's ways one carrier moves, and their results are joined as one.
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -310,16 +311,22 @@ def joined_notes(results: Sequence[Result], query: Query) -> Iterator[str]:
         sum(proof.verified for proof in proofs),
         sum(len(proof.undecided) for proof in proofs),
     )
-    reasons = no_fixture_notes(query.toolkit.wording)
-    counted = {*reasons, *(no_place_note(proof.verified, query.toolkit.wording) for proof in proofs)}
+    notes = dict.fromkeys(note for result in results for note in result.notes)
+    # The program's line that is most in the way may be another one for each way.
+    lines = {int(line) for note in notes for line in re.findall(r"\bline (\d+)", note)}
+    stages = {
+        reason: stage
+        for line in (None, *sorted(lines))
+        for stage, reason in enumerate(no_fixture_notes(query.toolkit.wording, line))
+    }
+    counted = {*stages, *(no_place_note(proof.verified, query.toolkit.wording) for proof in proofs)}
     counted |= {undecided_note(len(proof.undecided)) for proof in proofs}
     counted |= {cut_note(sum(result.found.values()), len(result)) for result in results}
-    notes = dict.fromkeys(note for result in results for note in result.notes)
     yield from (note for note in notes if note not in counted)
     if undecided:
         yield undecided_note(undecided)
     elif not any(result.found[kind] for result in results for kind in result.found):
-        said = [reason for reason in reasons if reason in notes]
+        said = sorted((note for note in notes if note in stages), key=lambda note: stages[note])
         yield from [no_place_note(verified, query.toolkit.wording)] if verified else said[-1:]
 
 

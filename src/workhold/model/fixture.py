@@ -214,7 +214,42 @@ class Fixture:
             )
         return self.listed
 
-    def draw(self, path: str | Path | None = None, *, title: str | None = None, unit: str = "mm") -> str:
+    def refuse_others(self, workpiece: Any, toolkit: Any) -> None:
+        """Refuses a part and a toolkit that it is not a fixture of.
+
+        What is listed belongs to the part and the toolkit of its result. One that was put together otherwise,
+        or changed since, has to stand on carriers and touch faces that there are.
+
+        Parameters
+        ----------
+        workpiece, toolkit : a :class:`workhold.Workpiece` and what it is held in.
+
+        Raises
+        ------
+        InputError
+            Saying which of them is another one.
+        """
+        if self.listed is not None:
+            result = self.listed.result
+            is_part, is_toolkit = result.workpiece.is_alike(workpiece), result.toolkit == toolkit
+            if (is_part and is_toolkit) or self == result[self.listed.row]:
+                refuse_unless(is_part, "part")
+                refuse_unless(is_toolkit, "toolkit")
+                return
+        names = {carrier.name for carrier in toolkit.carriers}
+        refuse_unless(all(peg.carrier in names for peg in self.pegs), "toolkit")
+        faces = {face.number for face in workpiece.numbered.faces}
+        touched = {face for peg in self.pegs for face in (peg.face, peg.beside) if face is not None}
+        refuse_unless(touched <= faces, "part")
+
+    def draw(
+        self,
+        path: str | Path | None = None,
+        *,
+        title: str | None = None,
+        unit: str = "mm",
+        overwrite: bool = False,
+    ) -> str:
         """The picture to set it up from: SVG text, which a notebook shows as a picture.
 
         Parameters
@@ -222,11 +257,12 @@ class Fixture:
         path : also write it into this file, whose name ends in .svg or .png.
         title : what to call the fixture; its rank if None.
         unit : of the lengths written: "mm", "cm", "m" or "inch".
+        overwrite : whether a file that workhold has not written may be replaced.
 
         Raises
         ------
         InputError
-            For a fixture that is not one of a result, and when the file cannot be written.
+            For a fixture that is not one of a result, and when the file cannot be written or replaced.
 
         Examples
         --------
@@ -236,7 +272,8 @@ class Fixture:
         >>> "Fixture 1 of" in result[0].draw()
         True
         """
-        picture: str = delegate("fixture_picture")(self, path, title=title, unit=unit)
+        asked = {"title": title, "unit": unit, "overwrite": overwrite}
+        picture: str = delegate("fixture_picture")(self, path, **asked)
         return picture
 
     def save_sheet(
@@ -249,6 +286,7 @@ class Fixture:
         supports: Any = None,
         best: int = 1,
         part: str | Path | None = None,
+        overwrite: bool = False,
         **asked: Any,
     ) -> None:
         """Writes the setup sheet (.pdf, .svg, .png), the set-up for CAM (.dxf, .step) or the pins (.csv).
@@ -262,6 +300,7 @@ class Fixture:
             sheet and in a .step.
         best : which of its sets of three, from 1.
         part : the STEP file of the part, for its own shape in a .step.
+        overwrite : whether a file that workhold has not written may be replaced.
         asked : what else stands on the sheet. Words are ``paper`` ("a4" or "letter"), ``day``, ``part_name``
             and ``dowel``. Forces are ``jaw_force`` in N, ``jaw`` ("screw", "constant" or a stiffness),
             ``friction``, and ``loads`` instead of the result's. Places are ``zero`` ("corner", "centre",
@@ -271,10 +310,11 @@ class Fixture:
         Raises
         ------
         InputError
-            For a fixture that is not one of a result, values that cannot be, and when the file cannot be
-            written.
+            For a fixture that is not one of a result, supports and files of another, values that cannot be,
+            and when the file cannot be written or replaced.
         """
         asked |= {"supports": supports, "best": best, "part": part, "result_file": result_file}
+        asked["overwrite"] = overwrite
         delegate("save_sheet")(self, path, unit=unit, clearance=clearance, **asked)
 
     def save_glb(
@@ -285,6 +325,7 @@ class Fixture:
         supports: Any = None,
         best: int = 1,
         part: str | Path | None = None,
+        overwrite: bool = False,
     ) -> None:
         """Writes the fixture in three dimensions as a GLB file, which browsers and phones show.
 
@@ -294,14 +335,16 @@ class Fixture:
         supports : also the pads under the part and the clamp on top, of what :meth:`supports` returns.
         best : which of its sets of three, from 1.
         part : the STEP file that the part was read from, for its own shape; a prism of its outline if None.
+        overwrite : whether a file that workhold has not written may be replaced.
 
         Raises
         ------
         InputError
-            For a fixture that is not one of a result, a set that is not there, a file of another part, and
-            when the file cannot be written.
+            For a fixture that is not one of a result, supports of another or a set that is not there, a file
+            of another part, a name of another kind of file, and when the file cannot be written or replaced.
         """
         asked = {"thickness": thickness, "supports": supports, "best": best, "part": part}
+        asked["overwrite"] = overwrite
         delegate("save_glb")(self, path, **asked)
 
     def to_build123d(
@@ -379,3 +422,9 @@ class Fixture:
         return delegate("fixture_supports")(
             self, thickness, best=best, loads=loads, jaw_force=jaw_force, **asked
         )
+
+
+def refuse_unless(belongs: bool, what: str) -> None:
+    """Refuses what a fixture is not of."""
+    if not belongs:
+        raise InputError(f"this fixture is of another {what}: give the one that it was designed for.")

@@ -13,8 +13,8 @@ from attrs import evolve, frozen
 
 from workhold.errors import InputError
 from workhold.geometry.loop import Comparisons, Face, LoopShape, encloses, near_pairs
-from workhold.geometry.segment import Segment
-from workhold.model.solid import Band, SolidOutline
+from workhold.geometry.segment import Arc, Point, Segment
+from workhold.model.solid import Band, RunRows, SolidOutline, run_at
 
 __all__ = ["NumberedOutlines", "outer_count", "refuse_misplaced_holes", "unlike"]
 
@@ -50,6 +50,7 @@ class NumberedOutlines:
     segments : their places in this tuple are their numbers.
     faces : ordered by their numbers.
     bands : for every segment its band; None where it may not be touched, nothing at all without a solid.
+    runs : for every segment the run that holds its band, as ``SolidOutline`` has it; nothing without a solid.
     over : for every segment the numbers of the solid's faces over it; nothing where these are not known.
     marks : for every face the number of its outline: 0 for the workpiece itself.
     inside : the numbers of the faces of holes.
@@ -58,6 +59,7 @@ class NumberedOutlines:
     segments: tuple[Segment, ...]
     faces: tuple[Face, ...]
     bands: tuple[Band | None, ...]
+    runs: tuple[RunRows, ...]
     over: tuple[tuple[int, ...], ...]
     marks: tuple[int, ...]
     inside: frozenset[int]
@@ -66,7 +68,7 @@ class NumberedOutlines:
     def of(cls, outlines: Sequence[OutlineOfPart]) -> NumberedOutlines:
         """Several outlines, the first of which the others belong to."""
         segments, faces, bands = list[Segment](), list[Face](), list[Band | None]()
-        over, inside = list[tuple[int, ...]](), set[int]()
+        over, inside, runs = list[tuple[int, ...]](), set[int](), list[RunRows]()
         for one in outlines:
             first = len(segments)
             inside.update(first + face.number for face in one.faces if face.number >= one.outer_count)
@@ -78,10 +80,37 @@ class NumberedOutlines:
             if one.solid is not None:
                 bands += one.solid.bands
                 over += one.solid.faces
+                runs += one.solid.runs or ((),) * len(one.segments)
         marks = tuple(number for number, one in enumerate(outlines) for _ in one.faces)
         known = len(over) == len(segments)
         solids = tuple(over) if known else ()
-        return cls(tuple(segments), tuple(faces), tuple(bands), solids, marks, frozenset(inside))
+        return cls(tuple(segments), tuple(faces), tuple(bands), tuple(runs), solids, marks, frozenset(inside))
+
+    def pressed(self, number: int, point: Point) -> Band | None:
+        """The heights that a peg can press on where it touches a face: its run there, which holds its band.
+
+        Parameters
+        ----------
+        number : of a segment of the face.
+        point : (x, y) in mm where it touches, or the peg's centre.
+        """
+        face = next(one for one in self.faces if number in one.segments)
+        if not self.runs or not any(self.runs[k] for k in face.segments):
+            return self.bands[number] if self.bands else None
+
+        def beyond(k: int) -> float:
+            return abs(self.segments[k].parameter(point)) - self.segments[k].half_extent
+
+        touched = min(face.segments, key=beyond)
+        rows, segment = self.runs[touched], self.segments[touched]
+        if not rows:
+            return self.bands[touched]
+        place = segment.parameter(point)
+        if isinstance(segment, Arc) and segment.sign < 0:
+            place = -place
+        low, high = run_at(rows, (place / segment.half_extent + 1.0) / 2.0)
+        own = self.bands[touched] or (low, high)
+        return max(min(low, own[0]), 0.0), max(high, own[1])
 
     def faces_over(self, segments: Iterable[int]) -> set[int]:
         """Numbers of the solid's faces over some segments."""

@@ -66,7 +66,7 @@ def numbered_solid(workpiece: Workpiece) -> SolidOutline | None:
     if workpiece.solid is None or not workpiece.outlines:
         return workpiece.solid
     every = workpiece.numbered
-    return evolve(workpiece.solid, bands=every.bands, faces=every.over)
+    return evolve(workpiece.solid, bands=every.bands, faces=every.over, runs=every.runs)
 
 
 def met_by(workpiece: Workpiece, toolkit: Toolkit) -> Workpiece:
@@ -118,7 +118,15 @@ def with_own_outlines(
     for role, (low, high) in heights.items():
         if role in entries:
             bands, faces = entries[role]["bands"], entries[role].get("solid_faces") or ()
-            changed = {"bands": bands, "faces": faces, "bottom": (), "top": (), "top_heights": ()}
+            runs = entries[role].get("runs") or ()
+            changed = {
+                "bands": bands,
+                "runs": runs,
+                "faces": faces,
+                "bottom": (),
+                "top": (),
+                "top_heights": (),
+            }
             solid = evolve(workpiece.solid, low=low, peg_height=high, **changed)
             outline = workpiece.from_loops(own_name((low, high)), entries[role]["loops"], solid=solid)
             own.append((role, outline))

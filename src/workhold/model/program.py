@@ -10,7 +10,7 @@ box : a rapid move of which any way inside the box of its ends counts; its path 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import inf, isfinite
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
@@ -155,6 +155,8 @@ class Program:
         rapid: Literal["straight", "box"] = "straight",
         unit: str | None = None,
         cutting: CuttingData | Mapping[str, Any] | None = None,
+        start: Sequence[float] | None = None,
+        whole_numbers: Literal["units", "thousandths"] = "units",
     ) -> Program:
         """Reads a program of RS-274 (G-code).
 
@@ -170,6 +172,10 @@ class Program:
         unit : ``mm`` or ``inch`` where the program does not say.
         cutting : how tools cut of which the table does not say it, for the forces on the part:
             :class:`workhold.model.cutting_tool.CuttingData`, or its fields by name.
+        start : where the tip is at the start, X, Y and Z in mm from the program's own zero; None where the
+            program says it.
+        whole_numbers : what a length without a decimal point counts: ``units``, or ``thousandths``, which are
+            0.001 mm or 0.0001 inch.
 
         Raises
         ------
@@ -187,6 +193,8 @@ class Program:
             rapid=rapid,
             unit=unit,
             cutting=cutting,
+            start=start,
+            whole_numbers=whole_numbers,
         )
         return read
 

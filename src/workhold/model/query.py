@@ -195,6 +195,29 @@ class Query:
         return bool(self.loads) or (self.program is not None and self.program.forces is not None)
 
     @property
+    def asked(self) -> tuple[str, ...]:
+        """What was asked for that rules fixtures out, in words, as an explanation calls it."""
+        others = {
+            "angles of the part": bool(self.restrictions.angles),
+            "contact margin": self.contact_margin > 0.0,
+            "types sought": len(self.arrangements) < len(self.toolkit.types),
+        }
+        limits = (limit.rule for limit in self.toolkit.limits)
+        rules = (*self.asked_of_places, *limits, *(name for name, is_asked in others.items() if is_asked))
+        return tuple(dict.fromkeys(rules))
+
+    @property
+    def asked_of_places(self) -> tuple[str, ...]:
+        """What of :attr:`asked` leaves fewer places for pegs along the part, or fewer holes for them."""
+        places = {
+            "faces to avoid": bool(self.restrictions.avoid),
+            "keep-out zones": bool(self.restrictions.zones),
+            "tools of the program": self.program is not None,
+        }
+        holes = (limit.rule for limit in self.toolkit.limits if limit.bounds != "travel")
+        return (*(name for name, is_asked in places.items() if is_asked), *holes)
+
+    @property
     def without_program(self) -> Query:
         """The query of fixtures that no program has to pass."""
         of_program = {PROGRAM_FIGURE.key} if self.loads else {PROGRAM_FIGURE.key, *LOAD_KEYS}

@@ -13,7 +13,7 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture, Listed
 from workhold.model.fixture_table import BLOCK, FixtureTable, fixture_at, fixtures_of
 from workhold.model.query import Query
-from workhold.model.search_report import Proof, cut_note, fitted_note
+from workhold.model.search_report import Proof, asked_note, cut_note, fitted_note
 from workhold.model.seating import Seating
 from workhold.model.workpiece import Workpiece
 
@@ -61,8 +61,12 @@ class Result:
     seating: tuple[Seating, ...] = field(default=(), hash=False)
 
     def __attrs_post_init__(self) -> None:
+        notes, asked = self.reasons, asked_note(self.query.asked)
+        if asked and self.complete and notes and not any(self.found.values()):
+            notes = (*(note for note in notes if note != asked), asked)
         if self.workpiece.departure > 0:
-            object.__setattr__(self, "notes", (*self.reasons, fitted_note(self.workpiece.departure)))
+            notes = (*notes, fitted_note(self.workpiece.departure))
+        object.__setattr__(self, "notes", notes)
 
     @property
     def reasons(self) -> tuple[str, ...]:
@@ -146,20 +150,21 @@ class Result:
         shown: str = delegate("result_html")(self)
         return shown
 
-    def draw(self, path: str | Path | None = None, *, unit: str = "mm") -> str:
+    def draw(self, path: str | Path | None = None, *, unit: str = "mm", overwrite: bool = False) -> str:
         """The best twelve at a glance, near duplicates once: SVG text, which a notebook shows as a picture.
 
         Parameters
         ----------
         path : also write it into this file, whose name ends in .svg or .png.
         unit : of the lengths written: "mm", "cm", "m" or "inch".
+        overwrite : whether a file that workhold has not written may be replaced.
 
         Raises
         ------
         InputError
-            For a result without a fixture, and when the file cannot be written.
+            For a result without a fixture, and when the file cannot be written or replaced.
         """
-        picture: str = delegate("result_picture")(self, path, unit=unit)
+        picture: str = delegate("result_picture")(self, path, unit=unit, overwrite=overwrite)
         return picture
 
     def widget(

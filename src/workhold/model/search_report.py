@@ -7,11 +7,12 @@ result, so a verification can derive which remarks there must be.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from attrs import field, frozen
 
+from workhold.errors import listed
 from workhold.fixels.toolkit import Wording
 from workhold.model.fixture import Fixture
 
@@ -26,11 +27,13 @@ __all__ = [
     "Proof",
     "Removal",
     "Undecided",
+    "asked_note",
     "best_note",
     "by_hand_note",
     "cut_note",
     "fitted_note",
     "kept_note",
+    "left_notes",
     "no_fixture_notes",
     "no_pair_note",
     "no_place_note",
@@ -139,12 +142,14 @@ class Help:
     fixtures : how many there are then.
     complete : False when there are more, because the search for them was ended.
     fields : those of the toolkit that it changes; None when it changes something else.
+    rules : what was asked for that it leaves out, see ``Query.asked``; all of these have to be.
     """
 
     change: str
     fixtures: int
     complete: bool = True
     fields: Mapping[str, Any] | None = None
+    rules: tuple[str, ...] = ()
 
 
 @frozen
@@ -169,13 +174,46 @@ class Explanation:
         """The rule that took the last candidates away; None when four pegs cannot touch the part at all."""
         return self.removals[-1].rule if self.removals else None
 
+    @property
+    def taken_by(self) -> tuple[str, ...]:
+        """What was asked for that takes the last fixtures, each alone or, where one alone does not, together.
 
-def no_fixture_notes(wording: Wording) -> tuple[str, ...]:
+        There are fixtures without it, so the part and the lattice are not to blame, whichever rule is the last.
+        """
+        return tuple(dict.fromkeys(rule for help in self.helps for rule in help.rules))
+
+    @property
+    def asked_words(self) -> str:
+        """The sentence that names what was asked for where it takes the last fixtures.
+
+        It is empty where nothing does, and where the last rule is just that.
+        """
+        if self.taken_by in ((), (self.last_rule,)):
+            return ""
+        alone = all(len(help.rules) < 2 for help in self.helps)
+        rules = " or ".join(self.taken_by) if alone else f"{listed(self.taken_by)} together"
+        return f"The last fixtures are taken by what was asked for: {rules}."
+
+
+def no_fixture_notes(wording: Wording, line: int | None = None) -> tuple[str, ...]:
     """Why a search finds no fixture, in the order of what is asked; a toolkit may have reasons of its own.
 
     All normals meet in a point, no two pegs of one carrier touch, no four pegs touch, or no four hold the
     part.
+
+    Parameters
+    ----------
+    line : of the program whose tools take most of the places for pegs away; None where none does.
     """
+    if line is not None:
+        clear = f"clear of the program's tools, of which line {line} is most in the way."
+        return tuple(f"{reason[:-1]}, {clear}" for reason in wording.reasons) or (
+            f"Every face that the program's tools leave, of which line {line} takes the most, is an arc about one "
+            "centre, so the forces of all pegs meet in that point and nothing keeps the part from turning.",
+            f"No {wording.two} can touch the part together {clear}",
+            f"No {wording.four} can touch the part at the same time {clear}",
+            f"Four pegs can touch the part at the same time, but no such set {wording.rules} {clear}",
+        )
     return wording.reasons or (
         "Every face is an arc about one centre, so the forces of all pegs meet in that point and nothing "
         "keeps the part from turning.",
@@ -207,6 +245,28 @@ def no_pair_note(seats: int, contacts: int) -> str:
             "is needed."
         )
     return f"No two clamps press the part against all three locators at any of the {seats} seats found."
+
+
+def asked_note(asked: Sequence[str]) -> str:
+    """The remark on a search without a fixture of what was asked for besides holding the part, if anything was.
+
+    Parameters
+    ----------
+    asked : see ``Query.asked``.
+    """
+    return f"So it is with what was asked for: {listed(asked)}." if asked else ""
+
+
+def left_notes(wording: Wording, asked: Sequence[str]) -> tuple[str, str]:
+    """Why what was asked for leaves no fixture of a part that has other faces, and of a lattice with other steps.
+
+    They stand for the first two of :func:`no_fixture_notes`, which are about the part and the pitch alone.
+    """
+    return (
+        f"With what was asked for ({listed(asked)}) every place that is left for a peg lies along arcs about one "
+        "centre, so the forces of all pegs meet in that point and nothing keeps the part from turning.",
+        f"With what was asked for ({listed(asked)}) no {wording.two} can touch the part together.",
+    )
 
 
 def best_note(best: int) -> str:

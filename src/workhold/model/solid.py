@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence, Set
+from itertools import pairwise
 from math import isfinite
 from typing import Any
 
@@ -11,13 +12,26 @@ from attrs import evolve, field, frozen
 from workhold.errors import InputError
 from workhold.limits import real
 
-__all__ = ["AXES", "STANDING", "Band", "FileSolid", "HeightRow", "SolidOutline", "other_way_up"]
+__all__ = [
+    "AXES",
+    "STANDING",
+    "Band",
+    "FileSolid",
+    "HeightRow",
+    "RunRows",
+    "SolidOutline",
+    "other_way_up",
+    "run_at",
+]
 
 # The directions of a file that can point up.
 AXES = ("x", "y", "z", "-x", "-y", "-z")
 # What says how a solid stands, as a file of a result has it.
 STANDING = ("axis", "height", "peg_height", "head_room", "least_band")
 Band = tuple[float, float]
+# Heights of the run that holds a segment's band, along the segment: shares of it, rising from 0 to 1, with the
+# lower and the upper end in mm there. Of every four, the last of which begins the next, each end is a cubic.
+RunRows = tuple[tuple[float, float, float], ...]
 # Loops of vertices x, y (mm) and bulge.
 Loops = tuple[tuple[tuple[float, ...], ...], ...]
 
@@ -57,6 +71,50 @@ def numbers_of(values: Iterable[Iterable[int]]) -> tuple[tuple[int, ...], ...]:
     return tuple(tuple(int(number) for number in value) for value in values)
 
 
+def runs_of(values: Iterable[Iterable[Any]]) -> tuple[RunRows, ...]:
+    """Rows of runs as tuples of floats; refuses anything else."""
+    found = []
+    for value in values:
+        rows = tuple(tuple(real(one) for one in row) for row in value)
+        flat = [number for row in rows for number in row]
+        is_whole = all(len(row) == 3 for row in rows) and all(map(isfinite, flat))
+        if not is_whole or (rows and not is_run(rows)):
+            raise InputError(
+                "a run of heights of the solid is none: give shares of the segment from 0 to 1 that rise, one "
+                "and three more for every piece, each with the lower end first."
+            )
+        found.append(tuple((share, low, high) for share, low, high in rows))
+    return tuple(found)
+
+
+def is_run(rows: Sequence[Sequence[float]]) -> bool:
+    """Whether rows tell of a run from one end of a segment to the other."""
+    shares = [row[0] for row in rows]
+    rise = all(a < b for a, b in pairwise(shares))
+    stand = all(0.0 <= row[1] <= row[2] < 1e9 for row in rows)
+    return len(rows) % 3 == 1 and len(rows) > 1 and (shares[0], shares[-1]) == (0.0, 1.0) and rise and stand
+
+
+def run_at(rows: RunRows, share: float) -> Band:
+    """The heights of a run at a share of its segment.
+
+    >>> run_at(((0.0, 0.0, 6.0), (1 / 3, 0.0, 7.0), (2 / 3, 0.0, 8.0), (1.0, 0.0, 9.0)), 0.5)
+    (0.0, 7.5)
+    """
+    last = next((k for k in range(3, len(rows) - 1, 3) if rows[k][0] >= share), len(rows) - 1)
+    piece = rows[last - 3 : last + 1]
+    share = min(max(share, piece[0][0]), piece[-1][0])
+    ends = [0.0, 0.0]
+    for k, (place, *heights) in enumerate(piece):
+        # Lagrange's form of the cubic through four points.
+        weight = 1.0
+        for j, (other, _, _) in enumerate(piece):
+            if j != k:
+                weight *= (share - other) / (place - other)
+        ends = [end + weight * height for end, height in zip(ends, heights, strict=True)]
+    return ends[0], ends[1]
+
+
 @frozen
 class SolidOutline:
     """The solid that an outline is of, seen at the height of the pegs.
@@ -76,6 +134,8 @@ class SolidOutline:
         ones run counter-clockwise, openings clockwise; none stand where a file does not say.
     top_heights : for every loop of ``top`` the height of its face in mm; none where a file does not say.
     low : from which pegs reach, in mm; 0 is from below.
+    runs : for every segment the run of heights that holds its band, along it; empty where that is the band
+        all along. None stand where every run is the band.
 
     Raises
     ------
@@ -94,6 +154,7 @@ class SolidOutline:
     top: Loops = field(default=(), converter=loops_of)
     top_heights: tuple[float, ...] = field(default=(), converter=reals_of)
     low: float = field(default=0.0, converter=real)
+    runs: tuple[RunRows, ...] = field(default=(), converter=runs_of)
 
     def __attrs_post_init__(self) -> None:
         if self.axis not in AXES:
@@ -131,6 +192,7 @@ class SolidOutline:
             bottom=workpiece.get("bottom") or (),
             top=workpiece.get("top") or (),
             top_heights=workpiece.get("top_heights") or (),
+            runs=workpiece.get("runs") or (),
         )
 
     @property
@@ -146,19 +208,32 @@ class SolidOutline:
         InputError
             When there is not one band for each.
         """
-        if len(self.bands) != count or len(self.faces) not in (0, count):
+        if len(self.bands) != count or any(len(one) not in (0, count) for one in (self.faces, self.runs)):
             raise InputError(
                 f"the outline has {count} segments and {len(self.bands)} bands: give one band for each."
             )
         return self
 
-    def reordered(self, order: Sequence[int]) -> SolidOutline:
-        """A copy with the bands of the segments in another order."""
+    def reordered(self, order: Sequence[int], turned: Set[int] = frozenset()) -> SolidOutline:
+        """A copy with the bands of the segments in another order.
+
+        Parameters
+        ----------
+        turned : numbers of segments that are run in the other direction.
+        """
         return evolve(
             self,
             bands=[self.bands[k] for k in order],
             faces=[self.faces[k] for k in order] if self.faces else (),
+            runs=[turned_rows(self.runs[k]) if k in turned else self.runs[k] for k in order]
+            if self.runs
+            else (),
         )
+
+
+def turned_rows(rows: RunRows) -> RunRows:
+    """A run along its segment from the other end."""
+    return tuple((1.0 - share, low, high) for share, low, high in reversed(rows))
 
 
 @frozen

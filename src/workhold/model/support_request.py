@@ -27,6 +27,7 @@ from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.distance import is_inside
 from workhold.limits import real, refuse_long, refuse_strong
 from workhold.model.fixture import Fixture, Peg
+from workhold.model.numbered_outlines import NumberedOutlines
 from workhold.model.requirements import (
     ANY_DIRECTION,
     Load,
@@ -310,18 +311,27 @@ class SupportRequest:
         return found
 
     def for_fixture(
-        self, fixture: Fixture, solid: SolidOutline | None, peg_height: float | None = None
+        self,
+        fixture: Fixture,
+        solid: SolidOutline | None,
+        peg_height: float | None = None,
+        numbered: NumberedOutlines | None = None,
     ) -> SupportRequest:
-        """The request with its bands written out: those given, or of each peg that of its face on a solid.
+        """The request with its bands written out: those given, or of each peg what it can press on of a solid.
 
         Parameters
         ----------
         peg_height : how far pegs reach above where a prism lies, in mm; over all of it if None.
+        numbered : the segments of the part with the run of heights over each; if None, pegs press on no more
+            than the bands of their faces.
         """
         whole = (0.0, self.thickness if peg_height is None else min(peg_height, self.thickness))
         if self.band is not None or self.bands is not None or solid is None:
             return self if self.band is not None else evolve(self, band=whole)
-        own = [band_of(peg, solid) for peg in fixture.pegs]
+        own = [
+            band_of(peg, solid) if numbered is None else pressed_by(peg, fixture, numbered)
+            for peg in fixture.pegs
+        ]
         cut = (band and (min(band[0], self.thickness), min(band[1], self.thickness)) for band in own)
         return evolve(self, band=whole, bands=tuple(cut))
 
@@ -378,3 +388,13 @@ def band_of(peg: Peg, solid: SolidOutline) -> Span | None:
     if not bands:
         return None
     return min(low for low, _ in bands), max(high for _, high in bands)
+
+
+def pressed_by(peg: Peg, fixture: Fixture, numbered: NumberedOutlines) -> Span | None:
+    """The heights on which a peg can press: the run where it touches, of a corner on a wall those of both faces."""
+    faces = (peg.face,) if peg.beside is None else (peg.face, peg.beside)
+    point = fixture.pose.inverse.apply(peg.x, peg.y)
+    runs = [run for face in faces if (run := numbered.pressed(face, point)) is not None]
+    if not runs:
+        return None
+    return min(low for low, _ in runs), max(high for _, high in runs)

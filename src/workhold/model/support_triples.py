@@ -367,8 +367,29 @@ class ChosenSupports:
         InputError
             When there is none.
         """
+        if not isinstance(supports, Supports):
+            raise InputError("supports are what the fixture's own method of that name returns: give these.")
         triple = supports.ranked(number)
         return cls(supports, number, recounted(supports.fixture, supports.query.toolkit, triple))
+
+    @classmethod
+    def under(cls, fixture: Fixture, supports: Supports, number: int = 1) -> ChosenSupports:
+        """The set of a number that holds up a fixture of a result.
+
+        Raises
+        ------
+        InputError
+            When there is none, or the supports are of another fixture, part or toolkit.
+        """
+        chosen, query = cls.of(supports, number), fixture.listing.result.query
+        belongs = (
+            query.workpiece.is_alike(supports.query.workpiece) and query.toolkit == supports.query.toolkit
+        )
+        if not belongs or supports.fixture != fixture:
+            raise InputError(
+                "the supports are of another fixture: take those that this fixture's own method returns."
+            )
+        return chosen
 
     @property
     def triple(self) -> Triple:

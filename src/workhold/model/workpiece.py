@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from workhold.conventions import READING, SHORTEST
 from workhold.delegates import delegate
-from workhold.errors import InputError
+from workhold.errors import InputError, encodable
 from workhold.fixels.carrier import WALL
 from workhold.geometry.hull import HullEdge, hull_edges
 from workhold.geometry.loop import (
@@ -72,7 +72,7 @@ class Workpiece:
     [0, 1, 2, 3]
     """
 
-    name: str
+    name: str = field(converter=encodable)
     loops: tuple[NDArray[np.float64], ...] = field(eq=numbers_of)
     remarks: tuple[str, ...] = field(default=(), eq=False)
     departure: float = 0.0
@@ -154,15 +154,17 @@ class Workpiece:
         else:
             pieces = outer_count(name, drawn)
         order: list[int] = []
+        turned: set[int] = set()
         for index, shape in enumerate(drawn):
             numbers = range(len(order), len(order) + len(used[index]))
             if (signed_area(shape.segments) > 0) != (index < pieces):
                 used[index] = reversed_vertices(used[index])
                 order += reversed(numbers)
+                turned.update(numbers)
             else:
                 order += numbers
         if solid is not None:
-            solid = solid.for_segments(len(order)).reordered(order)
+            solid = solid.for_segments(len(order)).reordered(order, turned)
         return cls(name, tuple(used), remarks_on(straightened, rounded), departure_of(departure), solid)
 
     @classmethod
@@ -208,6 +210,10 @@ class Workpiece:
         part = cls.from_loops(name, loops, departure=away)
         return evolve(part, remarks=(*part.remarks, *chords_remark(chorded, "fit")))
 
+    def is_alike(self, other: Workpiece) -> bool:
+        """Whether another part is this one, whatever it is called."""
+        return self is other or (isinstance(other, Workpiece) and evolve(other, name=self.name) == self)
+
     def __repr__(self) -> str:
         faces, holes, (x0, y0, x1, y1) = len(self.faces), len(self.loops) - self.pieces, self.bounds
         inside = f", {holes} hole{'s' * (holes != 1)}" if holes else ""
@@ -218,7 +224,12 @@ class Workpiece:
         return str(delegate("workpiece_html")(self))
 
     def draw(
-        self, path: str | Path | None = None, *, peg_radius: float | None = None, unit: str = "mm"
+        self,
+        path: str | Path | None = None,
+        *,
+        peg_radius: float | None = None,
+        unit: str = "mm",
+        overwrite: bool = False,
     ) -> str:
         """The part with its faces numbered: SVG text, which a notebook shows as a picture.
 
@@ -227,13 +238,15 @@ class Workpiece:
         path : also write it into this file, whose name ends in .svg or .png.
         peg_radius : in mm; draw where the centre of such a peg lies when it touches a face as well.
         unit : of the lengths written: "mm", "cm", "m" or "inch".
+        overwrite : whether a file that workhold has not written may be replaced.
 
         Raises
         ------
         InputError
-            For a unit that is not known, and when the file cannot be written.
+            For a unit that is not known, and when the file cannot be written or replaced.
         """
-        picture: str = delegate("workpiece_picture")(self, path, peg_radius=peg_radius, unit=unit)
+        asked = {"peg_radius": peg_radius, "unit": unit, "overwrite": overwrite}
+        picture: str = delegate("workpiece_picture")(self, path, **asked)
         return picture
 
     @cached_property

@@ -21,6 +21,7 @@ from workhold.files.glb import bodies_glb, surface_mesh
 from workhold.files.part.data import wrapped_shapes
 from workhold.files.part.finding import read_bytes
 from workhold.files.part.load import load
+from workhold.files.replacing import refuse_output
 from workhold.files.step.heights import foot_height
 from workhold.files.step.library import along, axis_named, bounding_box, sub_shapes, turn_along
 from workhold.files.step.part_shape import pose_move
@@ -187,9 +188,13 @@ def save_glb(
     supports: Supports | None = None,
     best: int = 1,
     part: str | Path | None = None,
+    overwrite: bool = False,
 ) -> None:
     """Writes a GLB file, see :meth:`workhold.Fixture.save_glb`."""
-    chosen = None if supports is None else ChosenSupports.of(supports, best)
+    if Path(path).suffix.lower() not in GLB_ENDINGS:
+        raise InputError(f"{path} is not the name of a GLB file: let the name end in {GLB_ENDINGS[0]}.")
+    refuse_output(path, (part,), overwrite)
+    chosen = None if supports is None else ChosenSupports.under(fixture, supports, best)
     result = fixture.listing.result
     shape = shape_in(part, result.workpiece)
     assembly = Assembly.of(fixture, result, {"thickness": thickness}, chosen, shape)
@@ -312,7 +317,7 @@ def bodies_of(
         As :meth:`workhold.Fixture.to_build123d`.
     """
     result = fixture.listing.result
-    chosen = None if supports is None else ChosenSupports.of(supports, best)
+    chosen = None if supports is None else ChosenSupports.under(fixture, supports, best)
     assembly = Assembly.of(fixture, result, {"thickness": thickness}, chosen)
     if around is None:
         return named_solids(assembly.bodies)

@@ -214,6 +214,8 @@ def explanation_data(explanation: Explanation, toolkit: Toolkit) -> dict[str, An
         "contacts": explanation.contacts,
         "removals": [asdict(removal) for removal in explanation.removals],
         "last_rule": explanation.last_rule,
+        "taken_by": list(explanation.taken_by),
+        "asked_words": explanation.asked_words,
         "nearest": None
         if nearest is None
         else {"words": nearest.words, "fixture": fixture_data(nearest.fixture, toolkit)},
@@ -228,6 +230,7 @@ def helps_data(explanation: Explanation, key: str) -> list[dict[str, Any]]:
             "change": help.change,
             "fixtures": help.fixtures,
             "complete": help.complete,
+            "rules": list(help.rules),
             key: None
             if help.fields is None
             else {name: written(value) for name, value in help.fields.items()},

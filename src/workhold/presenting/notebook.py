@@ -286,7 +286,7 @@ class WhyNone:
         last, toolkit = self.explanation.last_rule, self.query.toolkit
         if not self.explanation.contacts or last is None:
             return f"No {toolkit.wording.four} can touch the part at the same time."
-        return f"The last contacts were removed by: {last}."
+        return f"The last contacts were removed by: {last}. {self.explanation.asked_words}".rstrip()
 
     def __repr__(self) -> str:
         return f"<WhyNone: {self.words}>"

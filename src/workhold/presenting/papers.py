@@ -8,6 +8,7 @@ from hashlib import file_digest
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from workhold.conventions import AGREEMENT
 from workhold.drawing.fixture_pictures import best_at_a_glance, draw_fixture
 from workhold.drawing.part_pictures import draw_features
 from workhold.drawing.path_drawn import planned_path
@@ -15,6 +16,7 @@ from workhold.drawing.render import render
 from workhold.drawing.sheet_facts import PAPERS
 from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
+from workhold.files.replacing import refuse_output
 from workhold.listing.identity import entries
 from workhold.model.setup import part_zero
 from workhold.model.support_triples import ChosenSupports
@@ -51,37 +53,49 @@ class Picture(str):
     def _repr_html_(self) -> str:
         return image(self, "A picture of workhold", LARGE)
 
-    def save(self, path: str | Path) -> Picture:
+    def save(self, path: str | Path, *, overwrite: bool = False) -> Picture:
         """Writes the picture and returns it.
 
         Parameters
         ----------
         path : of a file whose name ends in .svg or .png.
+        overwrite : whether a file that workhold has not written may be replaced.
 
         Raises
         ------
         InputError
-            For another ending, and when the file cannot be written.
+            For another ending, and when the file cannot be written or replaced.
         """
+        refuse_output(path, force=overwrite)
         write_bytes(path, render(str(self), Path(path).suffix))
         return self
 
 
-def saved(svg: str, path: str | Path | None) -> Picture:
+def saved(svg: str, path: str | Path | None, overwrite: bool) -> Picture:
     """Makes a picture of SVG text, and writes it where a path is given."""
     picture = Picture(svg)
-    return picture if path is None else picture.save(path)
+    return picture if path is None else picture.save(path, overwrite=overwrite)
 
 
 def workpiece_picture(
-    workpiece: Workpiece, path: str | Path | None = None, *, peg_radius: float | None = None, unit: str = "mm"
+    workpiece: Workpiece,
+    path: str | Path | None = None,
+    *,
+    peg_radius: float | None = None,
+    unit: str = "mm",
+    overwrite: bool = False,
 ) -> Picture:
     """Draws the workpiece with its faces numbered, see :meth:`workhold.Workpiece.draw`."""
-    return saved(draw_features(workpiece, peg_radius=peg_radius, unit=unit_named(unit)), path)
+    return saved(draw_features(workpiece, peg_radius=peg_radius, unit=unit_named(unit)), path, overwrite)
 
 
 def fixture_picture(
-    fixture: Fixture, path: str | Path | None = None, *, title: str | None = None, unit: str = "mm"
+    fixture: Fixture,
+    path: str | Path | None = None,
+    *,
+    title: str | None = None,
+    unit: str = "mm",
+    overwrite: bool = False,
 ) -> Picture:
     """Draws the fixture to set up from, see :meth:`workhold.Fixture.draw`."""
     listed = fixture.listing
@@ -90,15 +104,16 @@ def fixture_picture(
     svg = draw_fixture(
         fixture, result.workpiece, result.toolkit, title=words, unit=unit_named(unit), path=planned
     )
-    return saved(svg, path)
+    return saved(svg, path, overwrite)
 
 
-def result_picture(result: Result, path: str | Path | None = None, *, unit: str = "mm") -> Picture:
+def result_picture(
+    result: Result, path: str | Path | None = None, *, unit: str = "mm", overwrite: bool = False
+) -> Picture:
     """Draws thumbnails of the best fixtures, see :meth:`workhold.Result.draw`."""
     if not len(result):
-        why = f" {result.reasons[0]}" if result.reasons else ""
-        raise InputError(f"there is no fixture to draw.{why}")
-    return saved(best_at_a_glance(result, entries(result), unit_named(unit)), path)
+        raise InputError(" ".join(("there is no fixture to draw.", *result.reasons)))
+    return saved(best_at_a_glance(result, entries(result), unit_named(unit)), path, overwrite)
 
 
 PAPER_ENDINGS = (".pdf", ".svg", ".png")
@@ -119,6 +134,7 @@ def save_sheet(
     supports: Supports | None = None,
     best: int = 1,
     part: str | Path | None = None,
+    overwrite: bool = False,
     **asked: Any,
 ) -> None:
     """Writes the setup sheet or the set-up of a fixture, see :meth:`workhold.Fixture.save_sheet`."""
@@ -129,11 +145,14 @@ def save_sheet(
         raise InputError(
             "this fixture was changed since it was listed: take the sheet of the one in its result."
         )
+    refuse_output(path, (result_file, part), overwrite)
+    if result_file is not None:
+        refuse_other_result(result_file, fixture)
     settings = {"zero": None, "dowel": None, **dict.fromkeys(SIZES), **asked, "unit": unit_named(unit)}
     if supports is not None:
         if ending in MODEL_ENDINGS and ending not in STEP_ENDINGS:
             raise InputError(f"{path} has no supports: let the name end in .pdf, .svg, .png or .step.")
-        settings["supports"] = ChosenSupports.of(supports, best)
+        settings["supports"] = ChosenSupports.under(fixture, supports, best)
     if part is not None:
         if ending not in STEP_ENDINGS:
             raise InputError(
@@ -150,6 +169,41 @@ def save_sheet(
     settings.setdefault("day", date.today())
     settings |= {"number": listed.rank, "count": listed.count, "others": listed.others}
     write_paper(path, listed.result, listed.row + 1, result_file, settings)
+
+
+def refuse_other_result(result_file: str | Path, fixture: Fixture) -> None:
+    """Refuses a file whose hash would stand on the sheet of a fixture that is not in it.
+
+    Raises
+    ------
+    InputError
+        When it cannot be read, or has another fixture in that place.
+    """
+    from workhold.files.result.reader import read_result
+
+    listed, read = fixture.listing, read_result(result_file)
+    row = listed.rank - 1
+    asked, there = listed.result.query, read.query
+    belongs = asked.workpiece.is_alike(there.workpiece) and asked.toolkit == there.toolkit
+    if not belongs or row >= len(read) or not is_set_up_alike(fixture, read[row]):
+        raise InputError(
+            f"{result_file} has another fixture in place {listed.rank}: give the file that this result was "
+            "saved in."
+        )
+
+
+def is_set_up_alike(one: Fixture, other: Fixture) -> bool:
+    """Whether two fixtures are one, as far as a file rounds its numbers."""
+    pegs = [[(peg.hole, peg.touched) for peg in fixture.pegs] for fixture in (one, other)]
+    numbers = [
+        (fixture.pose.theta_deg, fixture.pose.x, fixture.pose.y, fixture.jaw_separation)
+        for fixture in (one, other)
+    ]
+    return (
+        (one.type, one.direction) == (other.type, other.direction)
+        and pegs[0] == pegs[1]
+        and all(abs(a - b) <= AGREEMENT for a, b in zip(*numbers, strict=True))
+    )
 
 
 def write_paper(

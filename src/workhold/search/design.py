@@ -35,8 +35,9 @@ from workhold.model.quality import FIGURES, asked_ranking
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Restrictions, Tolerance
 from workhold.model.result import Result
-from workhold.model.search_report import no_fixture_notes, no_place_note
+from workhold.model.search_report import left_notes, no_fixture_notes, no_place_note
 from workhold.model.workpiece import Workpiece
+from workhold.search.broken_rules import line_in_the_way
 from workhold.search.cells import run_blocks
 from workhold.search.lattice_shares import LatticeShares
 from workhold.search.seated import Sink, seated_answer
@@ -226,22 +227,45 @@ def with_reason(result: Result, search: ToolkitSearch, threads: int, cancel: Eve
         return result
     proven = 0 if result.proof is None else result.proof.verified
     reason = why_none(search, int(search.totals[CONTACTS]), proven, threads, cancel)
+    reason = of_what_is_left(reason, search.problem, threads)
     return result if cancel is not None and cancel.is_set() else evolve(result, notes=(reason,))
 
 
 def why_none(search: ToolkitSearch, contacts: int, proven: int, threads: int, cancel: Event | None) -> str:
     """The reason when a search finds no fixture, in one sentence."""
     problem, table, wording = search.problem, search.table, search.problem.toolkit.wording
-    concentric, too_far, apart, loose = no_fixture_notes(wording)
-    arcs = problem.rows[:, IS_ARC] != 0.0
-    if arcs.all() and len(set(center_numbers(problem.rows).tolist())) == 1:
-        return concentric
+    concentric, too_far, apart, loose = no_fixture_notes(wording, line_in_the_way(problem.query))
+    if is_round(problem):
+        # The program is not to blame for a part that is round without it.
+        alone = problem.query.program is None or is_round(Problem.of(problem.query.without_program))
+        return no_fixture_notes(wording)[0] if alone else concentric
     if len(table) + len(table.sliding_pairs.integers) == 0:
         return too_far
     # What cannot be a fixture was left out early; whether pegs can touch at all is then asked once more.
     if contacts == 0 and contacts_of(problem, threads, cancel) == 0:
         return apart
     return no_place_note(proven, wording, has_body_to_pass(problem.query)) if proven else loose
+
+
+def of_what_is_left(reason: str, problem: Problem, threads: int) -> str:
+    """A reason that is about the part and the pitch, as one about what was asked for where that is the cause."""
+    query, toolkit = problem.query, problem.toolkit
+    concentric, too_far, *_ = no_fixture_notes(toolkit.wording)
+    if reason not in (concentric, too_far) or not query.asked_of_places:
+        return reason
+    toolkit = toolkit.without([limit for limit in toolkit.limits if limit.rule in query.asked_of_places])
+    whole = Problem.of(evolve(query.without_program, toolkit=toolkit, restrictions=None))
+    if reason == concentric:
+        return reason if is_round(whole) else left_notes(toolkit.wording, query.asked_of_places)[0]
+    table = ToolkitSearch.of(whole, threads=threads).table
+    is_far = len(table) + len(table.sliding_pairs.integers) == 0
+    return reason if is_far else left_notes(toolkit.wording, query.asked_of_places)[1]
+
+
+def is_round(problem: Problem) -> bool:
+    """Whether every face that a peg could touch is an arc about one centre."""
+    arcs = problem.rows[:, IS_ARC] != 0.0
+    return bool(arcs.all()) and len(set(center_numbers(problem.rows).tolist())) == 1
 
 
 @frozen

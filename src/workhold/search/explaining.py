@@ -5,16 +5,17 @@ Of contacts on a lattice the rules are asked in ``search.broken_rules``, of cont
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
+from operator import attrgetter
 from threading import Event, Timer
 from typing import Any
 
 import numpy as np
-from attrs import evolve
+from attrs import evolve, frozen
 
 from workhold.contact.problem import Problem
-from workhold.errors import InputError
+from workhold.errors import InputError, listed
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Change, Toolkit
 from workhold.model.fixture_table import FixtureTable, fixture_at
@@ -170,22 +171,55 @@ def explain(query: Query, threads: int | None = None, unit: Unit = MILLIMETRE) -
 
 def helps(query: Query, threads: int | None, unit: Unit) -> tuple[Help, ...]:
     """Single changes of what was asked for with which there are fixtures, the most first."""
-    out = []
-    for words, changed, fields in changes(query, unit):
-        enough = Event()
-        timer = Timer(HELP_SECONDS, enough.set)
-        timer.start()
-        try:
-            asked = evolve(changed(), ranking="warnings", best=None)
-            result = answer(asked, threads=threads, cancel=enough)
-        except InputError:
-            continue
-        finally:
-            timer.cancel()
-        if any(result.found.values()):
-            words += nearest_turn(query, result)
-            out.append(Help(words, sum(result.found.values()), result.complete, fields))
+    out, lifts = [], list[Lift]()
+    for change in changes(query, unit):
+        result = answer_of(change.changed, query, threads)
+        if result is not None and any(result.found.values()):
+            words = change.words + nearest_turn(query, result)
+            found = sum(result.found.values())
+            out.append(Help(words, found, result.complete, change.fields, change.rules))
+        if change.is_whole:
+            lifts.append(change)
+    if len(lifts) > 1 and not any(help.rules for help in out):
+        out += together(query, lifts, threads)
     return tuple(sorted(out, key=lambda help: -help.fixtures))
+
+
+def answer_of(changed: Callable[[Query], Query], query: Query, threads: int | None) -> Result | None:
+    """What a changed query finds within the time for one; None where there is no such query."""
+    enough = Event()
+    timer = Timer(HELP_SECONDS, enough.set)
+    timer.start()
+    try:
+        asked = evolve(changed(query), ranking="warnings", best=None)
+        return answer(asked, threads=threads, cancel=enough)
+    except InputError:
+        return None
+    finally:
+        timer.cancel()
+
+
+def together(query: Query, lifts: Sequence[Lift], threads: int | None) -> Iterator[Help]:
+    """The fewest things asked for that leave fixtures if left out together, where one alone does not."""
+
+    def found_without(some: Sequence[Lift]) -> Result | None:
+        def changed(asked: Query) -> Query:
+            for lift in some:
+                asked = lift.changed(asked)
+            return asked
+
+        result = answer_of(changed, query, threads)
+        return result if result is not None and any(result.found.values()) else None
+
+    needed, result = list(lifts), found_without(lifts)
+    for lift in lifts if result is not None else ():
+        fewer = [one for one in needed if one is not lift]
+        if (found := found_without(fewer)) is not None:
+            needed, result = fewer, found
+    if result is not None:
+        words = listed([lift.words for lift in needed])
+        rules = tuple(rule for lift in needed for rule in lift.rules)
+        yield Help(words, sum(result.found.values()), result.complete, None, rules)
 
 
 def nearest_turn(query: Query, result: Result) -> str:
@@ -208,40 +242,59 @@ def nearest_turn(query: Query, result: Result) -> str:
     return f", the nearest {beyond[nearest]:.1f} degrees farther, at {found[nearest] % 360.0:.2f}"
 
 
-def changes(query: Query, unit: Unit) -> Iterator[tuple[str, Callable[[], Query], Mapping[str, Any] | None]]:
-    """Changes of a query to try, one at a time.
+@frozen
+class Lift:
+    """A change of a query to try.
 
-    Each is given in words, then as what makes the query or finds that there is none such. Last come the
-    fields of the toolkit that it changes, if it does.
+    Parameters
+    ----------
+    words : what it does.
+    changed : makes the changed query, or finds that there is none such.
+    rules : what was asked for that it leaves out, see ``Query.asked``.
+    fields : those of the toolkit that it changes, if it does.
+    is_whole : whether nothing is left of the rules, so that it can be made together with others.
     """
+
+    words: str
+    changed: Callable[[Query], Query]
+    rules: tuple[str, ...] = ()
+    fields: Mapping[str, Any] | None = None
+    is_whole: bool = True
+
+
+def changes(query: Query, unit: Unit) -> Iterator[Lift]:
+    """Changes of a query to try, one at a time."""
     asked, toolkit = query.restrictions, query.toolkit
     if asked.avoid:
-        if len(asked.avoid) > 1:
-            faces = ", ".join(str(number) for number in asked.avoid)
-            yield (
-                f"touching faces {faces} too",
-                partial(evolve, query, restrictions=evolve(asked, avoid=())),
-                None,
-            )
-        for face in asked.avoid[:MOST_FACES]:
+        faces = ("faces " if len(asked.avoid) > 1 else "face ") + ", ".join(map(str, asked.avoid))
+        yield Lift(f"touching {faces} too", partial(restricted, avoid=()), ("faces to avoid",))
+        for face in asked.avoid[: MOST_FACES if len(asked.avoid) > 1 else 0]:
             rest = tuple(number for number in asked.avoid if number != face)
-            yield (
-                f"touching face {face} too",
-                partial(evolve, query, restrictions=evolve(asked, avoid=rest)),
-                None,
-            )
+            lift = partial(restricted, avoid=rest)
+            yield Lift(f"touching face {face} too", lift, ("faces to avoid",), is_whole=False)
     if asked.zones:
-        yield "without the keep-out zones", partial(evolve, query, restrictions=evolve(asked, zones=())), None
+        yield Lift("without the keep-out zones", partial(restricted, zones=()), ("keep-out zones",))
     if query.program is not None:
         line = line_in_the_way(query)
         first = "" if line is None else f", of which line {line} is most in the way"
-        yield f"without the program{first}", partial(getattr, query, "without_program"), None
+        without = attrgetter("without_program")
+        yield Lift(f"without the program{first}", without, ("tools of the program",))
     if asked.angles:
-        yield "at any angle", partial(evolve, query, restrictions=evolve(asked, angles=())), None
+        yield Lift("at any angle", partial(restricted, angles=()), ("angles of the part",))
     if query.contact_margin > 0:
-        yield "without a contact margin", partial(evolve, query, contact_margin=0.0), None
-    for change in (*(limit.lifted for limit in toolkit.limits), *toolkit.further_changes(unit)):
-        yield change.words, partial(held_in_another, query, change), change.fields
+        yield Lift("without a contact margin", partial(evolve, contact_margin=0.0), ("contact margin",))
+    if len(query.arrangements) < len(toolkit.types):
+        yield Lift("with all types", partial(evolve, arrangements=None), ("types sought",))
+    for limit in toolkit.limits:
+        lift, fields = partial(held_in_another, change=limit.lifted), limit.lifted.fields
+        yield Lift(limit.lifted.words, lift, (limit.rule,), fields)
+    for change in toolkit.further_changes(unit):
+        yield Lift(change.words, partial(held_in_another, change=change), (), change.fields, is_whole=False)
+
+
+def restricted(query: Query, **changed: Any) -> Query:
+    """A query with some of its restrictions changed."""
+    return evolve(query, restrictions=evolve(query.restrictions, **changed))
 
 
 def held_in_another(query: Query, change: Change) -> Query:

@@ -16,7 +16,7 @@ from math import degrees, radians, tau
 from threading import Event
 
 import numpy as np
-from attrs import define, field
+from attrs import define, evolve, field
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem, Progress
@@ -89,15 +89,20 @@ class LatticeShares:
     @contextmanager
     def of(cls, query: Query, threads: int, cancel: Event | None) -> Iterator[LatticeShares]:
         """The shares of a query with two clamps, with threads for as long as the context lasts."""
-        problems = [Problem.of(one_clamp(query, way), pairing=True) for way in query.toolkit.ways]
-        searches = [ToolkitSearch.of(problem, threads=threads, cancel=cancel) for problem in problems]
-        blocks = [search.blocks(search.problem.toolkit.types, BLOCKS_PER_HALF_TURN) for search in searches]
+        searches = searches_of(query, threads, cancel)
+        blocks = [blocks_of_search(search) for search in searches]
         x0, y0, x1, y1 = query.workpiece.bounds
-        refuse_much_work(ways_in(blocks), (x1 - x0, y1 - y0), query.toolkit.carriers[0].pitch)
-        bound, ranges = tilted_bound(query, problems[0], ways_in(blocks)), ranges_of(blocks)
+        refuse_much_work(
+            ways_in(blocks),
+            (x1 - x0, y1 - y0),
+            query.toolkit.carriers[0].pitch,
+            partial(ways_at_pitch, query, threads),
+        )
+        problem = searches[0].problem
+        bound, ranges = tilted_bound(query, problem, ways_in(blocks)), ranges_of(blocks)
         if bound is not None:
             ranges = square_first(ranges, square_angles(query))
-        seats = ClampedSeats(query, problems[0])
+        seats = ClampedSeats(query, problem)
         with ThreadPoolExecutor(max_workers=threads) as pool:
             yield cls(searches, seats, blocks, ranges, bound, pool, threads, cancel)
 
@@ -196,6 +201,23 @@ class LatticeShares:
     def why_none(self) -> str:
         """Why a search that came to its end has no fixture."""
         return no_pair_note(self.collector.looked_at, self.account().verified)
+
+
+def searches_of(query: Query, threads: int, cancel: Event | None) -> list[ToolkitSearch]:
+    """The search of each direction of the clamp, for contacts that need not close."""
+    problems = [Problem.of(one_clamp(query, way), pairing=True) for way in query.toolkit.ways]
+    return [ToolkitSearch.of(problem, threads=threads, cancel=cancel) for problem in problems]
+
+
+def blocks_of_search(search: ToolkitSearch) -> list[Block]:
+    """The blocks of one direction's search that together find everything."""
+    return search.blocks(search.problem.toolkit.types, BLOCKS_PER_HALF_TURN)
+
+
+def ways_at_pitch(query: Query, threads: int, pitch: float) -> float:
+    """The ways in which two pairs of contacts may go together with another pitch in mm."""
+    asked = evolve(query, toolkit=query.toolkit.changed({"pitch": (pitch, pitch)}))
+    return ways_in(map(blocks_of_search, searches_of(asked, threads, None)))
 
 
 def ranges_of(whole_turn: Sequence[list[Block]]) -> list[Ranges]:

@@ -28,6 +28,7 @@ from workhold.model.fixture_table import FixtureTable, unknown_quality
 from workhold.model.query import Query
 from workhold.model.search_report import AT_AN_EDGE, Undecided, no_fixture_notes, no_pair_note, no_place_note
 from workhold.proof.deciding import Account
+from workhold.search.broken_rules import line_in_the_way
 from workhold.search.flush_search import FlushSearch
 from workhold.search.lattice_pairs import LatticePairs, are_pressed, closure_of, pairs_on
 from workhold.search.shares import has_body_to_pass, one_clamp
@@ -219,7 +220,7 @@ class WallShares:
     def why_none(self) -> str:
         """Why a search that came to its end has no fixture."""
         query, search, verified = self.collector.query, self.searches[0], self.total("verified")
-        never, apart, square, loose = no_fixture_notes(query.toolkit.wording)
+        never, apart, square, loose = no_fixture_notes(query.toolkit.wording, line_in_the_way(query))
         if isinstance(self.collector, RankedTable) and verified:
             return no_place_note(verified, query.toolkit.wording, has_body_to_pass(query))
         if not self.edges:

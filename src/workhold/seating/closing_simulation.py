@@ -86,9 +86,10 @@ def simulate_closing(
     Raises
     ------
     InputError
-        As ``Pattern.of``; for jaws that meet their stop or are opened beyond their end, and a part that a peg
-        stands in.
+        As ``Pattern.of``; for a fixture of another part or toolkit, for jaws that meet their stop or are
+        opened beyond their end, and a part that a peg stands in.
     """
+    fixture.refuse_others(solver.workpiece, solver.toolkit)
     pattern = Pattern.of(fixture, solver.toolkit)
     closing = solver.closing(pattern, turned_over)
     center = Center(solver.workpiece.center, turned_over, pattern.frame)

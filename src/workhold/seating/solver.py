@@ -95,8 +95,9 @@ class Solver:
         Raises
         ------
         InputError
-            As ``Pattern.of``.
+            As ``Pattern.of``, and for a fixture of another part or toolkit.
         """
+        fixture.refuse_others(self.workpiece, self.toolkit)
         return self.read(fixture, Pattern.of(fixture, self.toolkit), with_cage)
 
     def read(self, fixture: Fixture, pattern: Pattern, with_cage: bool) -> Seating:
@@ -128,8 +129,12 @@ class Solver:
         Raises
         ------
         InputError
-            As ``Pattern.of``, and for a number of threads that is too large.
+            As ``Pattern.of``, for a number of threads that is too large, and for a fixture of another part or
+            toolkit.
         """
+        fixtures = list(fixtures)
+        for fixture in fixtures:
+            fixture.refuse_others(self.workpiece, self.toolkit)
         made = self.as_many(fixtures, with_cage, thread_count(threads))
         return [seating for seating in made if seating is not None]
 
@@ -382,7 +387,8 @@ def seatings(result: Result, fixtures: Sequence[Fixture] | int = 1, *, with_cage
     Raises
     ------
     InputError
-        As ``Pattern.of``: for pegs with a flat and for pegs of radius 0.
+        As ``Pattern.of``: for pegs with a flat and for pegs of radius 0. Also for a fixture of another part
+        or toolkit.
 
     Examples
     --------
@@ -395,5 +401,7 @@ def seatings(result: Result, fixtures: Sequence[Fixture] | int = 1, *, with_cage
     """
     chosen = result[:fixtures] if isinstance(fixtures, int) else fixtures
     if not result.toolkit.closes_at_once:
+        for fixture in chosen:
+            fixture.refuse_others(result.workpiece, result.toolkit)
         return [by_hand(fixture, result.workpiece, result.toolkit) for fixture in chosen]
     return Solver(result.workpiece, result.toolkit).of_all(chosen, with_cage)

@@ -296,8 +296,10 @@ def load_cases(
     Raises
     ------
     InputError
-        For a jaw force or a coefficient that is negative or not finite, and a jaw that is not known.
+        For a fixture of another part or toolkit, a jaw force or a coefficient that is negative or not finite,
+        and a jaw that is not known.
     """
+    fixture.refuse_others(workpiece, toolkit)
     for name, value in (("jaw force", jaw_force), ("friction", friction)):
         if value is not None and not (isfinite(real(value)) and value >= 0):
             raise InputError(f"{name} {real(value):g} cannot be used: give 0 or more.")

@@ -101,7 +101,7 @@ class SupportSearch:
         pegs = PegForces.of(fixture, toolkit, self.touched)
         force = needed_jaw_force(pegs, self.loads, jaw_force)
         solid = numbered_solid(workpiece)
-        request = self.request.for_fixture(fixture, solid, self.query.peg_height)
+        request = self.request.for_fixture(fixture, solid, self.query.peg_height, workpiece.numbered)
         holes = holes_under(fixture, toolkit, self.bottom, self.request)
         if len(holes.row) > MOST_POSITIONS:
             raise InputError(

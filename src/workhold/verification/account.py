@@ -40,11 +40,13 @@ from flint import ctx
 from workhold.fixels.contacts import WALL_END
 from workhold.model.search_report import (
     Proof,
+    asked_note,
     best_note,
     by_hand_note,
     cut_note,
     fitted_note,
     kept_note,
+    left_notes,
     no_fixture_notes,
     no_pair_note,
     no_place_note,
@@ -222,7 +224,8 @@ def notes_implied(listing: Listing) -> Iterator[Sequence[str]]:
         if listing.query.toolkit.travels > 1:
             yield no_pair_notes(listing, verified)
             return
-        yield (no_place_note(verified, wording),) if verified else no_fixture_notes(wording)
+        asked = left_notes(wording, listing.query.asked_of_places) if listing.query.asked_of_places else ()
+        yield (no_place_note(verified, wording),) if verified else (*no_fixture_notes(wording), *asked)
 
 
 def may_be_said(note: str, listing: Listing) -> bool:
@@ -232,6 +235,8 @@ def may_be_said(note: str, listing: Listing) -> bool:
         return found >= best
     if listing.query.has_seating_rules and note in seated_notes(listing):
         return True
+    if note == asked_note(listing.query.asked):
+        return not found
     if note == kept_note(found, listed):
         return found > listed
     if note == cut_note(found, listed):

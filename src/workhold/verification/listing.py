@@ -325,10 +325,15 @@ def keys_missing(head: Head) -> list[str]:
     spared |= {f"{key}.{name}" for key in ("vise", "toolkit") for name in silent}
     # A prism has no solid, and where the bands are there, nothing rests on the numbers of the solid's faces.
     roles = () if head.outlines is None else tuple(head.outlines)
-    spared |= {f"outlines.{role}.solid_faces" for role in roles} | (set() if roles else {"outlines"})
-    spared |= {"workpiece.solid_faces", "workpiece.bottom", "workpiece.top", "workpiece.top_heights"} | (
-        {"solid", "workpiece.bands"} if head.solid is None else set()
-    )
+    spared |= {f"outlines.{role}.{key}" for role in roles for key in ("solid_faces", "runs")}
+    spared |= set() if roles else {"outlines"}
+    spared |= {
+        "workpiece.solid_faces",
+        "workpiece.runs",
+        "workpiece.bottom",
+        "workpiece.top",
+        "workpiece.top_heights",
+    } | ({"solid", "workpiece.bands"} if head.solid is None else set())
     if head.seating is None:
         spared |= {"seating", "opening", "foolproof"}
     if head.program is None:

@@ -277,12 +277,13 @@ def area_center(loops: Sequence[Sequence[Segment]]) -> tuple[float, float]:
 
 
 def band_faults(query: Query, fixture: Fixture, request: SupportRequest) -> Iterator[str]:
-    """A fault for each peg whose band is not that of the faces of the solid that it touches."""
-    bands, by_segment = request.bands, query.workpiece.numbered.bands
+    """A fault for each peg whose band is not what it can press on of the faces of the solid that it touches."""
+    bands, numbered = request.bands, query.workpiece.numbered
     if query.workpiece.solid is None or bands is None:
         return
     for peg, written in zip(fixture.pegs, bands, strict=True):
-        faces = [by_segment[number] for number in (peg.face, peg.beside) if number is not None]
+        point = fixture.pose.inverse.apply(peg.x, peg.y)
+        faces = [numbered.pressed(number, point) for number in (peg.face, peg.beside) if number is not None]
         known = [band for band in faces if band is not None]
         own = [min(low for low, _ in known), max(high for _, high in known)] if known else []
         own = [min(height, request.thickness) for height in own]

@@ -326,6 +326,8 @@ def explanation_answer(explanation: Explanation, workpiece: Workpiece, toolkit: 
         "contacts": explanation.contacts,
         "removals": [{**asdict(one), "removed": one.removed} for one in explanation.removals],
         "last_rule": explanation.last_rule,
+        "taken_by": list(explanation.taken_by),
+        "asked_words": explanation.asked_words,
         "nearest": None
         if nearest is None
         else {

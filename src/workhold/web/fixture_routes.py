@@ -31,12 +31,12 @@ from workhold.web.forms import LoadsForm, asked_loads
 from workhold.web.job_routes import attachment, found_job, result_of_job
 from workhold.web.program_forms import passing_answer
 from workhold.web.request_forms import ChosenSupportsForm, FirstSideForm, SupportsForm, asked_of
-from workhold.web.state import at_desk, at_desk_while_heard, state_of
+from workhold.web.state import CheckedRoute, at_desk, at_desk_while_heard, state_of
 from workhold.web.support_tasks import SupportsOrder
 
 __all__ = ["router"]
 
-router = APIRouter(prefix="/jobs/{name}/fixtures/{rank}")
+router = APIRouter(prefix="/jobs/{name}/fixtures/{rank}", route_class=CheckedRoute)
 
 Rank = Annotated[int, Path(ge=1, le=10**9)]
 UnitName = Literal["mm", "inch"]

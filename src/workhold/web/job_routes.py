@@ -24,11 +24,11 @@ from workhold.web.forms import ExploreForm, JobForm, LoadsForm
 from workhold.web.guard import BASES
 from workhold.web.jobs import ServerJob
 from workhold.web.selection import Selection, angle_range
-from workhold.web.state import ServerState, address_of, at_desk, state_of
+from workhold.web.state import CheckedRoute, ServerState, address_of, at_desk, state_of
 
 __all__ = ["attachment", "found_job", "result_of_job", "router"]
 
-router = APIRouter()
+router = APIRouter(route_class=CheckedRoute)
 
 # Seconds between two events of a stream at least, and at most.
 PAUSE, SILENCE = 0.1, 15.0
@@ -198,7 +198,7 @@ async def stream(server: ServerState, job: ServerJob, sent: int | None) -> Async
     job.watchers.add(watcher)
     server.streams += 1
     try:
-        while True:
+        while not server.is_closing.is_set():
             watcher.clear()
             if sent != job.version:
                 sent = job.version
@@ -212,8 +212,6 @@ async def stream(server: ServerState, job: ServerJob, sent: int | None) -> Async
                     await watcher.wait()
             except TimeoutError:
                 yield ": still here\n\n"
-            if server.is_closing.is_set():
-                return
     finally:
         server.streams -= 1
         job.used = monotonic()

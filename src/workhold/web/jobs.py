@@ -25,6 +25,7 @@ from workhold.seating.clamping import ByHand
 from workhold.web.answers import arrangements_answer, proof_answer
 from workhold.web.families import FamilyFound
 from workhold.web.guard import ServerLimits
+from workhold.web.memory import return_memory
 from workhold.web.part_tasks import shape_size
 from workhold.web.pool import BusyError, FailedError, Pool, PoolTask, StoppedError
 from workhold.web.selection import Selection
@@ -41,6 +42,8 @@ NAME_BYTES = 16
 LISTING = 0.9
 OVER = ("done", "failed", "cancelled")
 ORDERS_KEPT, SEATINGS_KEPT = 8, 32
+# Seconds after which memory of deleted jobs is given back.
+FREE_AFTER = 0.5
 # Bytes of memory for each byte of a request that is kept: it is kept as it came and as the query made of it.
 BYTES_KEPT = 16
 
@@ -178,6 +181,7 @@ class Jobs:
     pool: Pool
     limits: ServerLimits
     by_name: dict[str, ServerJob] = field(factory=dict, init=False)
+    freeing: asyncio.Task[None] | None = field(default=None, init=False)
 
     def get(self, name: str) -> ServerJob | None:
         """Finds a job by its name and notes its use; None when there is none (any more)."""
@@ -274,6 +278,10 @@ class Jobs:
         finally:
             if leaving is not None:
                 leaving.cancel()
+        if self.by_name.get(job.name) is not job:
+            # It was deleted meanwhile, and nobody will ask for what came of it.
+            job.result = job.family = None
+            self.free_memory()
         job.ended = monotonic()
         job.used = max(job.used, job.ended)
         job.changed()
@@ -339,6 +347,7 @@ class Jobs:
         if not job.is_over:
             job.state = "cancelled"
         job.changed()
+        self.free_memory()
 
     def make_room(self) -> None:
         """Forgets jobs whose life is over, and the longest unused ones when too much is kept."""
@@ -353,6 +362,22 @@ class Jobs:
                 break
             total -= job.size
             self.delete(job.name)
+
+    def wake_watchers(self) -> None:
+        """Wakes those who watch any job, though nothing has changed."""
+        for job in self.by_name.values():
+            for watcher in job.watchers:
+                watcher.set()
+
+    def free_memory(self) -> None:
+        """Gives back what jobs took that are no more, soon and once for many of them."""
+        if self.freeing is None or self.freeing.done():
+            self.freeing = asyncio.create_task(self.give_back())
+
+    async def give_back(self) -> None:
+        """Gives freed memory back after a moment, in which other jobs may be deleted too."""
+        await asyncio.sleep(FREE_AFTER)
+        await asyncio.to_thread(return_memory)
 
     async def sweep(self) -> None:
         """Forgets jobs at intervals, for ever."""

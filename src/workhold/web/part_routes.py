@@ -15,11 +15,11 @@ from workhold.web.job_routes import found_job
 from workhold.web.part_tasks import ShapeOrder, Upload
 from workhold.web.program_forms import ProgramQuestion
 from workhold.web.request_forms import WorkpieceForm, asked_heights
-from workhold.web.state import at_desk, at_desk_while_heard, state_of
+from workhold.web.state import CheckedRoute, at_desk, at_desk_while_heard, state_of
 
 __all__ = ["router"]
 
-router = APIRouter()
+router = APIRouter(route_class=CheckedRoute)
 LONGEST_NAME = 120
 # Limits that clients are given.
 LIMITS = (

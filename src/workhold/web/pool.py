@@ -24,7 +24,7 @@ from attrs import define, field
 
 from workhold.errors import InputError, WorkholdError
 from workhold.web.tasks import work
-from workhold.web.worker import CANCEL
+from workhold.web.worker import CANCEL, discard_folder
 
 __all__ = ["BusyError", "FailedError", "Pool", "PoolTask", "StoppedError"]
 
@@ -99,6 +99,7 @@ class PoolWorker:
     connection: Connection
     inbox: asyncio.Queue[Message] = field(factory=asyncio.Queue)
     gone: asyncio.Event = field(factory=asyncio.Event)
+    folder: str | None = None
 
     @classmethod
     def started(cls, kind: str, memory_bytes: int) -> PoolWorker:
@@ -120,6 +121,8 @@ class PoolWorker:
             while True:
                 message = self.connection.recv()
                 loop.call_soon_threadsafe(self.inbox.put_nowait, message)
+                # A result may be large, and the next message long in coming.
+                del message
         except Exception:
             # The end of the pipe, or half a message of a worker that was ended.
             with suppress(RuntimeError):
@@ -136,6 +139,7 @@ class PoolWorker:
         await asyncio.to_thread(self.process.join, 5.0)
         with suppress(OSError):
             self.connection.close()
+        await asyncio.to_thread(discard_folder, self.folder)
 
 
 @contextmanager
@@ -276,14 +280,15 @@ class Pool:
         failed = 0
         while True:
             worker = self.workers[slot] = PoolWorker.started(self.kind, self.memory_bytes)
-            if await first(worker.inbox.get(), worker.gone.wait()) is None:
+            ready = await first(worker.inbox.get(), worker.gone.wait())
+            if ready is None:
                 await worker.end()
                 failed += 1
                 if failed >= MOST_FAILED_STARTS:
                     self.give_up("The server cannot start its worker processes: give them more memory.")
                 await asyncio.sleep(START_PAUSE)
                 continue
-            failed = 0
+            failed, worker.folder = 0, ready[2]
             self.ready.set()
             try:
                 await self.serve(worker)
@@ -309,6 +314,8 @@ class Pool:
             finally:
                 self.busy -= 1
                 self.free(task)
+                # Its outcome is its caller's now.
+                del task
 
     async def work(self, worker: PoolWorker, task: PoolTask) -> None:
         """Has a worker do a task; a worker that had to be ended is marked as gone."""

@@ -27,6 +27,9 @@ __all__ = ["ProgramForm", "ProgramQuestion", "read_sent_program"]
 MOST_TEXT, MOST_TABLE = 3_500_000, 400_000
 TABLES = (".toml", ".csv", ".tbl")
 Thick = Annotated[float, Field(gt=0, le=LARGEST)]
+Start = Annotated[list[Annotated[float, Field(ge=-LARGEST, le=LARGEST)]], Field(min_length=3, max_length=3)]
+# What the questions of a program's reader are called on the page.
+CALLED = {"start": '"Tip starts at"'}
 
 EXAMPLE: dict[str, Any] = {
     "name": "plate.nc",
@@ -49,7 +52,9 @@ class ProgramForm(Form):
 
     Without a table of tools, what the program's comments say of them is read. ``zero`` is where its X0 Y0 is
     on the part. ``z_zero`` is where its Z0 is, a height above the part's lower side. Of a solid both heights
-    are known, ``thickness`` and ``peg_height``, up to which pegs, clamps and walls reach.
+    are known, ``thickness`` and ``peg_height``, up to which pegs, clamps and walls reach. ``start`` is where the
+    tip is at the start, from the program's own zero, where the program does not say it. ``whole_numbers`` is what
+    lengths without a decimal point count: thousandths are 0.001 mm or 0.0001 inch.
     """
 
     model_config = ConfigDict(json_schema_extra={"examples": [EXAMPLE]})
@@ -62,6 +67,8 @@ class ProgramForm(Form):
     clearance: Annotated[float, Field(ge=0, le=LARGEST)] = 1.0
     rapid: Literal["straight", "box"] = "straight"
     unit: Literal["mm", "inch"] | None = None
+    start: Start | None = None
+    whole_numbers: Literal["units", "thousandths"] = "units"
     thickness: Thick | None = None
     peg_height: Thick | None = None
 
@@ -117,6 +124,9 @@ def read_sent_program(form: ProgramForm, thickness: float | None) -> ReadProgram
             clearance=form.clearance,
             rapid=form.rapid,
             unit=form.unit,
+            start=form.start,
+            whole_numbers=form.whole_numbers,
+            called=CALLED,
         )
 
 

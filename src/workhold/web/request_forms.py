@@ -5,9 +5,11 @@ A part is sent as an outline or a solid, with outlines of carriers' own heights.
 
 from __future__ import annotations
 
+import json
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import Annotated, Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
@@ -17,6 +19,9 @@ from workhold.model.own_outlines import with_own_outlines
 from workhold.model.solid import SolidOutline
 from workhold.model.support_request import SpatialLoad
 from workhold.model.workpiece import Workpiece
+
+if TYPE_CHECKING:
+    from workhold.web.worker import Order
 
 __all__ = [
     "LARGEST",
@@ -37,6 +42,7 @@ __all__ = [
     "WorkpieceForm",
     "asked_heights",
     "asked_of",
+    "check_body",
     "checked_part",
     "of_address",
     "sentence_of",
@@ -54,9 +60,14 @@ Vertex = Annotated[list[Number], Field(min_length=3, max_length=3)]
 LoopForm = Annotated[list[Vertex], Field(min_length=1, max_length=MOST_VERTICES)]
 BandForm = Annotated[list[Annotated[float, Field(ge=0, le=LARGEST)]], Field(min_length=2, max_length=2)]
 Name = Annotated[str, Field(max_length=200)]
+RunForm = Annotated[
+    list[Annotated[list[Number], Field(min_length=3, max_length=3)]], Field(max_length=10_000)
+]
 FacesForm = Annotated[list[Annotated[int, Field(ge=0, le=1_000_000)]], Field(max_length=10_000)]
 AskedForm = TypeVar("AskedForm", bound="Form")
 
+# The end of a key; and how many keys a request may have: a family of many parts has a few for each.
+KEY, MOST_KEYS = re.compile(rb'"\s*:'), 20_000
 # Sets of three supports that are listed at most.
 MOST_SETS = 50
 
@@ -112,6 +123,36 @@ def sentence_of(error: dict[str, Any]) -> str:
     return f"The {where} value {place} of the address is not as it should be: {message}."
 
 
+def check_body(payload: tuple[type[Form], bytes, int], order: Order) -> None:
+    """Refuses a request that its form does not take, or with a part of too many segments."""
+    form, body, most_segments = payload
+    if sum(1 for _ in KEY.finditer(body)) > MOST_KEYS:
+        raise InputError(f"The request has more than {MOST_KEYS:,} keys: send those that are described.")
+    try:
+        data = json.loads(body)
+    except (ValueError, RecursionError) as error:
+        raise InputError("The request is not valid JSON: send one object.") from error
+    refuse_many(most_vertices_in(data), most_segments)
+    try:
+        form.model_validate(data)
+    except ValidationError as error:
+        first = next(iter(error.errors(include_url=False, include_context=False, include_input=False)))
+        raise InputError(sentence_of({**first, "loc": ("body", *first["loc"])})) from error
+
+
+def most_vertices_in(data: Any) -> int:
+    """How many vertices the largest part of a request has, as far as it has the shape of one."""
+    if not isinstance(data, dict):
+        return 0
+    several = data.get("workpieces")
+    parts = [data, data.get("workpiece"), *(several if isinstance(several, list) else ())]
+    loops = [part.get("loops") for part in parts if isinstance(part, dict)]
+    counts = [
+        sum(len(loop) for loop in own if isinstance(loop, list)) for own in loops if isinstance(own, list)
+    ]
+    return max(counts, default=0)
+
+
 class SolidForm(Form):
     """How the solid of an outline stands, and the heights at which each segment is touched; lengths in mm."""
 
@@ -125,6 +166,7 @@ class SolidForm(Form):
     bottom: Annotated[list[LoopForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
     top: Annotated[list[LoopForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
     top_heights: Annotated[list[Number], Field(max_length=MOST_VERTICES)] = Field(default=[])
+    runs: Annotated[list[RunForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
 
 
 class OwnOutlineForm(Form):
@@ -133,6 +175,7 @@ class OwnOutlineForm(Form):
     heights: Point
     loops: Annotated[list[LoopForm], Field(min_length=1, max_length=MOST_VERTICES)]
     bands: Annotated[list[BandForm | None], Field(max_length=MOST_VERTICES)]
+    runs: Annotated[list[RunForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
     solid_faces: Annotated[list[FacesForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
 
 

@@ -19,12 +19,15 @@ from workhold.errors import InputError
 from workhold.web.app import create_app
 from workhold.web.guard import Hosts, ServerLimits
 from workhold.web.origins import Origins
+from workhold.web.state import ServerState
 
 __all__ = ["bound_socket", "is_for_others", "make_server", "run_server"]
 
 # Seconds a client has to send the first lines of a request, and a response to end when the server stops.
 HEADER_SECONDS = 15.0
 STOP_SECONDS = 1
+# Seconds after which connections are closed that have not ended by themselves then.
+LAST_SECONDS = 0.2
 TERMINATED = 143
 
 
@@ -102,6 +105,23 @@ class Server(uvicorn.Server):
         self.force_exit = self.should_exit
         self.should_exit = True
         self.stopped_by = sig
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """Ends streams and workers first, and soon lets go of clients who still send, so that none is awaited."""
+        state: ServerState | None = getattr(self.config.app.state, "server", None)  # type: ignore[union-attr]
+        if state is not None:
+            await state.close()
+        late = asyncio.create_task(self.let_go())
+        try:
+            await super().shutdown(sockets)
+        finally:
+            late.cancel()
+
+    async def let_go(self) -> None:
+        """Closes the connections that are left after a moment."""
+        await asyncio.sleep(LAST_SECONDS)
+        for connection in list(self.server_state.connections):
+            connection.transport.abort()
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         """Starts, and reports that the server listens."""

@@ -6,21 +6,24 @@ The files are read once into a table; no name in a request is ever looked up any
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Iterator
+from collections.abc import AsyncIterator, Callable, Coroutine, Iterator
 from contextlib import asynccontextmanager, suppress
 from hashlib import sha256
 from importlib.resources import files
 from importlib.resources.abc import Traversable
-from typing import Any
+from typing import Any, get_type_hints
 
 from attrs import define, field, frozen
+from fastapi.routing import APIRoute
 from starlette.requests import Request
+from starlette.responses import Response
 
 from workhold.web.guard import ServerLimits
 from workhold.web.jobs import Jobs
 from workhold.web.pool import Pool, PoolTask, StoppedError
+from workhold.web.request_forms import Form
 
-__all__ = ["ServerState", "address_of", "at_desk", "at_desk_while_heard", "state_of"]
+__all__ = ["CheckedRoute", "ServerState", "address_of", "at_desk", "at_desk_while_heard", "state_of"]
 
 TYPES = {
     "html": "text/html; charset=utf-8",
@@ -98,11 +101,16 @@ class ServerState:
         try:
             yield
         finally:
-            self.is_closing.set()
             sweeper.cancel()
             with suppress(asyncio.CancelledError):
                 await sweeper
-            await asyncio.gather(self.searchers.close(), self.desks.close())
+            await self.close()
+
+    async def close(self) -> None:
+        """Ends streams of events, and the workers with what they do; once more does no harm."""
+        self.is_closing.set()
+        self.jobs.wake_watchers()
+        await asyncio.gather(self.searchers.close(), self.desks.close())
 
 
 def state_of(request: Request) -> ServerState:
@@ -151,6 +159,36 @@ async def at_desk_while_heard(request: Request, name: str, payload: Any) -> Any:
         for one in (running, gone):
             one.cancel()
         await asyncio.gather(running, gone, return_exceptions=True)
+
+
+# Bytes of a request that is checked where all clients wait for it, which takes some 10 ms.
+AT_ONCE = 1 << 15
+
+
+class CheckedRoute(APIRoute):
+    """A route whose larger requests are checked by a worker first.
+
+    What is wrong with a request in hundreds of thousands of places takes seconds to be found out, in which
+    the server would hear nobody.
+    """
+
+    def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
+        """What answers a request of this route."""
+        handler, form = super().get_route_handler(), self.form()
+
+        async def checked(request: Request) -> Response:
+            if form is not None:
+                body = await request.body()
+                if len(body) > AT_ONCE:
+                    await at_desk(request, "check_body", (form, body, state_of(request).limits.segments))
+            return await handler(request)
+
+        return checked
+
+    def form(self) -> type[Form] | None:
+        """The shape of its requests; None where they have no body, or bytes of a file."""
+        kinds = get_type_hints(self.endpoint).values()
+        return next((kind for kind in kinds if isinstance(kind, type) and issubclass(kind, Form)), None)
 
 
 async def hung_up(request: Request) -> None:

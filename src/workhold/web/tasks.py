@@ -22,6 +22,7 @@ from workhold.web.families import find_family, make_family_paper
 from workhold.web.fixture_tasks import close, find_seating, make_paper
 from workhold.web.part_tasks import builtin_part, check_part, find_shape, read_part, survey_part
 from workhold.web.program_forms import look_at_program
+from workhold.web.request_forms import check_body
 from workhold.web.support_tasks import find_supports
 from workhold.web.worker import Order, Tasks, worker_main
 
@@ -187,6 +188,7 @@ TASKS: Tasks = {
     "search": search,
     "explore": explore,
     "explanation": explanation,
+    "check_body": check_body,
     "check_job": check_job,
     "check_part": check_part,
     "make_lesson": make_lesson,

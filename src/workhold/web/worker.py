@@ -2,15 +2,21 @@
 
 It is started anew, not forked, so that it shares nothing with the server. Its kernels are loaded before it
 reports that it is ready. When the server ends, the pipe ends and so does the worker.
+
+What tasks write for a time stands in a folder of the worker's own. Who ends a worker removes it; a worker that
+ends because nobody is there any more does so itself.
 """
 
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import sys
+import tempfile
 import traceback
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from multiprocessing.connection import Connection
 from queue import SimpleQueue
 from threading import Event, Thread
@@ -20,8 +26,9 @@ from attrs import frozen
 
 from workhold.errors import InputError, lacks_memory
 from workhold.files.apart import limit_memory, limit_processor
+from workhold.web.memory import return_memory
 
-__all__ = ["CANCEL", "Order", "Tasks", "worker_main"]
+__all__ = ["CANCEL", "Order", "Tasks", "discard_folder", "worker_main"]
 
 # The name of a message that asks a task to stop.
 CANCEL = "cancel"
@@ -56,8 +63,9 @@ def worker_main(
     Parameters
     ----------
     connection : messages in are (number, name of the task, seconds, payload). The first message out is
-        ("ready", 0, None). Each task sends ("report", number, value) any number of times, then one of
-        ("done", number, value), ("refused", number, sentence) and ("failed", number, sentence).
+        ("ready", 0, folder), where tasks write for a time, or None. Each task sends ("report", number, value)
+        any number of times, then one of ("done", number, value), ("refused", number, sentence) and
+        ("failed", number, sentence).
     memory_bytes : the most address space the process may take.
     tasks : what it can do, by name.
     warm_up : called first, within the limits.
@@ -68,7 +76,8 @@ def worker_main(
     orders: SimpleQueue[tuple[int, str, float, Any, Event]] = SimpleQueue()
     Thread(target=listen, args=(connection, orders), daemon=True).start()
     warm_up()
-    connection.send(("ready", 0, None))
+    folder = own_folder()
+    connection.send(("ready", 0, folder))
     while True:
         number, name, seconds, payload, cancel = orders.get()
         # Far more than the wall time allows means that the task is deaf.
@@ -85,6 +94,28 @@ def worker_main(
             answer = ("failed", number, said_of(error, memory_bytes))
         del payload
         connection.send(answer)
+        # What was found is the server's now; waiting for the next order takes no memory.
+        del answer, report
+        return_memory()
+
+
+# The folder of this process, once it has one.
+folders: list[str] = []
+
+
+def own_folder() -> str | None:
+    """Makes a folder for what tasks of this process write for a time; None where none can be made."""
+    with suppress(OSError):
+        folders.append(tempfile.mkdtemp(prefix="workhold-"))
+        tempfile.tempdir = folders[0]
+        return folders[0]
+    return None
+
+
+def discard_folder(folder: str | None) -> None:
+    """Removes the folder of a worker, with all that its tasks have left there."""
+    if folder is not None:
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 def said_of(error: Exception, memory_bytes: int) -> str:
@@ -105,6 +136,8 @@ def listen(connection: Connection, orders: SimpleQueue[tuple[int, str, float, An
         try:
             message = connection.recv()
         except (EOFError, OSError):
+            if folders:
+                discard_folder(folders[0])
             os._exit(0)
         if message[1] == CANCEL:
             if message[0] == newest:

@@ -24,14 +24,16 @@ LINES = {
     "G65 P9000": "subprogram",
     "M98 P1000": "subprogram",
     "M99": "subprogram",
-    "G84 X5 Z-5 R2": "a cycle that is not read",
+    "G87 X5 Z-5 R2": "a cycle that is not read",
     "G76 X5 Z-5 R2": "a cycle that is not read",
     "G38.2 Z-5": "probes",
     "G5.1 X5 Y5": "spline",
     "G71": "G20 or G21",
+    "G70 G90": "G20 or G21",
+    "G71 G90 I5. J2. L4": "G20 or G21",
     "G12.3": "G12.3 is not known",
-    "M13": "M13 is not known",
-    "M117": "M117 is not known",
+    "M96 P5": "jumps to another line",
+    "M16": "write M6",
     "G2 X10 Y0": "no centre",
     "G2 X10 Y0 I4": "begins 4.0000 mm from its centre and ends 6.0000 mm",
     "G2 X0 Y0 R5": "ends where it begins",
@@ -198,7 +200,7 @@ def test_what_is_left_out_or_taken_is_noted(tmp_path: Path) -> None:
         assert words in notes
     unsaid = read_text(tmp_path, "G21\nT1 M6 G43 H2\nG0 X0 Y0 Z0\n")
     assert "does not say G90 or G91" in unsaid.notes[1] and "Line 2: G43 takes the length" in unsaid.notes[2]
-    assert len(read_text(tmp_path, START).notes) == 1
+    assert len(read_text(tmp_path, START.replace("20", "20.")).notes) == 1
 
 
 def test_home_is_reached_by_way_of_the_place_that_is_written(tmp_path: Path) -> None:
@@ -210,15 +212,15 @@ def test_home_is_reached_by_way_of_the_place_that_is_written(tmp_path: Path) -> 
     assert not program.moves.cutting.any()
 
 
-def test_a_change_of_tool_is_from_nowhere_and_is_counted(tmp_path: Path) -> None:
-    """Where the machine changes is not told; a tool that is in the spindle already is not changed."""
+def test_a_change_of_tool_keeps_its_place_and_is_counted(tmp_path: Path) -> None:
+    """NISTIR 6556; a tool that is in the spindle already is not changed."""
     path = tmp_path / "a.nc"
     path.write_text(START + "T2\nX5\nM6\nX9 Y9\nZ3\nT2 M6\nX1\n")
     read = read_program_with_calls(path, {1: 6, 2: 8}, z_zero=0)
     assert read.calls == ((2, 1), (6, 2)) and read.lines == 11
     moves = read.program.moves
-    assert moves.tool.tolist() == [1, 1, 2, 2] and moves.line.tolist() == [3, 5, 8, 10]
-    assert moves.start[2].tolist() == moves.end[2].tolist() == [9, 9, 3]
+    assert moves.tool.tolist() == [1, 1, 2, 2, 2] and moves.line.tolist() == [3, 5, 7, 8, 10]
+    assert moves.start[2].tolist() == [5, 0, 20] and moves.end[2].tolist() == [9, 9, 20]
 
 
 def test_a_rapid_move_in_increments_from_nowhere_leads_nowhere(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ import pytest
 from fakes import fake_result
 from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece
-from workhold.files.step.library import REQUIREMENT
+from workhold.files.step.library import REQUIREMENT, OpenCascade
 from workhold.files.step.reader import read_step
 from workhold.files.step.writer import write_setup_step
 
@@ -88,6 +88,12 @@ def test_a_missing_library_is_one_sentence_with_the_remedy(
         assert said in str(caught.value)
         assert "\n" not in str(caught.value)
     assert not (tmp_path / "set-up.step").exists()
+
+
+def test_a_question_for_what_python_names_imports_nothing(block) -> None:  # type: ignore[no-untyped-def]
+    """As ``inspect.unwrap`` asks it of every object of a module, in which doctest looks for examples."""
+    block(ModuleNotFoundError("No module named 'OCP'", name="OCP"))
+    assert not hasattr(OpenCascade(), "__wrapped__")
 
 
 def test_the_command_line_ends_with_code_2_without_the_extra(tmp_path: Path) -> None:

@@ -211,7 +211,8 @@ def part_remarks(parts: Sequence[DrawnPart], chosen: DrawnPart, asked: int | str
     if len(parts) == 1:
         return []
     more = f"; and {len(parts) - PART_LIST} smaller ones" if len(parts) > PART_LIST else ""
-    because = "" if asked is not None else f", the largest (choose another with {PART_NUMBER})"
+    largest = "the largest" if chosen.number == 1 else "the largest that can be read"
+    because = "" if asked is not None else f", {largest} (choose another with {PART_NUMBER})"
     listing = "; ".join(str(part) for part in parts[:PART_LIST])
     used = f"Part {chosen.number} is used{because}."
     return [f"The file holds {len(parts)} separate parts: {listing}{more}. {used}"]

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from math import hypot
 from pathlib import Path
@@ -34,7 +34,7 @@ from workhold.files.dxf.reader import (
 from workhold.files.dxf.walk import BlockNesting, DxfWalk
 from workhold.files.outline.chain import Chain, Drawing, Placement, cleaned
 from workhold.files.outline.diagnostics import size_of
-from workhold.files.outline.joining import join
+from workhold.files.outline.joining import Loop, join
 from workhold.files.outline.nesting import DrawnPart, nest
 from workhold.files.part.finding import found, kind_of, read_bytes
 from workhold.files.part.load import Loaded, read_workpiece
@@ -132,12 +132,21 @@ def layers_of(
         on_layer.setdefault(walk.layers.get(chain.labels[0]), []).append(chain)
     for name in sorted(walk.kinds, key=str.casefold):
         budget.check_time()
-        chains = on_layer.get(name, [])
+        chains = usable(on_layer.get(name, []))
         hidden = name.casefold() in walk.hidden_layers
         layers.append(
             DrawnLayer(name, walk.kinds[name], hidden, loops_of(chains), size_of(chains), tuple(chains))
         )
     return tuple(layers), known is not None
+
+
+def usable(chains: list[Chain]) -> list[Chain]:
+    """Chains, or none of them where a number is none or far too large."""
+    try:
+        cleaned(chains)
+    except InputError:
+        return []
+    return chains
 
 
 def loops_of(chains: list[Chain]) -> int | None:
@@ -214,7 +223,9 @@ def survey(path: Path, *, called: Mapping[str, str] | None = None, **options: An
     with suppress(InputError):
         kind = kind_of(path, content)
     drawing = drawing_of(kind, path, content, options if unit is None else {**options, "unit": unit})
-    chains = cleaned(drawing.chains).chains
+    chains = tuple[Chain, ...]()
+    with suppress(InputError):
+        chains = cleaned(drawing.chains).chains
     size = size_of(chains)
     gaps, parts = gaps_and_parts(chains, options.get("join_tolerance", 1e-3), size)
     layers = tuple[DrawnLayer, ...]()
@@ -238,11 +249,13 @@ def drawing_of(kind: str, path: Path, content: bytes, options: Mapping[str, Any]
         if kind == "dxf":
             from workhold.files.dxf.reader import read_dxf
 
-            return read_dxf(path, content, layers=options.get("layers"), **taken)
+            with np.errstate(all="ignore"):
+                return read_dxf(path, content, layers=options.get("layers"), **taken)
         if kind == "svg":
             from workhold.files.svg.reader import read_svg
 
-            return read_svg(content, **taken)
+            with np.errstate(all="ignore"):
+                return read_svg(content, **taken)
     return Drawing(())
 
 
@@ -253,6 +266,14 @@ def solids_of(content: bytes) -> tuple[FileSolid, ...]:
 
         return listed_solids(content)
     return ()
+
+
+def nest_of(loops: Sequence[Loop]) -> tuple[DrawnPart, ...]:
+    """The parts that loops make; none where it takes too long to tell."""
+    try:
+        return nest(loops, Budget(LIMITS["dxf"]))
+    except InputError:
+        return ()
 
 
 def gaps_and_parts(
@@ -279,4 +300,4 @@ def gaps_and_parts(
         away[k] = np.inf
         found.add(float(f"{away.min():.6g}"))
     widest = WIDEST_GAP * hypot(*size)
-    return tuple(sorted(gap for gap in found if 0.0 < gap <= widest)), nest(joined.loops)
+    return tuple(sorted(gap for gap in found if 0.0 < gap <= widest)), nest_of(joined.loops)

@@ -11,20 +11,36 @@ from math import isfinite
 from attrs import define, field
 
 from workhold.errors import InputError
-from workhold.files.program.path import AXES, PathWriter, Reached, arc_about, arc_of_radius, drill
+from workhold.files.program.path import (
+    AXES,
+    PathWriter,
+    Place,
+    Reached,
+    arc_about,
+    arc_of_radius,
+    drill,
+    refuse_unknown,
+)
 from workhold.files.program.words import (
     CANCEL,
+    CYCLES,
     FUNCTIONS,
     GROUPS,
+    LOOK_AHEAD,
+    NOSE,
+    NUMBERED,
+    OTHER_UNITS,
     UNITS,
+    VISITS,
     Modes,
     ProgramBlock,
     code_of,
+    is_spline,
     refuse_code,
     refuse_function,
 )
 
-__all__ = ["Interpreter"]
+__all__ = ["LAST_DIGIT", "Interpreter"]
 
 MOST_TURNS = 1000
 # The words that only some codes give a meaning, and codes of which one has to be there or in force.
@@ -40,7 +56,15 @@ NEEDING = {
     "D": "G41, which is not read",
     "E": "a code that is read",
 }
-ROTARY = "ABCUVW"
+# Axes that may stay where they are, and further straight ones.
+ROTARY, OTHER_AXES = frozenset("ABC"), frozenset("ABCUVW")
+# Letters of functions that are passed over.
+OF_FUNCTIONS = frozenset("PQRELJ")
+# Words that are lengths, of which a number without a decimal point may mean thousandths; K counts in a cycle, and
+# is 0 in an arc about z.
+LENGTHS = frozenset("XYZIJRQ")
+# What the last digit of such a number is then, as a part of the unit.
+LAST_DIGIT = {"mm": 1e-3, "inch": 1e-4}
 
 
 @define
@@ -50,17 +74,31 @@ class Interpreter:
     Parameters
     ----------
     changes : whether the program changes tools by M6; where it never does, T alone names the tool.
+    has_lengths : whether it puts a tool length in force anywhere (G43).
+    in_thousandths : whether a length without a decimal point counts 0.001 mm or 0.0001 inch.
     path : writes the moves.
     skipped : lines with a move to the machine's own places.
     calls : (line, number) of every tool that comes into the spindle.
     other_lengths : lines with G43 for another tool than the one in the spindle.
+    passed : lines with codes that say nothing of the path, by their names.
+    whole, pointed : lines with lengths without a decimal point, and whether others have one.
+    angles : of rotary axes, by their letters; those at places of the machine's own are ``away``.
+    presets : lines with G92 at the start.
     """
 
     changes: bool
+    has_lengths: bool = False
+    in_thousandths: bool = False
     path: PathWriter = field(factory=PathWriter)
     skipped: list[int] = field(factory=list)
     calls: list[tuple[int, int]] = field(factory=list)
     other_lengths: list[int] = field(factory=list)
+    passed: dict[str, list[int]] = field(factory=dict)
+    whole: list[int] = field(factory=list)
+    pointed: bool = False
+    angles: dict[str, float] = field(factory=dict)
+    away: set[str] = field(factory=set)
+    presets: list[int] = field(factory=list)
     distance_said: bool = False
 
     @property
@@ -80,6 +118,7 @@ class Interpreter:
         codes: dict[str, str] = {}
         functions: list[str] = []
         values: dict[str, float] = {}
+        whole: list[str] = []
         for letter, text in block.words:
             if letter == "G":
                 self.add_code(codes, code_of(text))
@@ -91,13 +130,23 @@ class Interpreter:
                 values[letter] = float(text)
                 if not isfinite(values[letter]):
                     raise InputError(f"the number of {letter} is too large: correct it.")
-        if values.keys() & ROTARY:
+                if letter in LENGTHS and values[letter]:
+                    if "." in text:
+                        self.pointed = True
+                    else:
+                        whole.append(letter)
+        once = codes.get("once")
+        if values.keys() & OTHER_AXES:
+            self.stay(codes, values)
+        if whole and once != "4" and not (codes.keys() and self.looks_ahead(codes)):
+            self.count_whole(whole, codes, values)
+        count = len(self.path.rows)
+        used = self.set_up(codes, functions, values) | self.move(codes, values)
+        if self.away and any(row[2] for row in self.path.rows[count:]):
             raise InputError(
-                f"{min(values.keys() & set(ROTARY))} moves a fourth axis, of which nothing is known: post "
-                "the program for three axes."
+                f"the tool cuts while {min(self.away)} is at a place of the machine's own: write where it turns "
+                "to before."
             )
-        self.set_up(codes, functions, values)
-        used = self.move(codes, values)
         for letter in sorted(values.keys() - used):
             raise InputError(
                 f"{letter} is of {NEEDING[letter]}, and there is none: take it out."
@@ -116,7 +165,6 @@ class Interpreter:
         group = GROUPS.get(code)
         if group is None:
             refuse_code(code)
-        assert group is not None
         if codes.get(group, code) != code:
             raise InputError(
                 f"G{codes[group]} and G{code} stand in one block, where only one can be: take one of them "
@@ -124,20 +172,58 @@ class Interpreter:
             )
         codes[group] = code
 
-    def set_up(self, codes: dict[str, str], functions: list[str], values: dict[str, float]) -> None:
-        """Takes what stays in force: feed and speed, the tool, unit, plane, zero and how places are written.
+    def stay(self, codes: dict[str, str], values: dict[str, float]) -> None:
+        """Takes the words of further axes out of a block; refuses one that moves any of them."""
+        once, distance = codes.get("once"), codes.get("distance", self.modes.distance)
+        if once == "4":
+            # U is the time of a dwell.
+            values.pop("U", None)
+        for letter in sorted(values.keys() & OTHER_AXES):
+            value = values.pop(letter)
+            if letter in ROTARY and once in VISITS:
+                self.away.add(letter)
+                values[letter] = value
+                continue
+            if distance == "91":
+                at = 0.0
+            else:
+                # What is not named before the first move stands at 0 until then.
+                at = self.angles.setdefault(letter, 0.0 if self.path.rows else value)
+                self.away.discard(letter)
+            if letter not in ROTARY or value != at:
+                raise InputError(
+                    f"{letter} moves a fourth axis, of which nothing is known: post the program for three axes."
+                )
+
+    def looks_ahead(self, codes: dict[str, str]) -> bool:
+        """Whether a block has a code of how the control looks ahead, to which its numbers may belong."""
+        return any(code in LOOK_AHEAD for code in codes.values())
+
+    def count_whole(self, letters: list[str], codes: dict[str, str], values: dict[str, float]) -> None:
+        """Remembers lengths without a decimal point, and makes them thousandths where they are."""
+        self.whole.append(self.path.line)
+        unit = UNITS[codes["unit"]] if "unit" in codes else self.modes.unit
+        if self.in_thousandths and unit is not None:
+            for letter in letters:
+                values[letter] *= LAST_DIGIT[unit.name]
+
+    def set_up(self, codes: dict[str, str], functions: list[str], values: dict[str, float]) -> set[str]:
+        """Takes what stays in force: feed and speed, the tool, its length, unit, plane, zero and how places are
+        written. Returns the letters that have a meaning.
 
         Raises
         ------
         InputError
             For functions that are not read, and a change to no tool.
         """
-        modes = self.modes
+        modes, used = self.modes, {"N", "F", "S", "T"}
         for function in functions:
             if function not in FUNCTIONS:
                 refuse_function(function)
-        modes.unit = UNITS[codes["unit"]] if "unit" in codes else modes.unit
-        modes.feed_kind = codes.get("feed", modes.feed_kind)
+                self.passed.setdefault(f"M{function}", []).append(self.path.line)
+                used |= OF_FUNCTIONS
+        if codes:
+            used |= self.set_codes(codes, values)
         if "F" in values:
             modes.feed = values["F"]
         if "S" in values:
@@ -154,24 +240,82 @@ class Interpreter:
             if modes.called is None:
                 raise InputError("M6 changes to a tool that no T has named: write T and its number before.")
             self.change_tool()
+        if "length" in codes:
+            used.add("H")
+            self.change_length(codes["length"], values.get("H"))
+        return used
+
+    def set_codes(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
+        """Puts the codes of a block in force that stay so, and passes over those that say nothing of the path.
+
+        Returns
+        -------
+        set
+            The letters that belong to them.
+
+        Raises
+        ------
+        InputError
+            For a spline, and a zero with a number that is none.
+        """
+        modes, used = self.modes, set()
+        for code in codes.values():
+            if code in LOOK_AHEAD:
+                if is_spline(code, values.keys(), values.get("P", 0.0)):
+                    refuse_code(code)
+                self.passed.setdefault(f"G{code}", []).append(self.path.line)
+                used |= set(LOOK_AHEAD[code])
+        modes.unit = UNITS[codes["unit"]] if "unit" in codes else modes.unit
+        if "other unit" in codes:
+            # Among other codes, as Vectric's posts write it at the head, it repeats the unit that is in force.
+            repeats = OTHER_UNITS[codes["other unit"]] is modes.unit and len(codes) > 1
+            if not repeats or values.keys() & set("IJKL"):
+                refuse_code(codes["other unit"])
+        modes.feed_kind = codes.get("feed", modes.feed_kind)
         modes.plane = codes.get("plane", modes.plane)
-        modes.offset = codes.get("offset", modes.offset)
+        if "offset" in codes:
+            zero = codes["offset"]
+            if zero in NUMBERED and "P" in values.keys() - used and "once" not in codes:
+                if values["P"] != int(values["P"]) or values["P"] < 1:
+                    raise InputError(
+                        f"P{values['P']:g} is not the number of a zero: write a whole one from 1."
+                    )
+                used.add("P")
+                zero += f" P{values['P']:g}"
+            self.path.change_zero(zero)
         modes.distance = codes.get("distance", modes.distance)
         modes.centre = codes.get("centre", modes.centre)
         modes.back = codes.get("return", modes.back)
         self.distance_said = self.distance_said or "distance" in codes
-        if "H" in values and codes.get("length") == "43" and modes.tool not in (None, values["H"]):
-            self.other_lengths.append(self.path.line)
+        return used
 
     def change_tool(self) -> None:
-        """Puts the tool that was called into the spindle; where it is then is not known."""
+        """Puts the tool that was called into the spindle; X, Y and Z stay what they were (NISTIR 6556, 3.6.3)."""
         modes = self.modes
         if modes.called != modes.tool:
             modes.tool = modes.called
-            modes.place = [None, None, None]
-            modes.initial = None
             assert modes.called is not None
             self.calls.append((self.path.line, modes.called))
+
+    def change_length(self, code: str, number: float | None) -> None:
+        """Puts a tool's length in force, or takes it away; its tip is at another height then.
+
+        Parameters
+        ----------
+        code : G43 or G49.
+        number : of the length, H; 0 is none.
+        """
+        modes = self.modes
+        if code == "49" or number == 0:
+            length = NOSE if self.has_lengths else None
+        else:
+            length = f"H{modes.tool if number is None else number:g}"
+            if number is not None and modes.tool not in (None, number):
+                self.other_lengths.append(self.path.line)
+        if length != modes.length:
+            why = NOSE if length == NOSE else f"line {self.path.line} changes the tool's length (G{code})"
+            self.path.lose([2], why)
+            modes.length = length
 
     def move(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
         """Makes the move of a block, if it has one, and returns the letters that have a meaning.
@@ -181,26 +325,30 @@ class Interpreter:
         InputError
             For a move that is not known, or not read.
         """
-        used = {"N", "F", "S", "T"}
-        if "length" in codes:
-            used |= {"H"}
-        if codes.get("path") == "64":
-            used |= {"P", "Q"}
+        used: set[str] = set()
         once = codes.get("once")
         if once == "4":
+            self.passed.setdefault("G4", []).append(self.path.line)
             used |= {"P"}
             if "motion" not in codes:
                 return used | {"X"}
             if "P" not in values or codes["motion"] not in ("0", "1") or "cycle" in codes:
                 raise InputError("a dwell (G4) and a move stand in one block: write them in two.")
-        elif once is not None:
+        elif once in VISITS:
             return used | self.move_once(codes, values)
+        elif once is not None:
+            return used | self.set_zero(once, values)
         self.change_motion(codes)
         motion, cycle = self.modes.motion, self.modes.cycle
         if cycle is not None:
             if values.keys() & {"X", "Y", "Z", "R"}:
                 return used | drill(self.path, values)
-            return used | ({"P", "Q"} if "cycle" in codes else set())
+            if codes.get("cycle") in CYCLES:
+                raise InputError(
+                    f"G{cycle} stands without X, Y, Z or R, where one control drills and another does not: write "
+                    "the X and Y of its hole, with Z and R, or take it out."
+                )
+            return used
         wanted = values.keys() & {"X", "Y", "Z"}
         if motion in ("2", "3") and values.keys() & {"X", "Y", "Z", "I", "J"}:
             return used | self.move_along_arc(motion == "2", values)
@@ -230,20 +378,22 @@ class Interpreter:
             modes.cycle, modes.sticky = cycle, {}
 
     def move_once(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
-        """Takes a move to a place of the machine's own, after which the tool comes from nowhere.
+        """Takes a move to a place of the machine's own, after which nobody knows where the axes are.
 
         Raises
         ------
         InputError
-            For G53 with an arc, and a place that is passed and not known.
+            For G53 with anything but G0, and a place that is passed and not known.
         """
         once, axes = codes["once"], values.keys() & {"X", "Y", "Z"}
         self.change_motion(codes)
-        place: Reached
         if once == "53":
             if self.modes.motion not in ("0", "1"):
                 raise InputError("G53 stands without G0 or G1: write one of them with it.")
-            place = list(self.modes.place)
+            if self.modes.motion == "1" and axes:
+                raise InputError(
+                    "G53 with G1 cuts its way to a place of the machine's own, which is not known: write G0 with it."
+                )
         else:
             # G28 and G30 pass a place on their way to the machine's own.
             passed = {
@@ -253,12 +403,39 @@ class Interpreter:
             }
             if passed:
                 self.path.move_to(self.path.target(passed), cutting=False)
-            place = list(self.modes.place)
-        for axis, letter in enumerate(AXES):
-            if letter in axes or (once != "53" and not axes):
-                place[axis] = None
-        self.modes.place = place
+        # G28 and G30 alone move all axes.
+        alone = once != "53" and not axes and not values.keys() & ROTARY
+        lost = [axis for axis, letter in enumerate(AXES) if letter in axes or alone]
+        self.path.lose(lost, f"line {self.path.line} goes to a place of the machine's own")
         self.skipped.append(self.path.line)
+        return axes | ROTARY
+
+    def set_zero(self, code: str, values: dict[str, float]) -> set[str]:
+        """Takes a word that could set another zero, where it sets none.
+
+        G52 with 0 is none, and so is taking back what was never set. G92 before anything else says where the
+        tip stands.
+
+        Raises
+        ------
+        InputError
+            For every other zero.
+        """
+        modes, axes = self.modes, values.keys() & {"X", "Y", "Z"}
+        if code in ("92.1", "92.2"):
+            if self.presets:
+                refuse_code(code)
+        elif code == "52":
+            if any(values[letter] for letter in axes):
+                refuse_code(code)
+        else:
+            if modes.named or self.path.rows or not axes:
+                refuse_code(code)
+            for axis, letter in enumerate(AXES):
+                if letter in axes:
+                    modes.place[axis] = self.path.length(values[letter])
+            modes.named = True
+            self.presets.append(self.path.line)
         return set(axes)
 
     def move_along_arc(self, clockwise: bool, values: dict[str, float]) -> set[str]:
@@ -277,7 +454,7 @@ class Interpreter:
             )
         if values.get("K", 0.0) != 0.0:
             raise InputError("K is of arcs in another plane than G17: take it out.")
-        start, end = known(modes.place), known(self.path.target(values))
+        start, end = self.known(modes.place), self.known(self.path.target(values))
         turns = self.turns_of(values)
         if "R" in values:
             if values.keys() & {"I", "J"} or turns != 1:
@@ -326,12 +503,9 @@ class Interpreter:
             )
         return int(turns)
 
-
-def known(place: Reached) -> tuple[float, float, float]:
-    """A place of which all is known; refuses one of which something is not."""
-    x, y, z = place
-    if x is None or y is None or z is None:
-        raise InputError(
-            "an arc begins at a place that the program does not say: write where the tool goes before it."
-        )
-    return x, y, z
+    def known(self, place: Reached) -> Place:
+        """A place of an arc of which all is known; refuses one of which something is not."""
+        x, y, z = place
+        if x is None or y is None or z is None:
+            refuse_unknown(self.path, place, "an arc begins at a place")
+        return x, y, z

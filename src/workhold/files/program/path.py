@@ -1,24 +1,38 @@
 """The path of the tip as rows of moves, in mm from the program's own zero: lines, arcs and drill cycles.
 
+A rapid move to a place of which something is not known is left out, and one from such a place is its end
+alone. A cut is never left out: where its path is not known all along, the program is refused.
+
 Arcs become spans of half a turn or less. In a drill cycle pecks (Q) go up and down between the plane R and
 the bottom. One move down and one up sweep the same, and stand for all of them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from math import atan2, ceil, cos, hypot, pi, sin, sqrt, tan
-from typing import Any
+from typing import Any, NoReturn
 
 from attrs import define, field, frozen
 
 from workhold.conventions import ARC_RADII
-from workhold.errors import InputError
+from workhold.errors import InputError, listed
 from workhold.files.budget import LIMITS
-from workhold.files.program.words import Modes
+from workhold.files.program.words import AT_FEED_UP, NOSE, Modes
+from workhold.files.questions import START
 from workhold.limits import MOST_LENGTH
 
-__all__ = ["AXES", "PathWriter", "Place", "PlaneArc", "Reached", "arc_about", "arc_of_radius", "drill"]
+__all__ = [
+    "AXES",
+    "PathWriter",
+    "Place",
+    "PlaneArc",
+    "Reached",
+    "arc_about",
+    "arc_of_radius",
+    "drill",
+    "refuse_unknown",
+]
 
 AXES = "XYZ"
 # Digits in mm to which places are rounded, so that sums of increments are the places that they mean.
@@ -43,6 +57,9 @@ class PathWriter:
     rows : of the moves, see ``model.moves.Moves.of_rows``; the tool is -1 before any is called.
     arrivals : lines at which the tool comes from a place that is not known.
     unplaced : lines of rapid moves in increments that begin at a place that is not known.
+    adrift : lines of rapid moves that end where something is not known.
+    nose : lines of rapid moves to a height of the spindle's nose.
+    has_heights : whether the program gives any height.
     offset_used : code of the zero in which the moves are.
     """
 
@@ -51,6 +68,9 @@ class PathWriter:
     rows: list[tuple[Any, ...]] = field(factory=list)
     arrivals: list[int] = field(factory=list)
     unplaced: list[int] = field(factory=list)
+    adrift: list[int] = field(factory=list)
+    nose: list[int] = field(factory=list)
+    has_heights: bool = True
     offset_used: str | None = None
 
     def scale(self) -> float:
@@ -98,6 +118,13 @@ class PathWriter:
             if letter not in values:
                 continue
             value = self.length(values[letter])
+            self.refuse_other_zero()
+            self.modes.named = True
+            if axis == 2 and self.modes.length == NOSE:
+                place[axis], self.modes.lost[axis] = None, NOSE
+                if rapid:
+                    self.nose.append(self.line)
+                continue
             if self.modes.distance == "91":
                 before = place[axis]
                 if before is None and rapid:
@@ -114,20 +141,58 @@ class PathWriter:
             place[axis] = value
         return place
 
+    def lose(self, axes: Iterable[int], why: str) -> None:
+        """Takes it that nobody knows any more where the tip is along some axes, and why."""
+        for axis in axes:
+            self.modes.place[axis], self.modes.lost[axis] = None, why
+        if self.modes.place[2] is None:
+            self.modes.initial = None
+
+    def change_zero(self, offset: str) -> None:
+        """Puts a zero in force; places that were named from another one are not known from it."""
+        if offset != self.modes.offset and self.modes.named:
+            self.lose(range(3), f"line {self.line} changes to another zero")
+        self.modes.offset = offset
+
+    def refuse_other_zero(self) -> None:
+        """Refuses a place in a second zero."""
+        modes = self.modes
+        if self.offset_used not in (None, modes.offset):
+            raise InputError(
+                f"G{modes.offset} comes after moves in G{self.offset_used}, and how the two zeros lie to "
+                "each other is not said by the program: give one program for each."
+            )
+
     def move_to(self, place: Reached, cutting: bool, bulge: float = 0.0) -> None:
-        """Moves the tip; from a place that is not known, only where it arrives counts."""
+        """Moves the tip; of a rapid move from a place that is not known, only where it arrives counts.
+
+        A cut straight down, or up, from a height that is not known is where it arrives as well.
+
+        Raises
+        ------
+        InputError
+            For a cut along a way that is not known.
+        """
         before = self.modes.place
-        self.modes.place = place
         x, y, z = place
+        from_x, from_y, from_z = before
+        upright = x is not None and y is not None and z is not None and (x, y) == (from_x, from_y)
+        if cutting and (z is None or None in before) and not upright:
+            refuse_unknown(self, [None if None in ends else 0.0 for ends in zip(before, place, strict=True)])
+        self.modes.place = place
         if x is None or y is None or z is None:
+            self.adrift.append(self.line)
             return
         end = (x, y, z)
-        from_x, from_y, from_z = before
         if from_x is None or from_y is None or from_z is None:
             self.arrivals.append(self.line)
             self.add(cutting, end, end, 0.0)
-        elif before != place:
+        elif before != place or self.has_other_tool():
             self.add(cutting, (from_x, from_y, from_z), end, bulge)
+
+    def has_other_tool(self) -> bool:
+        """Whether the tool has come into the spindle where the one before it moved last, and stands there."""
+        return bool(self.rows) and self.rows[-1][1] != self.modes.tool and self.modes.tool is not None
 
     def add(self, cutting: bool, start: Place, end: Place, bulge: float) -> None:
         """Adds a move.
@@ -138,11 +203,7 @@ class PathWriter:
             For a second zero, and one move too many.
         """
         modes = self.modes
-        if self.offset_used not in (None, modes.offset):
-            raise InputError(
-                f"G{modes.offset} comes after moves in G{self.offset_used}, and how the two zeros lie to "
-                "each other is not said by the program: give one program for each."
-            )
+        self.refuse_other_zero()
         self.offset_used = modes.offset
         feed = 0.0
         if cutting:
@@ -153,6 +214,35 @@ class PathWriter:
             raise InputError(f"the program has more than {MOST_MOVES:,} moves: split it.")
         tool = -1 if modes.tool is None else modes.tool
         self.rows.append((self.line, tool, cutting, start, end, bulge, feed, modes.spindle))
+
+
+def refuse_unknown(path: PathWriter, place: Reached, what: str = "the tool cuts at a place") -> NoReturn:
+    """Refuses a cut at a place of which something is not known, with why it is not, and what helps.
+
+    Parameters
+    ----------
+    what : is done where.
+    """
+    unknown: dict[str, list[int]] = {}
+    for axis in (axis for axis, value in enumerate(place) if value is None):
+        unknown.setdefault(path.modes.lost[axis], []).append(axis)
+    reasons, remedies = [], []
+    for why, axes in unknown.items():
+        names = listed([AXES[axis] for axis in axes])
+        remedies.append(f"write {names} with G0 before it")
+        if axes == [2] and not path.has_heights:
+            reasons.append("no height (Z) is given anywhere in the program")
+        elif why == NOSE:
+            reasons.append("Z is the height of the spindle's nose after G49, and not that of the tip")
+            remedies[-1] = "write G43 with H and Z before it"
+        elif why:
+            reasons.append(f"{why}, and {names} {'is' if len(axes) == 1 else 'are'} not named after it")
+        else:
+            reasons.append(f"{names} {'is' if len(axes) == 1 else 'are'} not named before")
+    either = f", or give where the tip is at the start with {START}" if "" in unknown else ""
+    raise InputError(
+        f"{what} that the program does not say, as {' and '.join(reasons)}: {' and '.join(remedies)}{either}."
+    )
 
 
 @frozen
@@ -257,14 +347,17 @@ def drill(path: PathWriter, values: dict[str, float]) -> set[str]:
     """
     modes = path.modes
     bottom, plane = depths(path, values)
+    initial, slow = modes.initial, modes.cycle in AT_FEED_UP
     for _ in range(repeats(path, values)):
         x, y, z = path.target({key: values[key] for key in ("X", "Y") if key in values})
         if x is None or y is None:
-            raise InputError("a hole is drilled at a place that the program does not say: write X and Y.")
+            refuse_unknown(path, [x, y, z], "a hole is drilled at a place")
         path.move_to([x, y, z], cutting=False)
         path.move_to([x, y, plane], cutting=False)
         path.move_to([x, y, bottom], cutting=True)
-        up = modes.initial if modes.back == "98" else plane
+        if slow:
+            path.move_to([x, y, plane], cutting=True)
+        up = initial if modes.back == "98" else plane
         path.move_to([x, y, up], cutting=False)
     return {"X", "Y", "Z", "R", "Q", "P", "L", "K"}
 
@@ -279,9 +372,7 @@ def depths(path: PathWriter, values: dict[str, float]) -> tuple[float, float]:
         raise InputError(f"a drill cycle stands in the plane G{modes.plane}: write G17 before it.")
     initial, now = modes.initial, modes.place[2]
     if initial is None or now is None:
-        raise InputError(
-            "a drill cycle begins at a height that the program does not say: write G0 with Z before it."
-        )
+        refuse_unknown(path, [0.0, 0.0, None], "a drill cycle begins at a height")
     if modes.distance == "91":
         if now != initial:
             raise InputError(

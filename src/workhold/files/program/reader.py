@@ -13,11 +13,13 @@ from attrs import evolve, frozen
 
 from workhold.errors import InputError, listed
 from workhold.files.budget import LIMITS
-from workhold.files.program.interpreter import Interpreter
+from workhold.files.program.interpreter import LAST_DIGIT, Interpreter
+from workhold.files.program.path import PathWriter, Place
 from workhold.files.program.tool_tables import SHAPE, commented_tools, is_bare, read_tools, tool_of_fields
-from workhold.files.program.words import UNITS, ProgramText, code_of, program_text
+from workhold.files.program.words import UNITS, VISITS, ProgramBlock, ProgramText, code_of, program_text
+from workhold.files.questions import START, worded
 from workhold.files.text import read_limited
-from workhold.limits import real
+from workhold.limits import real, refuse_long
 from workhold.model.cutting_forces import above_block, forces_on
 from workhold.model.cutting_tool import CuttingData, Tool
 from workhold.model.moves import Moves
@@ -30,6 +32,7 @@ __all__ = ["ReadProgram", "read_program", "read_program_with_calls"]
 NAMED = 5
 ToolsGiven = str | Path | Mapping[int, Any] | None
 ZZero = float | Literal["top", "bottom"]
+WholeNumbers = Literal["units", "thousandths"]
 
 
 @frozen
@@ -74,8 +77,16 @@ def read_program_with_calls(
     rapid: Literal["straight", "box"] = "straight",
     unit: str | None = None,
     cutting: CuttingData | Mapping[str, Any] | None = None,
+    start: Sequence[float] | None = None,
+    whole_numbers: WholeNumbers = "units",
+    called: Mapping[str, str] | None = None,
 ) -> ReadProgram:
     """Reads a program and says which tools it calls.
+
+    Parameters
+    ----------
+    called : what the questions of ``files.questions`` are called where the program is asked for; None is for
+        Python. The others are those of :meth:`workhold.model.program.Program.read`.
 
     Raises
     ------
@@ -86,14 +97,27 @@ def read_program_with_calls(
     height = height_of(z_zero, thickness)
     if unit is not None and unit not in ("mm", "inch"):
         raise InputError(f"the unit '{unit[:20]}' is not one of a program: give mm or inch.")
+    if whole_numbers not in ("units", "thousandths"):
+        raise InputError(
+            f"whole numbers of a program count units or thousandths, and not '{str(whole_numbers)[:20]}': give "
+            "one of them."
+        )
+    begin = None if start is None else place_of(start)
     try:
         content = read_limited(path, LIMITS["program"])
         listing = program_text(decoded(content))
-        control = run(listing, None if unit is None else UNITS[unit])
+        control = run(
+            listing,
+            None if unit is None else UNITS[unit],
+            begin,
+            in_thousandths=whole_numbers == "thousandths",
+        )
     except InputError as error:
-        raise InputError(f"{path}: {error}") from error
+        raise InputError(f"{path}: {worded(str(error), called)}") from error
     first = first_unit(listing, unit)
     found, notes = tools_used(path, control, listing, tools, first)
+    if begin is not None:
+        notes.append("The tip starts at X{:g} Y{:g} Z{:g} mm, as given.".format(*begin))
     program = Program(
         name=path.name,
         sha256=sha256(content).hexdigest(),
@@ -103,7 +127,7 @@ def read_program_with_calls(
         clearance=clearance,
         rapid=rapid,
         tools=found,
-        skipped=sorted({*control.skipped, *control.path.unplaced}),
+        skipped=sorted({*control.skipped, *control.path.unplaced, *control.path.nose}),
         notes=[*notes_on(control, listing), *notes],
     )
     # Where it runs is checked by now.
@@ -138,6 +162,16 @@ def height_of(z_zero: ZZero, thickness: float | None) -> float:
     return height
 
 
+def place_of(start: Sequence[float]) -> Place:
+    """The place of the tip at the start in mm; refuses one that is none."""
+    values = tuple(real(value) for value in start)
+    if len(values) != 3 or not all(isfinite(value) for value in values):
+        raise InputError("the start of the program is no place: give X, Y and Z in mm, from its own zero.")
+    for value in values:
+        refuse_long("the start of the program", value)
+    return values[0], values[1], values[2]
+
+
 def decoded(content: bytes) -> str:
     """The text of a program; refuses what is no text. Comments may be in an encoding of western languages."""
     if b"\0" in content:
@@ -148,25 +182,50 @@ def decoded(content: bytes) -> str:
         return content.decode("latin-1")
 
 
-def run(listing: ProgramText, unit: Unit | None) -> Interpreter:
+def run(
+    listing: ProgramText, unit: Unit | None, start: Place | None = None, in_thousandths: bool = False
+) -> Interpreter:
     """Reads all blocks; refuses the first that cannot be read with its line, and a program that moves
     nothing.
     """
     changes = any(
         letter == "M" and code_of(text) == "6" for block in listing.blocks for letter, text in block.words
     )
-    control = Interpreter(changes)
+    has_heights = any(map(gives_height, listing.blocks))
+    path = PathWriter(has_heights=has_heights or start is not None)
+    control = Interpreter(changes, any(map(has_length, listing.blocks)), in_thousandths, path)
     control.modes.unit = unit
+    if start is not None:
+        control.modes.place = list(start)
     for block in listing.blocks:
         try:
             control.read(block)
         except InputError as error:
             raise InputError(f"line {block.line}: {error}") from error
-    if not control.path.rows:
+    if not path.rows:
+        if path.adrift and not has_heights:
+            raise InputError(
+                "there is no move in it whose height is known, as no height (Z) is given anywhere: give a program with "
+                f"heights, or where the tip is at the start with {START}."
+            )
         raise InputError(
             "there is no move in it (G0 to G3, or a drill cycle): give a program of RS-274 (G-code)."
         )
     return control
+
+
+def gives_height(block: ProgramBlock) -> bool:
+    """Whether a block gives a height of the tip, and not one of the machine's own."""
+    return any(letter == "Z" for letter, _ in block.words) and not any(
+        letter == "G" and code_of(text) in VISITS for letter, text in block.words
+    )
+
+
+def has_length(block: ProgramBlock) -> bool:
+    """Whether a block puts the length of a tool in force; number 0 is none."""
+    if not any(letter == "G" and code_of(text) == "43" for letter, text in block.words):
+        return False
+    return not any(letter == "H" and float(text) == 0.0 for letter, text in block.words)
 
 
 def first_unit(listing: ProgramText, unit: str | None) -> Unit:
@@ -200,6 +259,7 @@ def tools_used(
             notes.append(
                 f"The table of tools does not say its unit, and is read in {unit.name} as the program."
             )
+    notes += drop_unknown(path, control, known)
     used = sorted({row[1] for row in control.path.rows})
     if used[0] < 0:
         # Nothing is called before the first move: the tool in the spindle is the table's 0, or its only one.
@@ -218,6 +278,30 @@ def tools_used(
     if bare:
         notes.append(f"The holder of {listed(bare)} is not known, and not looked at.")
     return {number: known[number] for number in sorted(set(used))}, notes
+
+
+def drop_unknown(path: Path, control: Interpreter, known: Mapping[int, Tool]) -> list[str]:
+    """Leaves rapid moves out that are made before a tool is called, or with an empty spindle (T0), and notes
+    them.
+
+    They stay where number 0 is among the tools that are known, and where the program calls no other tool.
+    Refuses a cut.
+    """
+    rows = control.path.rows
+    early = [row for row in rows if row[1] <= 0]
+    if not early or len(early) == len(rows) or 0 in known:
+        return []
+    cut = next((row for row in early if row[2]), None)
+    if cut is not None:
+        before = "T0 is in the spindle" if cut[1] == 0 else "no tool has been called"
+        raise InputError(
+            f"{path}: line {cut[0]}: the tool cuts while {before}, and what cuts there is not known: call it by T "
+            f"and M6, or give it in the file of tools as number 0, such as {SHAPE.format(number=0)}."
+        )
+    lines = {row[0] for row in early}
+    control.path.rows = [row for row in rows if row[1] > 0]
+    control.path.arrivals = [line for line in control.path.arrivals if line not in lines]
+    return [f"{lines_named(sorted(lines))}: a rapid move before any tool is called is left out."]
 
 
 def of_python(number: int, value: Any, unit: Unit) -> Tool:
@@ -274,6 +358,19 @@ def notes_on(control: Interpreter, listing: ProgramText) -> list[str]:
             f"{lines_named(control.path.unplaced)}: a rapid move in increments (G91) begins at a place that "
             "the program does not say, and is left out."
         )
+    path = control.path
+    if path.nose:
+        notes.append(
+            f"{lines_named(path.nose)}: after G49 a height is that of the spindle's nose and not of the tip, and "
+            "the move is left out."
+        )
+    said = {*control.skipped, *path.unplaced, *path.nose}
+    adrift = [line for line in path.adrift if line not in said]
+    if adrift:
+        notes.append(
+            f"{lines_named(adrift)}: a rapid move while X, Y or Z is not known is left out; what it names is "
+            "known from then on."
+        )
     if not control.distance_said:
         notes.append("The program does not say G90 or G91; its places are read as after G90.")
     if not control.changes and control.calls:
@@ -285,6 +382,34 @@ def notes_on(control: Interpreter, listing: ProgramText) -> list[str]:
     unfed = [row[0] for row in control.path.rows if row[2] and row[6] <= 0.0]
     if unfed:
         notes.append(f"{lines_named(unfed)}: a cutting move has no feed, and its time is not counted.")
+    if control.presets:
+        notes.append(
+            f"{lines_named(control.presets)}: G92 says where the tip stands from the program's zero."
+        )
+    if control.angles:
+        axes = listed([f"{letter} at {angle:g}" for letter, angle in sorted(control.angles.items())])
+        notes.append(f"A fourth axis stays where it is all through ({axes}), and turns nothing.")
+    if control.passed:
+        lines = sorted({line for lines in control.passed.values() for line in lines})
+        codes = listed(sorted(control.passed, key=lambda code: (code[0], float(code[1:]))))
+        are, they = ("is", "it tells") if len(control.passed) == 1 else ("are", "they tell")
+        notes.append(f"{lines_named(lines)}: {codes} {are} passed over, as {they} nothing of the path.")
+    notes += whole_notes(control)
     if listing.behind:
         notes.append(f"{lines_named(listing.behind)}: what stands behind the end of the program is not read.")
     return notes
+
+
+def whole_notes(control: Interpreter) -> list[str]:
+    """How lengths without a decimal point are read, where there are any."""
+    unit = control.modes.unit
+    if not control.whole or unit is None:
+        return []
+    digit = f"{LAST_DIGIT[unit.name]:g} {unit.name}"
+    what = f"{lines_named(control.whole)}: lengths without a decimal point, where others have one, are"
+    if not control.pointed:
+        what = "No length of the program has a decimal point; they are"
+    if control.in_thousandths:
+        return [f"{what} read as multiples of {digit}, as asked."]
+    whole = "mm" if unit.name == "mm" else "inches"
+    return [f"{what} read as whole {whole}, which some controls take for {digit}."]

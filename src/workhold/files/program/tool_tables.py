@@ -56,7 +56,6 @@ SHAPE = (
 )
 # mm. As far up as a tool is taken to go where nobody says: past everything that holds a part.
 ENDLESS = 1000.0
-LINUXCNC = re.compile(r"\s*T\s*\d+", re.IGNORECASE)
 LINUXCNC_WORD = re.compile(r"([A-Z])\s*([-+]?(?:\d+\.?\d*|\.\d+))\s*", re.IGNORECASE | re.ASCII)
 # Fusion, and posts like its own, write (T3 D=6. CR=0. - ZMIN=-5. - flat end mill).
 COMMENT = re.compile(
@@ -296,9 +295,12 @@ def of_csv(text: str, unit: Unit) -> tuple[dict[int, Tool], bool]:
 
 
 def is_linuxcnc(text: str) -> bool:
-    """Whether the first line that is no remark begins with a tool's number."""
-    lines = (line for line in text.splitlines() if line.split(";")[0].strip())
-    return LINUXCNC.match(next(lines, "")) is not None
+    """Whether the first line that is no remark is words of letters and numbers, or begins with a tool's
+    number."""
+    codes = (line.partition(";")[0].strip() for line in text.splitlines())
+    code = next((code for code in codes if code), "")
+    letters = [letter.upper() for letter, _ in LINUXCNC_WORD.findall(code)]
+    return letters[:1] == ["T"] or ("T" in letters and not LINUXCNC_WORD.sub("", code).strip())
 
 
 def of_linuxcnc(text: str, unit: Unit) -> dict[int, Tool]:
@@ -314,7 +316,7 @@ def of_linuxcnc(text: str, unit: Unit) -> dict[int, Tool]:
                 f"line {place} is not one of LinuxCNC's: write T1 P1 D10 Z50 and a remark after ;."
             )
         if float(words.get("D", 0.0)) > 0.0:
-            number = checked_number(words["T"], f"line {place}:")
+            number = checked_number(words["T"].removeprefix("+"), f"line {place}:")
             rows.append((number, {"diameter": float(words["D"]), "name": remark.strip()}, f"T{number}"))
     return collected(rows, unit)
 

@@ -13,9 +13,10 @@ word : a letter and a number, such as X12.5.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Set
 from functools import cache
 from string import ascii_lowercase, ascii_uppercase
+from typing import NoReturn
 
 from attrs import define, field, frozen
 
@@ -27,21 +28,52 @@ __all__ = [
     "CYCLES",
     "FUNCTIONS",
     "GROUPS",
+    "LOOK_AHEAD",
+    "NOSE",
+    "NUMBERED",
+    "OTHER_UNITS",
     "UNITS",
+    "VISITS",
     "Modes",
     "ProgramBlock",
     "ProgramText",
     "code_of",
+    "is_spline",
     "program_text",
     "refuse_code",
     "refuse_function",
 ]
 
-CYCLES = ("73", "81", "82", "83")
+# Drilling, tapping and boring; those that come up at the feed as they went down.
+CYCLES = ("73", "74", "81", "82", "83", "84", "85", "86", "89")
+AT_FEED_UP = ("74", "84", "85", "89")
 MOTIONS = ("0", "1", "2", "3")
 # Cancels the cycle in force; the motion before it goes on, as on Fanuc and Haas.
 CANCEL = "80"
-OFFSETS = ("54", "55", "56", "57", "58", "59", "59.1", "59.2", "59.3")
+# Zeros of the control; Haas has twenty more of them as G110 to G129, and all as G154 with P.
+OFFSETS: tuple[str, ...] = ("54", "55", "56", "57", "58", "59", "59.1", "59.2", "59.3", "54.1", "154")
+OFFSETS += tuple(str(number) for number in range(110, 130))
+# Those that P numbers; G54 of some controls too.
+NUMBERED = ("54", "54.1", "154")
+# How a control looks ahead, smooths and rounds, and what it watches, with the letters that belong to it: none
+# of them says where the path goes.
+LOOK_AHEAD: Mapping[str, str] = {
+    "23": "",
+    "67": "",
+    "255": "",
+    "5": "PQR",
+    "5.1": "PQR",
+    "8": "P",
+    "9": "",
+    "61": "P",
+    "61.1": "PQR",
+    "62": "",
+    "64": "PQ",
+    "103": "P",
+    "187": "PE",
+}
+# Moves to places of the machine's own.
+VISITS = ("28", "30", "53")
 GROUPS: Mapping[str, str] = {
     **dict.fromkeys(MOTIONS, "motion"),
     **dict.fromkeys((CANCEL, *CYCLES), "cycle"),
@@ -53,15 +85,20 @@ GROUPS: Mapping[str, str] = {
     **dict.fromkeys(("98", "99"), "return"),
     **dict.fromkeys(("43", "49"), "length"),
     **dict.fromkeys(OFFSETS, "offset"),
-    **dict.fromkeys(("61", "61.1", "64"), "path"),
-    **dict.fromkeys(("4", "28", "30", "53"), "once"),
+    **dict.fromkeys(("61", "61.1", "62", "64"), "path"),
+    **dict.fromkeys(("4", *VISITS, "52", "92", "92.1", "92.2"), "once"),
+    # Of these a block may have several.
+    **{code: f"look-ahead G{code}" for code in ("5", "5.1", "8", "9", "23", "67", "103", "187", "255")},
+    # A unit on some controls, a pattern of holes on others.
+    **dict.fromkeys(("70", "71"), "other unit"),
     "40": "compensation",
     "15": "polar",
     "50": "scale",
     "69": "rotation",
     "97": "speed",
 }
-# M0 to M9 and M30; none moves the tool but for M6.
+# M0 to M9 and M30; none moves the tool but for M6. All others are passed over and listed, but for those that
+# do more than switch something.
 FUNCTIONS = (*(str(number) for number in range(10)), "30")
 
 COMPENSATION = (
@@ -74,8 +111,8 @@ TURNED = "turns, mirrors or scales the axes: post the program without"
 SUBPROGRAM = "calls a subprogram: post the program with its moves written out"
 REASONS: Mapping[str, str] = {
     **dict.fromkeys(("41", "42", "41.1", "42.1"), COMPENSATION),
-    **dict.fromkeys(("74", "76", "84", "84.2", "84.3", "85", "86", "87", "88", "89", "81.2"), CYCLE),
-    **dict.fromkeys(("10", "52", "92", "92.1", "92.2", "92.3", "54.1"), ZERO),
+    **dict.fromkeys(("12", "13", "76", "84.2", "84.3", "87", "88", "81.2", "150"), CYCLE),
+    **dict.fromkeys(("10", "52", "92", "92.1", "92.2", "92.3"), ZERO),
     **dict.fromkeys(("16", "51", "51.1", "50.1", "68", "68.2"), TURNED),
     **dict.fromkeys(("65", "66", "67"), SUBPROGRAM),
     **dict.fromkeys(
@@ -89,7 +126,14 @@ REASONS: Mapping[str, str] = {
     ),
     **dict.fromkeys(("5", "5.1", "5.2", "5.3", "6.2"), "is a spline: post the program with lines and arcs"),
 }
+FUNCTION_REASONS: Mapping[str, str] = {
+    **dict.fromkeys(("97", "98", "99", "198"), SUBPROGRAM),
+    **dict.fromkeys(("46", "96"), "jumps to another line: post the program with its moves written out"),
+    **dict.fromkeys(("16", "61"), "puts a tool into the spindle in a way that is not read: write M6"),
+    "72": "brings codes back that were in force before: write those that are meant",
+}
 UNITS = {"20": INCH, "21": MILLIMETRE, "inch": INCH, "mm": MILLIMETRE}
+OTHER_UNITS = {"70": INCH, "71": MILLIMETRE}
 # An unsigned number has a digit before its point or behind it.
 NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
 WORD = re.compile(rf"([A-Z])[ \t]*({NUMBER})[ \t]*")
@@ -123,7 +167,7 @@ def code_of(text: str) -> str:
     return f"{float(text):.10g}"
 
 
-def refuse_code(code: str) -> None:
+def refuse_code(code: str) -> NoReturn:
     """Refuses a code of letter G.
 
     Raises
@@ -136,15 +180,30 @@ def refuse_code(code: str) -> None:
 
 
 def refuse_function(code: str) -> None:
-    """Refuses a code of letter M.
+    """Refuses a code of letter M that does more than switch something.
 
     Raises
     ------
     InputError
-        With its reason; for every code.
+        With its reason.
     """
-    reason = SUBPROGRAM if code in ("97", "98", "99") else "is not known: take it out if it moves nothing"
-    raise InputError(f"M{code} {reason}.")
+    if code in FUNCTION_REASONS:
+        raise InputError(f"M{code} {FUNCTION_REASONS[code]}.")
+
+
+def is_spline(code: str, letters: Set[str], turns: float) -> bool:
+    """Whether G5 or G5.1 is a curve of its own, and not a word of how a control looks ahead.
+
+    Parameters
+    ----------
+    letters : of its block.
+    turns : P, which calls a stored path from 10001 on; 0 where there is none.
+    """
+    return code in ("5", "5.1") and (bool(letters & set("XYZIJL")) or turns > 10_000)
+
+
+# No tool length is in force in a program that has some otherwise: Z is that of the spindle's nose.
+NOSE = "nose"
 
 
 @define
@@ -159,6 +218,9 @@ class Modes:
     plane, distance, centre, feed_kind, back : codes in force.
     offset : code of the zero in force.
     place : x, y and z of the tip, None where it is not known.
+    lost : why each of them is not known; empty where the program has not named it yet.
+    named : whether any of them has been named yet.
+    length : whose tool length is in force, such as H2 or T2; None before any is said, or :data:`NOSE`.
     called, tool : number that T named last, and that of the tool in the spindle; None before the first.
     feed, spindle : as they are written.
     sticky : values of the cycle in force by their letters, in mm; Z and R are heights.
@@ -175,6 +237,9 @@ class Modes:
     back: str = "98"
     offset: str = "54"
     place: list[float | None] = field(factory=lambda: [None, None, None])
+    lost: list[str] = field(factory=lambda: ["", "", ""])
+    named: bool = False
+    length: str | None = None
     called: int | None = None
     tool: int | None = None
     feed: float = 0.0
@@ -224,7 +289,7 @@ def program_text(text: str) -> ProgramText:
         Beginning with the number of the line that is none.
     """
     found = ProgramText([], [], [], [])
-    began = ended = False
+    began = ended = is_closed = False
     for line, content in numbered(text):
         if ended:
             if content.strip() not in ("", "%"):
@@ -236,6 +301,7 @@ def program_text(text: str) -> ProgramText:
         if not bare:
             continue
         began, ended = True, bare == "%" and began
+        is_closed = ended
         if bare == "%":
             continue
         if bare.startswith("/"):
@@ -256,6 +322,11 @@ def program_text(text: str) -> ProgramText:
         ended = any(letter == "M" and float(text) in (2, 30) for letter, text in words)
         if words:
             found.blocks.append(ProgramBlock(line, words))
+    if found.behind and found.blocks and found.optional[-1:] == [found.blocks[-1].line] and not is_closed:
+        raise InputError(
+            f"line {found.optional[-1]}: whether the program ends here is said by a switch (/), and there is more "
+            "behind it: take the slash out, or the line."
+        )
     return found
 
 

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from workhold.archive import ArchiveWriter, mapped_archive
 from workhold.errors import InputError
 from workhold.files.atomic import binary_file, plain_errors
+from workhold.files.replacing import refuse_other_ending, refuse_output
 from workhold.files.result.fixture_forms import checked_seating, seatings_of, with_seating
 from workhold.files.result.fixture_text import as_written, significant
 from workhold.files.result.parts import (
@@ -93,7 +94,7 @@ def write_columns(result: Result, path: str | Path) -> None:
     ColumnsSink(Path(path)).receive(result, len(result), [result.table])
 
 
-def answer_to_file(query: Query, path: str | Path, **watching: Any) -> Result:
+def answer_to_file(query: Query, path: str | Path, *, overwrite: bool = False, **watching: Any) -> Result:
     """Finds every fixture that a query asks for, however many, and writes them in columns.
 
     No more than some 100 MB of fixtures are in memory at a time. What is being sorted is kept beside the
@@ -101,6 +102,7 @@ def answer_to_file(query: Query, path: str | Path, **watching: Any) -> Result:
 
     Parameters
     ----------
+    overwrite : whether a file that workhold has not written may be replaced.
     watching : threads, progress, cancel and preview as ``workhold.answer`` takes them.
 
     Returns
@@ -111,11 +113,13 @@ def answer_to_file(query: Query, path: str | Path, **watching: Any) -> Result:
     Raises
     ------
     InputError
-        As ``workhold.answer``, and when the file cannot be written or the disk is full.
+        As ``workhold.answer``, and when the file cannot be written or replaced, or the disk is full.
     """
     from workhold.search.design import answer
 
     path = Path(path)
+    refuse_other_ending(path, [".npz"], "a result file in columns")
+    refuse_output(path, force=overwrite)
     with plain_errors(path):
         answer(query, sink=ColumnsSink(path), **watching)
     return read_columns(path)

@@ -64,6 +64,9 @@ class WorkpiecePart(FormPart):
     bands: list[Pair | None] | None = Field(
         None, description="heights at which each segment may be touched; none where it may not"
     )
+    runs: list[list[list[float]]] | None = Field(
+        None, description="heights that a peg can press on along each segment; empty where they are the band"
+    )
     solid_faces: list[list[int]] | None = Field(None, description="faces of the solid over each segment")
     bottom: list[list[list[float]]] | None = Field(None, description="loops on which the solid lies")
     top: list[list[list[float]]] | None = Field(None, description="loops of its faces with nothing above")
@@ -91,6 +94,7 @@ class OutlinePart(FormPart):
 
     loops: list[list[list[float]]]
     bands: list[Pair | None]
+    runs: list[list[list[float]]] | None = None
     solid_faces: list[list[int]] | None = None
 
 

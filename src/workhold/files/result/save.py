@@ -6,6 +6,7 @@ from pathlib import Path
 
 from workhold.errors import InputError
 from workhold.files.atomic import text_file
+from workhold.files.replacing import refuse_other_ending, refuse_output
 from workhold.model.result import Result
 
 __all__ = ["save"]
@@ -13,20 +14,25 @@ __all__ = ["save"]
 FORMS = ("json", "csv", "npz")
 
 
-def save(result: Result, path: str | Path, form: str | None = None) -> None:
-    """Writes a result file; an earlier file of that name is replaced only when all went well.
+def save(result: Result, path: str | Path, form: str | None = None, *, overwrite: bool = False) -> None:
+    """Writes a result file; an earlier one of that name is replaced only when all went well.
 
     Parameters
     ----------
     form : "json" for exchange, "npz" for columns, "csv" for a spreadsheet; None lets the name's ending
         decide.
+    overwrite : whether a file that workhold has not written may be replaced.
 
     Raises
     ------
     InputError
-        When the form is not known, or the file cannot be written.
+        When the form is not known or not that of the name, and when the file cannot be written or replaced.
     """
     form = Path(path).suffix[1:].lower() if form is None else form
+    if form not in FORMS:
+        raise InputError(f"{path}: {form!r} is no form of a result file: choose one of {', '.join(FORMS)}.")
+    refuse_other_ending(path, [f".{form}"], f"a result file in the form {form}")
+    refuse_output(path, force=overwrite)
     # Each writer is imported when it is needed, because some take long.
     if form == "json":
         from workhold.files.result.writer import write_result
@@ -37,9 +43,7 @@ def save(result: Result, path: str | Path, form: str | None = None) -> None:
 
         with text_file(path) as stream:
             stream.writelines(result_csv_text(result))
-    elif form == "npz":
+    else:
         from workhold.files.result.columns import write_columns
 
         write_columns(result, path)
-    else:
-        raise InputError(f"{path}: {form!r} is no form of a result file: choose one of {', '.join(FORMS)}.")

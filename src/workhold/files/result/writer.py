@@ -198,7 +198,8 @@ def bands_entry(solid: SolidOutline | None) -> dict[str, Any]:
     level: dict[str, Any] = {"bottom": solid.bottom, "top": solid.top} if solid.bottom or solid.top else {}
     if solid.top_heights:
         level["top_heights"] = list(solid.top_heights)
-    return {"bands": [None if band is None else list(band) for band in solid.bands], **faces, **level}
+    runs = {"runs": [list(map(list, rows)) for rows in solid.runs]} if any(solid.runs) else {}
+    return {"bands": [None if band is None else list(band) for band in solid.bands], **runs, **faces, **level}
 
 
 def solid_entry(solid: SolidOutline | None) -> dict[str, Any]:

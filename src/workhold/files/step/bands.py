@@ -1,58 +1,453 @@
 """Bands: the heights at which a peg may press on each piece of an outline, from the solid's upright faces.
 
-Over a point of the outline's border an upright face covers ranges of height. The band of the point is the
-least interval that holds them within the heights that a peg reaches. Between the ends, lowest and highest
-points of the walls' edges, and those where they pass an end of these heights, both of its ends run
-monotonically. So a piece has in common what both ends have.
+Over a point of the outline's border upright faces cover runs of height. A piece of the border lies between
+all places at which a run can begin, end, split, merge or jump, and where one passes an end of the heights
+that pegs reach. So over a piece there are the same runs from end to end, and each of their ends follows one
+edge of a wall.
 
 Glossary
 --------
 wall : an upright face of the solid.
+run : a range of heights, as long as can be, at all of which walls stand over a place.
+branch : a part of a wall's edge over which the place on the wall's line or circle only grows or only falls.
+steep : where an edge stands upright, or so nearly that rounding hides it, so that the end of a run jumps.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
-from math import pi, tau
+from itertools import pairwise
+from math import hypot, pi, tau
 
 import numpy as np
-from attrs import define, field, frozen
+from attrs import define, evolve, field, frozen
 from numpy.typing import NDArray
 
-from workhold.conventions import SAME_HEIGHT
-from workhold.files.step.edge_curves import ONE_HEIGHT, EdgeCurve, Point3
+from workhold.files.step.edge_curves import (
+    ONE_HEIGHT,
+    WHOLE_TURN,
+    EdgeCurve,
+    crossing,
+    curve_point,
+    points_along,
+)
 from workhold.files.step.faces import SolidFace
+from workhold.files.step.library import occ
 from workhold.geometry.segment import Arc, Line, Point, Segment
 from workhold.geometry.subdivision import BorderPiece, CutCarrier
 from workhold.model.solid import Band
 
-__all__ = ["WallEdge", "Walls", "length"]
+__all__ = ["Covered", "End", "Run", "WallEdge", "Walls", "length"]
 
 # Edges this far from a carrier in mm, and farther, are not asked whether they lie on it.
 NEAR = 1e-4
-# Positions nearer than this to an edge, in mm or radians, are asked for its heights.
-MARGIN = 1e-3
+# Gaps between walls, and runs, that are shorter in mm are none.
+LEAST_GAP = 1e-6
+# An edge whose tangent rises this much more than it goes along is steep: a share of the tangent.
+STEEP = 1e-3
+# An edge that comes as near to upright, as a share, is looked at where it does so most.
+NEARLY_STEEP = 0.2
+# Points for each piece of a spline at which it is looked at, and points at most.
+PER_PIECE, MOST_POINTS = 8, 400
+# Shares of a piece at which it may be looked at.
+SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)
+# A turn of an edge's direction is found to this share of the range in which it lies, by halving.
+HALVINGS = 48
 
 
-@frozen
+def length(band: Band) -> float:
+    """Length of a band in mm, below 0 where two bands had nothing in common."""
+    return band[1] - band[0]
+
+
+@frozen(eq=False, slots=False)
+class WallEdge:
+    """An edge of a wall that is not upright, with all points at which it turns.
+
+    Parameters
+    ----------
+    edge : it projects to a line or an arc; between two of its points it neither turns back nor up or down.
+    branches : its points' numbers (first, last) of each branch.
+    steep : numbers of points at which it is steep.
+    """
+
+    edge: EdgeCurve
+    segment: Segment
+    branches: tuple[tuple[int, int], ...]
+    steep: frozenset[int]
+
+    @property
+    def is_level(self) -> bool:
+        """Whether it neither rises nor falls."""
+        return self.edge.high - self.edge.low <= ONE_HEIGHT
+
+    @classmethod
+    def of(cls, edge: EdgeCurve, segment: Segment) -> WallEdge:
+        """An edge over its segment."""
+        last = len(edge.points) - 1
+        if last == 1:
+            rise = abs(float(edge.points[1, 2] - edge.points[0, 2]))
+            is_steep = segment.length <= STEEP * hypot(rise, segment.length)
+            return cls(edge, segment, ((0, 1),), frozenset((0, 1) if is_steep else ()))
+        if edge.high - edge.low <= ONE_HEIGHT:
+            return cls(edge, segment, tuple(branches_of(along(segment, edge.points), ())), frozenset())
+        edge, upright = turned_at(edge, segment)
+        steep = frozenset(
+            k
+            for k, parameter in enumerate(edge.parameters.tolist())
+            if k in (0, last) or parameter in upright
+            if abs(slopes(edge, segment, parameter)[0]) <= STEEP
+        )
+        return cls(edge, segment, tuple(branches_of(along(segment, edge.points), steep)), steep)
+
+    def cuts(self, low: float, high: float) -> Iterator[Point]:
+        """Points at which an outline is to be cut: ends of branches, and where the edge passes two heights."""
+        points = self.edge.points
+        if self.is_level:
+            return
+        yield from ((float(points[k, 0]), float(points[k, 1])) for one in self.branches for k in one)
+        yield from (*self.edge.crossings(low), *self.edge.crossings(high))
+
+
+def along(segment: Segment, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Positions (N,) of points (N, 3) along a segment's line or circle, on a circle without jumps."""
+    found = np.array([segment.parameter((x, y)) for x, y in points[:, :2].tolist()])
+    return found if isinstance(segment, Line) else np.unwrap(found)
+
+
+def branches_of(places: NDArray[np.float64], cuts: frozenset[int] | tuple[()]) -> Iterator[tuple[int, int]]:
+    """The numbers (first, last) of the points of each branch of an edge.
+
+    Parameters
+    ----------
+    cuts : numbers of points at which a branch ends in any case.
+    """
+    steps = np.diff(places)
+    first, way = 0, 0.0
+    for k, step in enumerate(steps.tolist()):
+        turns = abs(step) > ONE_HEIGHT and way * step < 0
+        if (turns or k in cuts) and k > first:
+            yield first, k
+            first, way = k, 0.0
+        if abs(step) > ONE_HEIGHT:
+            way = step
+    yield first, len(steps)
+
+
+def slopes(edge: EdgeCurve, segment: Segment, parameter: float) -> tuple[float, float]:
+    """How far an edge goes along its segment, and up, as shares of its length at a parameter."""
+    point, step = occ.gp_Pnt(), occ.gp_Vec()
+    edge.curve.D1(parameter, point, step)
+    if step.Magnitude() <= ONE_HEIGHT:
+        # A curve that halts has no direction of its own there: that of a point beside it is its limit.
+        first, last = float(edge.parameters[0]), float(edge.parameters[-1])
+        aside = 1e-4 * (last - first)
+        edge.curve.D1(parameter + (aside if parameter + aside <= last else -aside), point, step)
+    size = max(step.Magnitude(), ONE_HEIGHT)
+    if isinstance(segment, Arc):
+        x, y = point.X() - segment.center[0], point.Y() - segment.center[1]
+        tx, ty = -y / segment.radius, x / segment.radius
+    else:
+        tx, ty = segment.tangent
+    return float(step.X() * tx + step.Y() * ty) / size, float(step.Z()) / size
+
+
+def turned_at(edge: EdgeCurve, segment: Segment) -> tuple[EdgeCurve, frozenset[float]]:
+    """An edge with points wherever it turns, and the parameters at which it may be steep.
+
+    Its direction is looked at rather than its points: one that turns between its last two points, as a closed
+    edge does that begins near its lowest point, shows nothing of that by its points.
+    """
+    parameters = edge.parameters
+    if edge.curve.GetType() == occ.GeomAbs_BSplineCurve:
+        count = min(PER_PIECE * edge.curve.NbKnots(), MOST_POINTS)
+        parameters = np.union1d(parameters, np.linspace(parameters[0], parameters[-1], count))
+
+    def slope(kind: int, parameter: float) -> float:
+        return slopes(edge, segment, parameter)[kind]
+
+    values = np.array([slopes(edge, segment, t) for t in parameters.tolist()])
+    turns: list[set[float]] = [set(), set()]
+    for kind in (0, 1):
+        for k in np.flatnonzero(values[:-1, kind] * values[1:, kind] < 0).tolist():
+            low, high = float(parameters[k]), float(parameters[k + 1])
+            for _ in range(HALVINGS):
+                middle = (low + high) / 2
+                if slope(kind, middle) * values[k, kind] > 0:
+                    low = middle
+                else:
+                    high = middle
+            turns[kind].add((low + high) / 2)
+    upright = turns[0] | {
+        t for t, one in zip(parameters.tolist(), values[:, 0], strict=True) if abs(one) <= STEEP
+    }
+    size = np.abs(values[:, 0])
+    for k in range(1, len(size) - 1):
+        if size[k] <= NEARLY_STEEP and size[k] <= min(size[k - 1], size[k + 1]):
+            low, high = float(parameters[k - 1]), float(parameters[k + 1])
+            for _ in range(HALVINGS):
+                a, b = low + (high - low) / 3, high - (high - low) / 3
+                if abs(slope(0, a)) < abs(slope(0, b)):
+                    high = b
+                else:
+                    low = a
+            if abs(slope(0, (low + high) / 2)) <= STEEP:
+                upright.add((low + high) / 2)
+    known = np.union1d(parameters, np.array(sorted(turns[0] | turns[1] | upright)))
+    found = evolve(edge, parameters=known, points=points_along(edge.curve, known))
+    return found, frozenset(upright)
+
+
+@frozen(eq=False, slots=False)
+class Branch:
+    """A branch of a wall's edge over the wall's carrier.
+
+    Parameters
+    ----------
+    edge : see :class:`WallEdge`.
+    carrier : its segment fixes positions.
+    parameters : (N,) of the edge's curve.
+    places : (N,) positions on the carrier there, rising, on a circle without jumps.
+    heights : (N,) z in mm there; between two of them the edge only rises or only falls.
+    steep : whether it is steep at its first and its last place.
+    known : heights in mm by place, once they were asked for.
+    """
+
+    edge: EdgeCurve
+    carrier: CutCarrier
+    parameters: NDArray[np.float64]
+    places: NDArray[np.float64]
+    heights: NDArray[np.float64]
+    steep: tuple[bool, bool]
+    known: dict[float, float] = field(init=False, factory=dict)
+
+    @classmethod
+    def over(cls, carrier: CutCarrier, wall_edge: WallEdge) -> Iterator[Branch]:
+        """The branches of an edge over a carrier that holds it."""
+        edge = wall_edge.edge
+        places = along(carrier.segment, edge.points)
+        for first, last in wall_edge.branches:
+            part = slice(first, last + 1)
+            values = edge.parameters[part], places[part], edge.points[part, 2]
+            steep = first in wall_edge.steep, last in wall_edge.steep
+            if places[last] < places[first]:
+                values, steep = (values[0][::-1], values[1][::-1], values[2][::-1]), steep[::-1]
+            # Rounding may leave points beside a turn in the other order.
+            yield cls(edge, carrier, values[0], np.maximum.accumulate(values[1]), values[2], steep)
+
+    @cached_property
+    def level(self) -> float | None:
+        """The z in mm of a level edge; None of others."""
+        least, greatest = float(self.heights.min()), float(self.heights.max())
+        return float(self.heights[0]) if greatest - least <= ONE_HEIGHT else None
+
+    def turns(self, position: float) -> list[float]:
+        """What is added to a position to find it among its places: whole turns on a circle."""
+        first, last = float(self.places[0]), float(self.places[-1])
+        if isinstance(self.carrier.segment, Arc) and abs(last - first - tau) <= WHOLE_TURN:
+            return [first + (position - first) % tau - position]
+        around = (0.0,) if isinstance(self.carrier.segment, Line) else (-2 * tau, -tau, 0.0, tau, 2 * tau)
+        return [turn for turn in around if first < position + turn < last]
+
+    def at(self, place: float) -> float:
+        """The z in mm at a place; beyond an end that of the end."""
+        if self.level is not None:
+            return self.level
+        places, heights = self.places, self.heights
+        if place <= places[0]:
+            return float(heights[0])
+        if place >= places[-1]:
+            return float(heights[-1])
+        k = int(np.searchsorted(places, place)) - 1
+        first, last = float(heights[k]), float(heights[k + 1])
+        share = (place - float(places[k])) / float(places[k + 1] - places[k])
+        if len(self.edge.points) == 2 or abs(last - first) <= ONE_HEIGHT or share in (0.0, 1.0):
+            return first + share * (last - first)
+        if place not in self.known:
+            self.known[place] = self.refined(k, place)
+        return self.known[place]
+
+    @cached_property
+    def located(self) -> Callable[[float, float], float]:
+        """The position on the carrier of a point x, y in mm."""
+        segment = self.carrier.segment
+        if isinstance(segment, Arc):
+            return lambda x, y: segment.parameter((x, y))
+        (px, py), (tx, ty) = segment.middle, segment.tangent
+        return lambda x, y: (x - px) * tx + (y - py) * ty
+
+    def refined(self, k: int, place: float) -> float:
+        """The z in mm at which a curved edge passes a place between its points k and k + 1."""
+        curve, located, near = self.edge.curve, self.located, float(self.places[k])
+        is_line = isinstance(self.carrier.segment, Line)
+
+        def value(parameter: float) -> float:
+            point = curve.Value(parameter)
+            found = located(point.X(), point.Y())
+            return found - place if is_line else near + (found - near + pi) % tau - pi - place
+
+        ends = [(float(self.parameters[j]), float(self.places[j]) - place) for j in (k, k + 1)]
+        z = curve_point(self.edge.curve, crossing(value, ends[0], ends[1]))[2]
+        return min(max(z, float(self.heights[k : k + 2].min())), float(self.heights[k : k + 2].max()))
+
+    def extent(self, low: float, high: float) -> Band:
+        """The least and the greatest z in mm between two places."""
+        if self.level is not None:
+            return self.level, self.level
+        inner = self.heights[(self.places > low) & (self.places < high)].tolist()
+        found = (self.at(low), self.at(high), *inner)
+        return min(found), max(found)
+
+
+@frozen(eq=False)
+class End:
+    """An end of a run over a piece: the height of a branch, within the heights of pegs.
+
+    Parameters
+    ----------
+    branch : whose height it is.
+    turn : what is added to a position of the piece to have its place on the branch.
+    low, high : z in mm between which a peg may press.
+    """
+
+    branch: Branch
+    turn: float
+    low: float
+    high: float
+
+    def at(self, position: float) -> float:
+        """The z in mm at a position of the piece."""
+        return min(max(self.branch.at(position + self.turn), self.low), self.high)
+
+    def extent(self, low: float, high: float) -> Band:
+        """The least and the greatest z in mm between two positions of the piece."""
+        least, greatest = self.branch.extent(low + self.turn, high + self.turn)
+        return min(max(least, self.low), self.high), min(max(greatest, self.low), self.high)
+
+    def inner(self, low: float, high: float) -> list[float]:
+        """Positions between two others at which it may turn, and some between; none of a level end."""
+        if self.branch.level is not None:
+            return []
+        places = self.branch.places - self.turn
+        return [float(place) for place in places[(places > low) & (places < high)]]
+
+    def jumps_at(self, position: float, beside: float, slack: float) -> bool:
+        """Whether the branch is steep where it has an end at a position, seen from a position beside."""
+        places = self.branch.places[[0, -1]] - self.turn
+        steep = any(
+            is_steep and abs(float(place) - position) <= slack
+            for place, is_steep in zip(places, self.branch.steep, strict=True)
+        )
+        return steep and self.low + ONE_HEIGHT < self.branch.at(beside + self.turn) < self.high - ONE_HEIGHT
+
+
+@frozen(eq=False)
+class Run:
+    """A run over a piece of the border.
+
+    Parameters
+    ----------
+    lower, upper : its ends.
+    """
+
+    lower: End
+    upper: End
+
+    def at(self, position: float) -> Band:
+        """Its heights at a position."""
+        return self.lower.at(position), self.upper.at(position)
+
+    def common(self, low: float, high: float) -> Band:
+        """The heights that it has at every position between two; below 0 long where there are none."""
+        return self.lower.extent(low, high)[1], self.upper.extent(low, high)[0]
+
+    def most(self, low: float, high: float) -> float:
+        """A length in mm that it has nowhere more than between two positions, if not the most it has."""
+        return self.upper.extent(low, high)[1] - self.lower.extent(low, high)[0]
+
+
+@frozen(eq=False)
+class Covered:
+    """A piece of the border, or a part of one, with the runs over it.
+
+    Parameters
+    ----------
+    piece : of the border.
+    low, high : positions on its carrier.
+    runs : the lowest first.
+    faces : numbers of the walls over it.
+    """
+
+    piece: BorderPiece
+    low: float
+    high: float
+    runs: tuple[Run, ...]
+    faces: tuple[int, ...]
+
+    @property
+    def size(self) -> float:
+        """How far it runs, in mm on a line and radians on a circle."""
+        return self.high - self.low
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Its first and its last position in the direction of the border."""
+        return (self.low, self.high) if self.piece.forward else (self.high, self.low)
+
+    def part(self, low: float, high: float) -> Covered:
+        """What lies between two positions."""
+        return evolve(self, low=low, high=high)
+
+    def parts(self, positions: Sequence[float]) -> list[Covered]:
+        """It cut at some positions, in the direction of the border."""
+        found = [self.part(a, b) for a, b in pairwise([self.low, *sorted(positions), self.high])]
+        return found if self.piece.forward else found[::-1]
+
+    def longest_at(self, position: float) -> float:
+        """Length in mm of the longest run at a position."""
+        return max((length(run.at(position)) for run in self.runs), default=0.0)
+
+    def inner(self) -> list[float]:
+        """Positions within it at which a run may be longest or shortest around, and some between; sorted."""
+        found = {
+            place
+            for run in self.runs
+            for end in (run.lower, run.upper)
+            for place in end.inner(self.low, self.high)
+        }
+        return sorted(found)
+
+
+@frozen(eq=False)
 class Wall:
     """An upright face over a carrier.
 
     Parameters
     ----------
     index : of the face.
-    edges : its edges that are not upright.
+    branches : of its edges that are not upright.
     """
 
     index: int
-    edges: tuple[WallEdge, ...]
+    branches: tuple[Branch, ...]
 
-    def intervals(self, position: float, beside: float) -> list[Band]:
-        """Ranges of z in mm that the face covers at a position, see :meth:`Walls.band`; the lowest first."""
-        heights = sorted(z for edge in self.edges for z in edge.heights(position, beside))
-        return list(zip(heights[0::2], heights[1::2], strict=False))
+    def ranges(self, position: float, low: float, high: float) -> list[tuple[float, float, Run]]:
+        """Ranges of z in mm that the face covers at a position between two heights, the lowest first."""
+        passed = sorted(
+            (
+                (branch.at(position + turn), End(branch, turn, low, high))
+                for branch in self.branches
+                for turn in branch.turns(position)
+            ),
+            key=lambda one: one[0],
+        )
+        return [
+            (max(a, low), min(b, high), Run(lower, upper))
+            for (a, lower), (b, upper) in zip(passed[0::2], passed[1::2], strict=False)
+            if min(b, high) - max(a, low) > LEAST_GAP
+        ]
 
 
 @define
@@ -69,16 +464,16 @@ class Walls:
     edges: Sequence[EdgeCurve]
     low: float
     high: float
-    # Edges of upright faces that are not upright themselves, with the segments under them.
-    upright: list[tuple[EdgeCurve, Segment]] = field(init=False)
+    # Edges of upright faces that are not upright themselves.
+    upright: list[WallEdge] = field(init=False)
     # Of each of them (x, y) of both ends and a radius of 0, or those of an arc's centre twice and its radius.
     places: NDArray[np.float64] = field(init=False)
     found: dict[int, list[Wall]] = field(init=False, factory=dict)
-    beside: dict[tuple[int, float, float], list[Wall]] = field(init=False, factory=dict)
+    known: dict[int, WallEdge] = field(factory=dict)
 
     def __attrs_post_init__(self) -> None:
         self.upright = [
-            (edge, edge.segment)
+            self.wall_edge(edge, edge.segment)
             for edge in self.edges
             if self.faces[edge.face].lie == "upright" and edge.segment is not None
         ]
@@ -86,43 +481,32 @@ class Walls:
             (*segment.center, *segment.center, segment.radius)
             if isinstance(segment, Arc)
             else (*segment.start, *segment.end, 0.0)
-            for _, segment in self.upright
+            for segment in (one.segment for one in self.upright)
         ]
         self.places = np.array(places, np.float64).reshape(-1, 5)
 
-    def cuts(self) -> list[tuple[Segment, Point]]:
-        """Points at which an outline is to be cut.
+    def wall_edge(self, edge: EdgeCurve, segment: Segment) -> WallEdge:
+        """An edge of a wall; two walls that have it have the same curve."""
+        key = id(edge.points)
+        if key not in self.known:
+            self.known[key] = WallEdge.of(edge, segment)
+        same = self.known[key]
+        return same if same.edge.face == edge.face else evolve(same, edge=evolve(same.edge, face=edge.face))
 
-        There an edge of a wall is highest or lowest, or passes an end of the heights that pegs press at, so
-        that the band may jump.
-        """
-        return [
-            (segment, point)
-            for edge, segment in self.upright
-            for point in (*edge.turning_points(), *edge.crossings(self.low), *edge.crossings(self.high))
-        ]
+    def cuts(self) -> list[tuple[Segment, Point]]:
+        """Points at which an outline is to be cut, because the runs there may change."""
+        return [(one.segment, point) for one in self.upright for point in one.cuts(self.low, self.high)]
 
     def over(self, carrier: CutCarrier) -> list[Wall]:
         """The walls that stand on a carrier."""
         if id(carrier) not in self.found:
-            edges = defaultdict(list)
+            branches: defaultdict[int, list[Branch]] = defaultdict(list)
             for k in self.near(carrier.segment).tolist():
-                edge, segment = self.upright[k]
-                if carrier.holds(segment):
-                    edges[edge.face].append(WallEdge.over(carrier, edge))
-            self.found[id(carrier)] = [Wall(index, tuple(own)) for index, own in edges.items()]
+                one = self.upright[k]
+                if carrier.holds(one.segment):
+                    branches[one.edge.face] += Branch.over(carrier, one)
+            self.found[id(carrier)] = [Wall(index, tuple(own)) for index, own in branches.items()]
         return self.found[id(carrier)]
-
-    def over_piece(self, piece: BorderPiece) -> list[Wall]:
-        """The walls that stand on a piece's carrier, with what they have of edges near the piece."""
-        key = id(piece.carrier), piece.low, piece.high
-        if key not in self.beside:
-            near = [
-                Wall(wall.index, tuple(one for one in wall.edges if one.is_near(piece.low, piece.high)))
-                for wall in self.over(piece.carrier)
-            ]
-            self.beside[key] = [wall for wall in near if wall.edges]
-        return self.beside[key]
 
     def near(self, segment: Segment) -> NDArray[np.intp]:
         """Numbers of upright faces' edges that may lie on a segment's line or circle."""
@@ -136,151 +520,44 @@ class Walls:
         across = np.abs((self.places[:, 0:4:2] - x) * ty - (self.places[:, 1:4:2] - y) * tx)
         return np.flatnonzero((radius == 0.0) & (across.max(axis=1, initial=0) <= NEAR))
 
-    def band(
-        self, piece: BorderPiece, position: float, beside: float = 0.0
-    ) -> tuple[Band | None, tuple[int, ...]]:
-        """The band at a position of a piece, and the indices of the walls that make it.
+    def covered(self, piece: BorderPiece) -> Covered:
+        """A piece of the border with the runs over it.
 
         No wall there has its material on the other side: a peg would meet that, and the piece were no border.
-
-        Parameters
-        ----------
-        position : on the piece's carrier.
-        beside : where the position is an end of the piece, a small step into it. The band is then the limit
-            from there, because at the end itself other edges begin.
         """
-        covered = self.ranges(piece, position, beside)
-        if not covered:
-            return None, ()
-        band = min(one[0] for one in covered), max(one[1] for one in covered)
-        return band, tuple(sorted({one[2] for one in covered}))
-
-    def ranges(self, piece: BorderPiece, position: float, beside: float) -> list[tuple[float, float, int]]:
-        """Ranges of z in mm that walls cover at a position, each with the wall's index, see :meth:`band`."""
-        return [
-            (*band, wall.index)
-            for wall in self.over_piece(piece)
-            for band in self.covered(wall, piece, position, beside)
-        ]
-
-    def is_single(self, piece: BorderPiece) -> bool:
-        """Whether one range of one wall is the band all along a piece."""
-        return len(self.ranges(piece, (piece.low + piece.high) / 2, 0.0)) == 1
-
-    def covered(self, wall: Wall, piece: BorderPiece, position: float, beside: float) -> list[Band]:
-        """Ranges of z in mm that a wall covers within the heights of pegs, see :meth:`band`.
-
-        At an end of a piece a range may shrink to a point, but its limit counts there. So the ranges that
-        count are those that do in the middle, where there are as many.
-        """
-        here = [self.within(one) for one in wall.intervals(position, beside)]
-        counts = [length(one) > SAME_HEIGHT for one in here]
-        if beside != 0.0:
-            middle = wall.intervals((piece.low + piece.high) / 2, 0.0)
-            if len(middle) == len(here):
-                counts = [length(self.within(one)) > SAME_HEIGHT for one in middle]
-        return [one for one, is_high in zip(here, counts, strict=True) if is_high]
-
-    def within(self, band: Band) -> Band:
-        """What of a range lies within the heights of pegs; of no length or less where nothing does."""
-        return max(band[0], self.low), min(band[1], self.high)
-
-
-def length(band: Band) -> float:
-    """Length of a band in mm, below 0 where two bands had nothing in common."""
-    return band[1] - band[0]
-
-
-@define(eq=False, slots=False)
-class WallEdge:
-    """An edge of a wall that is not upright, over the wall's carrier.
-
-    Parameters
-    ----------
-    edge : it projects to a line or an arc.
-    places : (N,) positions of its points on the carrier, on a circle without jumps.
-    """
-
-    edge: EdgeCurve
-    places: NDArray[np.float64]
-
-    @classmethod
-    def over(cls, carrier: CutCarrier, edge: EdgeCurve) -> WallEdge:
-        """An edge over a carrier that holds it."""
-        found = np.array([carrier.position((x, y)) for x, y in edge.points[:, :2].tolist()])
-        return cls(edge, found if isinstance(carrier.segment, Line) else np.unwrap(found))
-
-    @cached_property
-    def span(self) -> tuple[float, float]:
-        """The least and the greatest position of its points."""
-        return float(self.places.min()), float(self.places.max())
-
-    @cached_property
-    def turns(self) -> tuple[float, ...]:
-        """What is added to a position to find it among those of the edge: whole turns on a circle.
-
-        A piece begins and an edge begins within half a turn of 0, and either may run a turn in its direction.
-        """
-        return (0.0,) if isinstance(self.edge.segment, Line) else (-2 * tau, -tau, 0.0, tau, 2 * tau)
-
-    def is_near(self, low: float, high: float) -> bool:
-        """Whether the edge runs over some of a range of positions, or almost."""
-        first, last = self.span
-        return any(low + turn <= last + MARGIN and high + turn >= first - MARGIN for turn in self.turns)
-
-    def heights(self, position: float, beside: float) -> list[float]:
-        """The z in mm at which the edge passes a position, as its limit from a step beside."""
-        first, last = self.span
-        margin = MARGIN + abs(beside)
-        found: list[float] = []
-        for turn in self.turns:
-            if first - margin <= position + turn <= last + margin:
-                found += self.passed(position + turn, beside)
-        return found
-
-    def passed(self, position: float, beside: float) -> list[float]:
-        """The z in mm at a position of the edge's own turn, see :meth:`heights`."""
-        edge, places = self.edge, self.places
-        away = places - (position + beside)
-        found = []
-        # A position that is just that of a point is passed once.
-        for k in np.flatnonzero((away[:-1] > 0) != (away[1:] > 0)):
-            ends = sorted((float(places[k]), float(places[k + 1])))
-            wanted = min(max(position, ends[0]), ends[1])
-            first, last = float(edge.points[k, 2]), float(edge.points[k + 1, 2])
-            share = (wanted - float(places[k])) / float(places[k + 1] - places[k])
-            if len(places) == 2 or abs(last - first) <= ONE_HEIGHT or share in (0.0, 1.0):
-                found.append(first + share * (last - first))
+        walls = self.over(piece.carrier)
+        middle = clear_place(piece, [branch for wall in walls for branch in wall.branches])
+        ranges = sorted(
+            (
+                (low, high, wall.index, run)
+                for wall in walls
+                for low, high, run in wall.ranges(middle, self.low, self.high)
+            ),
+            key=lambda one: one[:3],
+        )
+        runs: list[tuple[float, Run]] = []
+        for low, high, _, run in ranges:
+            if runs and low <= runs[-1][0] + LEAST_GAP:
+                if high > runs[-1][0]:
+                    runs[-1] = high, Run(runs[-1][1].lower, run.upper)
             else:
-                found.append(self.refined(int(k), wanted))
-        return found
+                runs.append((high, run))
+        faces = tuple(sorted({one[2] for one in ranges}))
+        return Covered(piece, piece.low, piece.high, tuple(run for _, run in runs), faces)
 
-    def refined(self, k: int, position: float) -> float:
-        """The z in mm at which a curved edge passes a position between its points k and k + 1."""
-        own = self.along((float(self.edge.points[k, 0]), float(self.edge.points[k, 1]), 0.0))
-        segment = self.edge.segment
-        along = self.along
-        if isinstance(segment, Arc):
 
-            def along(point: Point3) -> float:
-                return own + (self.along(point) - own + pi) % tau - pi
+def clear_place(piece: BorderPiece, branches: Sequence[Branch]) -> float:
+    """A position of a piece at which no branch ends.
 
-        return self.edge.point_at(k, along, own + self.direction * (position - float(self.places[k])))[2]
+    Edges beyond the heights of pegs may end anywhere along it.
+    """
+    ends = np.array([branch.places[[0, -1]] for branch in branches]).ravel()
 
-    @cached_property
-    def along(self) -> Callable[[Point3], float]:
-        """The parameter of a point along the edge's own segment, in mm or radians."""
-        segment = self.edge.segment
-        assert segment is not None
-        if isinstance(segment, Arc):
-            return lambda point: segment.parameter((point[0], point[1]))
-        (x, y), (tx, ty) = segment.middle, segment.tangent
-        return lambda point: (point[0] - x) * tx + (point[1] - y) * ty
+    def room(position: float) -> float:
+        away = ends - position
+        if isinstance(piece.carrier.segment, Arc):
+            away = (away + pi) % tau - pi
+        return float(np.abs(away).min(initial=np.inf))
 
-    @cached_property
-    def direction(self) -> float:
-        """1 where positions on the carrier grow with the segment's own parameter, else -1; 1 of an arc."""
-        if isinstance(self.edge.segment, Arc):
-            return 1.0
-        own = np.array([self.along((x, y, 0.0)) for x, y in self.edge.points[:, :2].tolist()])
-        return 1.0 if float(np.dot(own - own.mean(), self.places - self.places.mean())) > 0 else -1.0
+    places = [piece.low + share * (piece.high - piece.low) for share in SHARES]
+    return next((one for one in places if room(one) > piece.carrier.slack), max(places, key=room))

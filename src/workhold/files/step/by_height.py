@@ -287,6 +287,7 @@ def drawn(
         )
     sizes = (solid.height, outline.peg_height, room, least)
     found = SolidOutline(axis, *sizes, outline.bands, outline.faces, **known_levels(solid))
+    found = evolve(found, runs=outline.runs)
     own = tuple(own_drawings(solid, view.heights, found))
     plain_prism = view.peg_height is None and is_prism(solid)
     rows = height_table(solid, room, least) if has_table and not plain_prism else []

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from workhold.conventions import SAME_HEIGHT
 from workhold.errors import InputError
 from workhold.files.questions import PEG_HEIGHT, SECTION
-from workhold.files.step.bands import Walls
+from workhold.files.step.bands import WallEdge, Walls
 from workhold.files.step.edge_curves import EdgeCurve, Found, edge_curves
 from workhold.files.step.faces import SolidFace, plane_height, solid_faces
 from workhold.files.step.library import bounding_box, occ, raised, sub_shapes
@@ -34,14 +34,15 @@ from workhold.files.step.projected import (
     FLAT,
     ProjectedCurves,
     folds,
+    has_plain_cuts,
     other_curve,
     projected_curves,
     refuse_others,
 )
-from workhold.files.step.strips import Strip, strips_of_loop
+from workhold.files.step.strips import Strip, run_rows, strips_of_loop
 from workhold.geometry.loop import loop_segments, signed_area
 from workhold.geometry.subdivision import BorderPiece, border_loops, border_pieces, subdivide
-from workhold.model.solid import Band, HeightRow, SolidOutline
+from workhold.model.solid import Band, HeightRow, RunRows, SolidOutline
 
 __all__ = [
     "HEAD_ROOM",
@@ -97,6 +98,12 @@ class HeightOutline:
         return tuple(strip.faces for loop in self.ordered for strip in loop)
 
     @property
+    def runs(self) -> tuple[RunRows, ...]:
+        """The run that holds the band of every segment, as ``SolidOutline`` has them."""
+        found = tuple(run_rows(strip) for loop in self.ordered for strip in loop)
+        return found if any(found) else ()
+
+    @property
     def feet(self) -> int:
         """How many loops are outer ones."""
         return sum(signed_area(loop_segments(loop)) > 0 for loop in self.vertices)
@@ -123,6 +130,7 @@ class StandingSolid:
     edge_boxes: NDArray[np.float64] = field(init=False)
     material: Material = field(init=False)
     folds: dict[int, list[Found]] = field(init=False, factory=dict)
+    wall_edges: dict[int, WallEdge] = field(init=False, factory=dict)
 
     def __attrs_post_init__(self) -> None:
         self.faces = solid_faces(self.shape)
@@ -166,7 +174,7 @@ class StandingSolid:
             For heights that leave nothing, and where the outline has a curve that is neither line nor arc.
         """
         top = self.height if peg_height is None else peg_height
-        walls = Walls(self.faces, self.edges, max(low, 0.0), min(top, self.height))
+        walls = Walls(self.faces, self.edges, max(low, 0.0), min(top, self.height), self.wall_edges)
         loops = self.border(low if low > 0.0 else -inf, top + head_room, walls)
         strips = tuple(tuple(strips_of_loop(loop, walls, least_band)) for loop in loops)
         return HeightOutline(strips, top, head_room, least_band)
@@ -230,6 +238,9 @@ def foot_height(shape: Any) -> float:
 MOST_ROWS = 60
 # Edges of a solid times heights that the table looks at, at most: of parts with many faces it has fewer rows.
 MOST_EDGES = 6_000
+# Heights at which a range is looked at that may be refused in part, and how exactly in mm its end is found. A
+# wall that is this much lower than what may be touched is not.
+PROBES, BEFORE = 8, 1e-3
 
 
 def measures(outline: HeightOutline) -> tuple[float, float, float, float]:
@@ -248,25 +259,94 @@ def measures(outline: HeightOutline) -> tuple[float, float, float, float]:
 
 
 def height_table(solid: StandingSolid, room: float, least: float) -> list[HeightRow]:
-    """Ranges of peg heights with what their outlines offer, without those whose outline is refused."""
+    """Ranges of peg heights with what their outlines offer, without those whose outline is refused.
+
+    A range ends where a face begins or ends, or meets what is kept free above the pegs, and where a wall has
+    come to be high enough to be touched.
+    """
     levels = {round(z, 6) for face in solid.faces for z in (face.low, face.high)}
+    starts = {face.low if face.lie == "upright" else face.high for face in solid.faces}
     levels |= {round(z - room, 6) for z in levels} | {round(solid.height, 6)}
     heights = sorted(z for z in levels if least < z <= solid.height + SAME_HEIGHT)
     most = min(MOST_ROWS, max(2, MOST_EDGES // len(solid.edges)))
     if len(heights) > most:
         heights = [heights[round(k)] for k in np.linspace(0, len(heights) - 1, most)]
     rows: list[HeightRow] = []
-    for low, high in pairwise([0.0, *heights]):
-        try:
-            figures = measures(solid.outline(high, room, least))
-        except InputError:
-            continue
-        row = HeightRow(low, high, *figures)
-        if rows and rows[-1].high == low and is_like(rows[-1], row):
-            rows[-1] = evolve(row, low=rows[-1].low)
-        else:
+    # What is less than the shortest band above the plane touches nothing.
+    for low, high in pairwise([least, *heights]):
+        for row in rows_between(solid, low, high, room, least):
+            if rows and rows[-1].high == row.low and is_like(rows[-1], row):
+                rows[-1] = evolve(row, low=rows[-1].low)
+                continue
+            # Just before a wall is high enough, all is as it was before.
+            reached = [round(z + least, 6) for z in sorted(starts) if row.low < z + least - BEFORE < row.high]
+            for height in reached if rows and rows[-1].touchable < row.touchable else ():
+                before = row_of(solid, row.low, height, room, least, BEFORE)
+                if before is None or is_like(before, row):
+                    continue
+                if rows and rows[-1].high == before.low and is_like(rows[-1], before):
+                    rows[-1] = evolve(before, low=rows[-1].low)
+                else:
+                    rows.append(before)
+                row = evolve(row, low=height)
             rows.append(row)
     return rows
+
+
+def row_of(
+    solid: StandingSolid, low: float, high: float, room: float, least: float, before: float = 0.0
+) -> HeightRow | None:
+    """The range between two heights, with what pegs touch of the upper one, or of one that much lower."""
+    try:
+        return HeightRow(low, high, *measures(solid.outline(high - before, room, least)))
+    except InputError:
+        return None
+
+
+def rows_between(
+    solid: StandingSolid, low: float, high: float, room: float, least: float
+) -> Iterator[HeightRow]:
+    """The ranges between two heights at which no face begins or ends, with what their outlines offer.
+
+    A face that is cut in curves which are neither lines nor arcs may be refused over some of them.
+    """
+    if not any(
+        face.lie == "leaning"
+        and face.low < high + room - SAME_HEIGHT
+        and face.high > low + room + SAME_HEIGHT
+        and not has_plain_cuts(face)
+        for face in solid.faces
+    ):
+        row = row_of(solid, low, high, room, least)
+        if row is not None:
+            yield row
+        return
+    ends = [low + (high - low) * k / PROBES for k in range(PROBES)]
+    # Just above the lower end is the first place of the range.
+    ends[0] += min(BEFORE, (high - low) / 2 / PROBES)
+    places = [*ends, high]
+    taken = [row_of(solid, low, place, room, least) for place in places]
+    first = low if taken[0] is not None else None
+    for (a, b), (one, following) in zip(pairwise(places), pairwise(taken), strict=True):
+        if (one is None) == (following is None):
+            continue
+        refused, read = (a, b) if one is None else (b, a)
+        while abs(read - refused) > BEFORE:
+            middle = (refused + read) / 2
+            if row_of(solid, low, middle, room, least) is None:
+                refused = middle
+            else:
+                read = middle
+        if one is None:
+            first = read
+        elif first is not None:
+            row = row_of(solid, first, read, room, least)
+            if row is not None:
+                yield row
+            first = None
+    last = taken[-1]
+    if last is not None and first is not None:
+        yield evolve(last, low=first)
 
 
 def is_like(a: HeightRow, b: HeightRow) -> bool:
@@ -365,6 +445,7 @@ def own_drawings(
                 f"{where}, no upright face of the part is at least {found.least_band:g} mm high: give other "
                 f"heights of the {role}."
             )
-        own = evolve(found, low=low, peg_height=high, bands=outline.bands, faces=outline.faces)
+        own = evolve(found, low=low, peg_height=high, bands=outline.bands)
+        own = evolve(own, faces=outline.faces, runs=outline.runs)
         own = evolve(own, bottom=(), top=(), top_heights=())
         yield OwnDrawing(role, outline.vertices, own)

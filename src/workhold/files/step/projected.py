@@ -45,6 +45,7 @@ __all__ = [
     "OtherCurveError",
     "ProjectedCurves",
     "folds",
+    "has_plain_cuts",
     "level_cuts",
     "other_curve",
     "projected_curves",
@@ -142,6 +143,22 @@ def level_cuts(face: SolidFace, z: float) -> list[Found]:
     if kind == occ.GeomAbs_SurfaceOfRevolution and is_upright(surface.AxeOfRevolution()):
         return turned_cuts(surface, z)
     return cut_edges(face.shape, z)
+
+
+def has_plain_cuts(face: SolidFace) -> bool:
+    """Whether a leaning face is cut at every height in lines and circles, see :func:`level_cuts`."""
+    surface = surface_of(face.shape)
+    kind = surface.GetType()
+    upright = {
+        occ.GeomAbs_Cone: lambda: surface.Cone().Axis(),
+        occ.GeomAbs_Torus: lambda: surface.Torus().Axis(),
+        occ.GeomAbs_SurfaceOfRevolution: lambda: surface.AxeOfRevolution(),
+    }
+    if kind in upright:
+        return is_upright(upright[kind]())
+    if kind == occ.GeomAbs_Cylinder:
+        return is_level(surface.Cylinder().Axis())
+    return bool(kind in (occ.GeomAbs_Plane, occ.GeomAbs_Sphere))
 
 
 def plane_cut(plane: Any, face: SolidFace, z: float) -> list[Found]:

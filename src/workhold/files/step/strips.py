@@ -1,13 +1,17 @@
 """Strips: the segments of an outline by height, each with the band that all of its points have in common.
 
+A segment runs from one place to the next at which the border turns off, a run of heights begins, ends, splits,
+merges or jumps, or the longest run becomes long enough to be touched. It is halved until its band is at least
+half as long as the longest run over it. All of that is the same however the part lies in its file.
+
 Glossary
 --------
-run : neighbouring pieces of one carrier over which the band's ends are continuous.
+stretch : neighbouring parts of pieces of one carrier over which no run jumps.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from itertools import pairwise
 from math import pi, tan
@@ -15,24 +19,28 @@ from math import pi, tan
 from attrs import frozen
 
 from workhold.conventions import SAME_HEIGHT
-from workhold.files.step.bands import Walls, length
-from workhold.files.step.edge_curves import ONE_HEIGHT, bisected, narrowed
+from workhold.files.step.bands import Covered, Run, Walls, length
+from workhold.files.step.edge_curves import ONE_HEIGHT, bisected
 from workhold.geometry.loop import runs_around
 from workhold.geometry.segment import Arc, Point
 from workhold.geometry.subdivision import BorderPiece
-from workhold.model.solid import Band
+from workhold.model.solid import Band, RunRows, run_at
 
-__all__ = ["Strip", "strips_of_loop"]
+__all__ = ["Strip", "run_rows", "strips_of_loop"]
 
-# How far inside a piece its ends are looked at: a share of it, and in units of what makes two points one.
-INSIDE, STEP = 1e-7, 3.0
-# Bands whose ends differ by less, in mm, go on from piece to piece.
+# Ends of runs that differ by less, in mm, go on from piece to piece.
 SAME_BAND = 1e-5
-# Shares of a piece below this are not worth a strip of their own.
-LEAST_SHARE = 1e-4
-NOTHING = (0.0, 0.0)
-# Steps in which a piece is searched, and halvings of the one that holds what is searched.
-STEPS, HALVINGS = 32, 50
+# Steps beside a joint over which an end of a run may move without a jump, in units of what makes points one.
+STEP = 2.0
+# How near a steep place is to be to a joint, in these units, and how far from it it is looked at.
+AT_JOINT, BESIDE = 10.0, 1e3
+# mm. Pieces shorter than this are not made by halving.
+SHORTEST_STRIP = 0.01
+# mm. Heights that a piece's cubic tells are off by no more, and pieces of a run that are not parted any more.
+CUBIC, SHORTEST_PIECE = 1e-6, 1e-5
+# Halvings in which a place is searched.
+HALVINGS = 50
+Stretch = Sequence[Covered]
 
 
 @frozen
@@ -45,6 +53,7 @@ class Strip:
     bulge : of the segment.
     band : (z0, z1) in mm that all its points have in common; None where nothing may touch.
     faces : indices of the solid's upright faces over it, in their order.
+    covered : what it consists of, in running order.
     """
 
     start: Point
@@ -52,41 +61,7 @@ class Strip:
     bulge: float
     band: Band | None
     faces: tuple[int, ...]
-
-
-@frozen
-class Ends:
-    """A piece of the border with its band at both of its ends, in the direction of its run.
-
-    Parameters
-    ----------
-    piece : of the border.
-    first, last : bands at its first and its last point; None where nothing may touch.
-    faces : indices of the walls over it.
-    """
-
-    piece: BorderPiece
-    first: Band | None
-    last: Band | None
-    faces: tuple[int, ...]
-
-    def at(self, share: float) -> float:
-        """The position at a share of the run."""
-        low, high = self.piece.low, self.piece.high
-        return low + share * (high - low) if self.piece.forward else high - share * (high - low)
-
-
-def ends_of(piece: BorderPiece, walls: Walls) -> Ends:
-    """A piece with its band at both ends."""
-    first, used = walls.band(piece, *end_of(piece, at_end=False))
-    last, more = walls.band(piece, *end_of(piece, at_end=True))
-    return Ends(piece, first, last, tuple(sorted({*used, *more})))
-
-
-def end_of(piece: BorderPiece, *, at_end: bool) -> tuple[float, float]:
-    """The position of an end of a piece's run, and the step from there into the piece."""
-    step = min(STEP * piece.carrier.slack, (piece.high - piece.low) / 4)
-    return (piece.high, -step) if at_end == piece.forward else (piece.low, step)
+    covered: tuple[Covered, ...]
 
 
 def strips_of_loop(loop: Sequence[BorderPiece], walls: Walls, least: float) -> list[Strip]:
@@ -97,166 +72,337 @@ def strips_of_loop(loop: Sequence[BorderPiece], walls: Walls, least: float) -> l
     loop : pieces in running order, see ``geometry.subdivision``.
     least : shortest band in mm that may be touched.
     """
-    ends = [ends_of(piece, walls) for piece in loop]
-    return [strip for run in runs_around(ends, continues) for strip in strips_of_run(run, walls, least)]
+    pieces = [walls.covered(piece) for piece in loop]
+    stretches: Sequence[Stretch] = runs_around(pieces, lambda a, b: continues(a, b, least))
+    if len(stretches) == 1 and continues(pieces[-1], pieces[0], least):
+        stretches = list(opened(pieces, least))
+    return [strip for stretch in stretches for strip in strips_of_stretch(stretch, least)]
 
 
-def continues(before: Ends, after: Ends) -> bool:
-    """Whether a piece continues another: the same carrier and direction, and no jump of the band."""
+def continues(before: Covered, after: Covered, least: float) -> bool:
+    """Whether a piece continues another: the same carrier and direction, and no long run is cut.
+
+    That is one which has none of the same ends on the other side, or an end that jumps. Shorter ones than may
+    be touched cut nothing.
+    """
     if before.piece.carrier is not after.piece.carrier or before.piece.forward != after.piece.forward:
         return False
-    if before.last is None or after.first is None:
-        return before.last is after.first
-    return all(abs(a - b) <= SAME_BAND for a, b in zip(before.last, after.first, strict=True))
-
-
-def strips_of_run(run: Sequence[Ends], walls: Walls, least: float) -> list[Strip]:
-    """A run cut where the common band would fall below the least.
-
-    Strips are made as long as they can be, one after the other. Over one piece each end of the band rises or
-    falls only, so a part of a piece has in common what its own two ends have.
-    """
-    if all(one.first is None and one.last is None for one in run):
-        return strips_between(run[0], 0.0, run[-1], 1.0, None, run)
-    strips: list[Strip] = []
-    opened: tuple[int, float] | None = None
-    common: Band | None = None
-
-    def close(k: int, share: float) -> None:
-        nonlocal opened, common
-        if opened is not None:
-            parts = run[opened[0] : k + 1]
-            strips.extend(strips_between(parts[0], opened[1], parts[-1], share, common, parts))
-        opened, common = None, None
-
-    for k, one in enumerate(run):
-        share = 0.0
-        while share < 1.0:
-            here = band_at(one, walls, share)
-            if length(here) < least - SAME_HEIGHT:
-                begin = first_long(one, walls, share, least)
-                close(k, share)
-                strips += strips_between(one, share, one, begin, None, [one])
-                share = begin
+    sides = [at_joint(before, 1), at_joint(after, 0)]
+    for own, others in (sides, sides[::-1]):
+        for band, off, jumps in own:
+            if length(band) < least - SAME_HEIGHT:
                 continue
-            opened = opened or (k, share)
-            sofar = overlap(common, here)
-            whole = overlap(sofar, band_at(one, walls, 1.0))
-            if length(whole) >= least - SAME_HEIGHT:
-                common = whole
-                break
-            end = first_short(one, walls, share, sofar, least)
-            if end - share > LEAST_SHARE:
-                common = overlap(sofar, band_at(one, walls, end))
-                close(k, end)
-                share = end
-            elif opened != (k, share):
-                close(k, share)
-            else:
-                opened = None
-                strips += strips_between(one, share, one, 1.0, None, [one])
-                break
-    close(len(run) - 1, 1.0)
-    return strips
+            if jumps or not any(
+                all(abs(a - b) <= off + more for a, b in zip(band, other, strict=True))
+                for other, more, _ in others
+            ):
+                return False
+    return True
 
 
-def band_at(one: Ends, walls: Walls, share: float) -> Band:
-    """The band at a share of a piece's run; one of no length where nothing may touch."""
-    if share <= INSIDE:
-        return one.first or NOTHING
-    if share >= 1 - INSIDE:
-        return one.last or NOTHING
-    return walls.band(one.piece, one.at(share))[0] or NOTHING
+def at_joint(covered: Covered, end: int) -> list[tuple[Band, float, bool]]:
+    """The runs at an end of a piece, each with what its ends may be off in mm, and whether one jumps.
 
-
-def overlap(a: Band | None, b: Band) -> Band:
-    """What two bands have in common; the second alone without a first."""
-    return b if a is None else (max(a[0], b[0]), min(a[1], b[1]))
-
-
-def first_long(one: Ends, walls: Walls, share: float, least: float) -> float:
-    """The least share after one from which on a piece's band is at least as long as asked; 1 for none."""
-
-    def may_be(a: Band, b: Band) -> bool:
-        # Both ends of the band are monotone and so lie between those at both ends, whatever walls make it.
-        return max(a[1], b[1]) - min(a[0], b[0]) >= least - SAME_HEIGHT
-
-    def spare(band: Band) -> float:
-        return length(band) - (least - ONE_HEIGHT)
-
-    return first_share(share, partial(band_at, one, walls), spare, may_be)
-
-
-def first_short(one: Ends, walls: Walls, share: float, sofar: Band, least: float) -> float:
-    """The least share after one at which too little of a piece's band is common with a band; 1 for none."""
-    is_single = walls.is_single(one.piece)
-
-    def spare(band: Band) -> float:
-        return length(overlap(sofar, band)) - (least - ONE_HEIGHT)
-
-    def may_be(a: Band, b: Band) -> bool:
-        # The band of one wall holds what it has in common at both ends.
-        return not is_single or spare(overlap(a, b)) < 0.0
-
-    return first_share(share, partial(band_at, one, walls), lambda band: -spare(band), may_be)
-
-
-def first_share(
-    start: float,
-    band: Callable[[float], Band],
-    value: Callable[[Band], float],
-    may_be: Callable[[Band, Band], bool],
-) -> float:
-    """The least share after a start from which on a band's value, below 0 there, is not; 1 for never.
+    Places are known to what makes two points one, and the ends of a run move over that.
 
     Parameters
     ----------
-    may_be : whether the value may be 0 or more somewhere between two shares with some bands.
+    end : 0 for the first in the direction of the border, 1 for the last.
     """
-    bands = {0: band(start)}
+    position, carrier = covered.ends[end], covered.piece.carrier
+    inward = 1.0 if position == covered.low else -1.0
 
-    def share_of(step: int) -> float:
-        return start + (1.0 - start) * step / STEPS
+    def beside(steps: float) -> float:
+        return position + inward * min(steps * carrier.slack, covered.size / 4)
 
-    def band_of(step: int) -> Band:
-        if step not in bands:
-            bands[step] = band(share_of(step))
-        return bands[step]
-
-    def first_step(low: int, high: int) -> int | None:
-        if not may_be(band_of(low), band_of(high)):
-            return None
-        if high - low == 1:
-            return high if value(band_of(high)) >= 0.0 else None
-        middle = (low + high) // 2
-        found = first_step(low, middle)
-        return first_step(middle, high) if found is None else found
-
-    step = first_step(0, STEPS)
-    if step is None:
-        return 1.0
-    low, high = share_of(step - 1), share_of(step)
-
-    def at(share: float) -> float:
-        return value(band(share))
-
-    known = narrowed(at, (low, value(band_of(step - 1))), (high, value(band_of(step))))
-    return bisected(low, high, lambda share: at(share) >= 0.0, known, HALVINGS)[1]
+    found: list[tuple[Band, float, bool]] = []
+    for run in covered.runs:
+        here, there = run.at(position), run.at(beside(STEP))
+        jumps = any(
+            one.jumps_at(position, beside(BESIDE), AT_JOINT * carrier.slack) for one in (run.lower, run.upper)
+        )
+        moved = max(abs(a - b) for a, b in zip(here, there, strict=True))
+        found.append((here, SAME_BAND + moved, jumps))
+    return found
 
 
-def strips_between(
-    first: Ends, start: float, last: Ends, stop: float, band: Band | None, parts: Sequence[Ends]
-) -> list[Strip]:
-    """The strip from a share of one piece to a share of another on the same carrier; two for a wide arc."""
-    carrier, forward = first.piece.carrier, first.piece.forward
-    begin = first.at(start)
-    covered = sum(one.piece.high - one.piece.low for one in parts)
-    covered -= start * (first.piece.high - first.piece.low) + (1 - stop) * (last.piece.high - last.piece.low)
-    if covered <= carrier.slack:
+def opened(pieces: Stretch, least: float) -> Iterator[Stretch]:
+    """A whole circle over which no run jumps, cut where its longest run is shortest, if it is to be cut.
+
+    So it is halved at the same places however it is turned, and whichever way round.
+    """
+    if is_enough(pieces, common_band(pieces), least) or max(map(most_of, pieces)) < least - SAME_HEIGHT:
+        yield pieces
+        return
+    places = [
+        (k, place, one.longest_at(place))
+        for k, one in enumerate(pieces)
+        for place in (one.low, *one.inner(), one.high)
+    ]
+    shortest = min(value for _, _, value in places)
+    parts: list[Covered] = []
+    fresh: set[int] = set()
+    for k, one in enumerate(pieces):
+        lowest = [place for number, place, value in places if number == k and value <= shortest + SAME_HEIGHT]
+        cuts = [place for place in lowest if min(place - one.low, one.high - place) > one.piece.carrier.slack]
+        at_start = any(abs(place - one.ends[0]) <= one.piece.carrier.slack for place in lowest)
+        for number, part in enumerate(one.parts(cuts)):
+            if number or at_start:
+                fresh.add(len(parts))
+            parts.append(part)
+    numbers = runs_around(range(len(parts)), lambda _, after: after not in fresh)
+    yield from ([parts[k] for k in run] for run in numbers)
+
+
+def strips_of_stretch(stretch: Stretch, least: float) -> list[Strip]:
+    """A stretch cut where it becomes long enough to be touched, and halved where runs slide."""
+    found: list[Strip] = []
+    for part, is_touched in touched_parts(stretch, least):
+        if is_touched:
+            found += halved(part, least)
+        else:
+            found += strips_between(part, None)
+    return joined(found)
+
+
+def touched_parts(stretch: Stretch, least: float) -> Iterator[tuple[Stretch, bool]]:
+    """The parts of a stretch along which the longest run is long enough, and those along which it is not."""
+    found: list[tuple[list[Covered], bool]] = []
+    for one in stretch:
+        for part, is_touched in touched_pieces(one, least):
+            if part.size <= part.piece.carrier.slack:
+                continue
+            if found and found[-1][1] == is_touched:
+                found[-1][0].append(part)
+            else:
+                found.append(([part], is_touched))
+    yield from found
+
+
+def touched_pieces(one: Covered, least: float) -> list[tuple[Covered, bool]]:
+    """The parts of a piece along which the longest run is long enough, and those along which it is not."""
+    if most_of(one) < least - SAME_HEIGHT:
+        return [(one, False)]
+    if any(length(run.common(one.low, one.high)) >= least - SAME_HEIGHT for run in one.runs):
+        return [(one, True)]
+
+    def spare(position: float) -> float:
+        return one.longest_at(position) - (least - ONE_HEIGHT)
+
+    nodes = [one.low, *one.inner(), one.high]
+    peaks = list(turns_past(one, nodes, spare, least))
+    nodes = sorted({*nodes, *peaks})
+    # What lacks no more than rounding is long enough, if it is so for a while.
+    signs = [spare(node) >= ONE_HEIGHT - SAME_HEIGHT for node in nodes]
+    cuts = []
+    for (a, b), (first, last) in zip(pairwise(nodes), pairwise(signs), strict=True):
+        if first != last:
+            sign = 1.0 if last else -1.0
+            ends = bisected(a, b, partial(is_past, spare, sign), (a, b), HALVINGS)
+            cuts.append(ends[1] if last else ends[0])
+    parts = one.parts(cuts)
+    return [(part, spare((part.low + part.high) / 2) >= ONE_HEIGHT - SAME_HEIGHT) for part in parts]
+
+
+def turns_past(
+    one: Covered, nodes: Sequence[float], spare: Callable[[float], float], least: float
+) -> Iterator[float]:
+    """Positions between nodes at which the longest run may be just long enough, or just too short.
+
+    Between nodes the ends of runs only rise or only fall, and so they bound its length.
+    """
+    for a, b in pairwise(nodes):
+        first, last = spare(a) >= 0.0, spare(b) >= 0.0
+        if first != last:
+            continue
+        if first and max(length(run.common(a, b)) for run in one.runs) < least:
+            yield extreme(spare, a, b, -1.0)
+        elif not first and max(run.most(a, b) for run in one.runs) >= least:
+            yield extreme(spare, a, b, 1.0)
+
+
+def is_past(value: Callable[[float], float], sign: float, position: float) -> bool:
+    """Whether a value has come to have a sign at a position."""
+    return sign * value(position) >= 0.0
+
+
+def extreme(value: Callable[[float], float], low: float, high: float, sign: float) -> float:
+    """The place between two others at which a value is greatest, or least for a sign of -1, by halving."""
+    for _ in range(HALVINGS):
+        a, b = low + (high - low) / 3, high - (high - low) / 3
+        if sign * value(a) < sign * value(b):
+            low = a
+        else:
+            high = b
+        if high - low <= 1e-9:
+            break
+    return (low + high) / 2
+
+
+def most_of(one: Covered) -> float:
+    """A length in mm that no run of a piece has more of; that of the longest where nothing slides."""
+    return max((run.most(one.low, one.high) for run in one.runs), default=0.0)
+
+
+def longest_of(one: Covered, bound: float) -> float:
+    """Length in mm of the longest run over a piece, or one not above a bound where that is enough to know."""
+    nodes = [one.low, *one.inner(), one.high]
+    best = max(map(one.longest_at, nodes))
+    for a, b in pairwise(nodes):
+        most = max((run.most(a, b) for run in one.runs), default=0.0)
+        if best <= bound < most:
+            best = max(best, one.longest_at(extreme(one.longest_at, a, b, 1.0)))
+    return best
+
+
+def common_band(stretch: Stretch) -> Band:
+    """The longest range of heights that lies in one run at each point of a stretch; of equal ones the lower.
+
+    It is 0 long where there is none.
+    """
+    bands: list[Band] | None = None
+    for one in stretch:
+        own = [run.common(one.low, one.high) for run in one.runs]
+        both = own if bands is None else [overlap(a, b) for a in bands for b in own]
+        bands = [band for band in both if length(band) > 0.0]
+    if not bands:
+        return 0.0, 0.0
+    most = max(map(length, bands))
+    return min(band for band in bands if length(band) >= most - ONE_HEIGHT)
+
+
+def overlap(a: Band, b: Band) -> Band:
+    """What two bands have in common, below 0 long for nothing."""
+    return max(a[0], b[0]), min(a[1], b[1])
+
+
+def is_enough(stretch: Stretch, band: Band, least: float) -> bool:
+    """Whether the band of a stretch is long enough to be touched, and half as long as the longest run there."""
+    if length(band) < least - SAME_HEIGHT:
+        return False
+    bound = 2 * (length(band) + SAME_HEIGHT)
+    return all(most_of(one) <= bound or longest_of(one, bound) <= bound for one in stretch)
+
+
+def halved(stretch: Stretch, least: float) -> list[Strip]:
+    """A stretch halved until its band is long enough, and half as long as the longest run over it."""
+    band = common_band(stretch)
+    if is_enough(stretch, band, least):
+        return strips_between(stretch, band)
+    carrier = stretch[0].piece.carrier
+    size = sum(one.size for one in stretch)
+    unit = carrier.segment.radius if isinstance(carrier.segment, Arc) else 1.0
+    if size * unit < 2 * SHORTEST_STRIP:
+        return strips_between(stretch, band if length(band) >= least - SAME_HEIGHT else None)
+    first, second = cut_at(stretch, size / 2)
+    return [*halved(first, least), *halved(second, least)]
+
+
+def cut_at(stretch: Stretch, size: float) -> tuple[Stretch, Stretch]:
+    """A stretch up to a place, and from there on.
+
+    Parameters
+    ----------
+    size : how far the place is from its start, in mm on a line and radians on a circle.
+    """
+    left = size
+    for k, one in enumerate(stretch):
+        if left < one.size:
+            place = one.low + left if one.piece.forward else one.high - left
+            first, second = one.parts([place])
+            before = [*stretch[:k], first] if left > 0.0 else list(stretch[:k])
+            return before, [second, *stretch[k + 1 :]]
+        left -= one.size
+    return stretch, []
+
+
+def joined(strips: Sequence[Strip]) -> list[Strip]:
+    """Strips of a stretch, neighbours with the same band as one."""
+    groups: list[list[Strip]] = []
+    for strip in strips:
+        before = groups[-1][-1].band if groups else ()
+        same = before == strip.band or (
+            before is not None
+            and strip.band is not None
+            and len(before) == 2
+            and all(abs(a - b) <= SAME_BAND for a, b in zip(before, strip.band, strict=True))
+        )
+        if groups and same:
+            groups[-1].append(strip)
+        else:
+            groups.append([strip])
+    found: list[Strip] = []
+    for group in groups:
+        covered = [one for strip in group for one in strip.covered]
+        bands = [strip.band for strip in group if strip.band is not None]
+        band = (max(low for low, _ in bands), min(high for _, high in bands)) if bands else None
+        found += strips_between(covered, band) if len({id(strip) for strip in group}) > 1 else group
+    return found
+
+
+def strips_between(stretch: Stretch, band: Band | None) -> list[Strip]:
+    """The strip over a stretch; two for a wide arc, none for one that comes of rounding."""
+    carrier, forward = stretch[0].piece.carrier, stretch[0].piece.forward
+    begin, size = stretch[0].ends[0], sum(one.size for one in stretch)
+    if size <= carrier.slack:
         return []
-    faces = tuple(sorted({index for one in parts for index in one.faces})) if band is not None else ()
-    pieces = 2 if isinstance(carrier.segment, Arc) and covered > pi else 1
-    step = covered / pieces if forward else -covered / pieces
+    faces = tuple(sorted({index for one in stretch for index in one.faces})) if band is not None else ()
+    halves = [stretch]
+    if isinstance(carrier.segment, Arc) and size > pi:
+        halves = list(cut_at(stretch, size / 2))
+    step = (size if forward else -size) / len(halves)
     bulge = tan(step / 4) if isinstance(carrier.segment, Arc) else 0.0
-    ends = [carrier.at(begin + step * k) for k in range(pieces + 1)]
-    return [Strip(a, b, bulge, band, faces) for a, b in pairwise(ends)]
+    ends = [carrier.at(begin + step * k) for k in range(len(halves) + 1)]
+    return [
+        Strip(a, b, bulge, band, faces, tuple(half))
+        for (a, b), half in zip(pairwise(ends), halves, strict=True)
+    ]
+
+
+def run_rows(strip: Strip) -> RunRows:
+    """The run that holds a strip's band, along the strip; empty where it is the band all along."""
+    band = strip.band
+    if band is None:
+        return ()
+    runs = [holding(one, band) for one in strip.covered]
+    ends = [
+        (end.extent(one.low, one.high), own)
+        for one, run in zip(strip.covered, runs, strict=True)
+        for end, own in zip((run.lower, run.upper), band, strict=True)
+    ]
+    if all(abs(z - own) <= SAME_BAND for extent, own in ends for z in extent):
+        return ()
+    rows: list[tuple[float, float, float]] = []
+    size, before = sum(one.size for one in strip.covered), 0.0
+    for one, run in zip(strip.covered, runs, strict=True):
+        first, last = one.ends
+        for position, heights in cubic_pieces(run, one, first, last):
+            rows.append(((before + abs(position - first)) / size, *heights))
+        before += one.size
+    # Where a piece ends the next begins.
+    kept = [row for k, row in enumerate(rows) if k % 4 or k == 0]
+    return ((0.0, *kept[0][1:]), *kept[1:-1], (1.0, *kept[-1][1:]))
+
+
+def holding(one: Covered, band: Band) -> Run:
+    """The run of a piece that holds a band all along."""
+    shared = [length(overlap(run.common(one.low, one.high), band)) for run in one.runs]
+    return one.runs[shared.index(max(shared))]
+
+
+def cubic_pieces(run: Run, one: Covered, first: float, last: float) -> Iterator[tuple[float, Band]]:
+    """Four positions with the run's heights for each piece of a run that is two cubics within rounding."""
+    places = [first + (last - first) * k / 3 for k in range(4)]
+    rows = tuple((k / 3, *run.at(place)) for k, place in enumerate(places))
+    unit = one.piece.carrier.segment.radius if isinstance(one.piece.carrier.segment, Arc) else 1.0
+    off = max(
+        abs(a - b)
+        for share in (1 / 6, 1 / 2, 5 / 6)
+        for a, b in zip(run_at(rows, share), run.at(first + (last - first) * share), strict=True)
+    )
+    if off > CUBIC and abs(last - first) * unit > SHORTEST_PIECE:
+        middle = (first + last) / 2
+        yield from cubic_pieces(run, one, first, middle)
+        yield from cubic_pieces(run, one, middle, last)
+        return
+    yield from ((place, row[1:]) for place, row in zip(places, rows, strict=True))

@@ -24,6 +24,7 @@ from typing import Any
 
 from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
+from workhold.files.replacing import refuse_other_ending, refuse_output
 from workhold.files.step.library import load_step_library, occ, raised, sub_shapes
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Line, Point, Segment
@@ -69,6 +70,7 @@ def write_setup_step(
     peg_length: float | None = None,
     peg_height: float | None = None,
     zero: PartZero | None = None,
+    overwrite: bool = False,
 ) -> None:
     """Writes a set-up as a STEP assembly; the same set-up gives the same bytes.
 
@@ -82,13 +84,17 @@ def write_setup_step(
         part itself, if None.
     peg_length : in mm; down to the plates' lower sides if None.
     zero : part zero; that of :func:`part_zero` without a wish if None.
+    overwrite : whether a file that workhold has not written may be replaced.
 
     Raises
     ------
     InputError
-        For pegs without a radius, a length that is not positive, a file that cannot be written, and when the
-        extra ``step`` is not installed.
+        For a fixture of another part or toolkit, pegs without a radius, a length that is not positive, a file
+        that cannot be written or replaced, and when the extra ``step`` is not installed.
     """
+    fixture.refuse_others(workpiece, toolkit)
+    refuse_other_ending(path, (".step", ".stp"), "a STEP file")
+    refuse_output(path, force=overwrite)
     sizes = {
         "thickness": thickness,
         "plate_thickness": plate_thickness,

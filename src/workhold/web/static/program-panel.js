@@ -8,7 +8,7 @@ import { fixtureDrawing, partDrawing } from "./stage-panel.js";
 import { change, on, programRequest, state } from "./state.js";
 import { bareLength, countText, fieldLength, length, number, readLength } from "./units.js";
 
-/** @typedef {{name: string, text: string, tools: {name: string, text: string}|null, zero: number[], z_zero: "top"|"bottom"|number, clearance: number, rapid: "straight"|"box", unit: "mm"|"inch"|null, thickness: number|null, peg_height: number|null}} Wish */
+/** @typedef {{name: string, text: string, tools: {name: string, text: string}|null, zero: number[], z_zero: "top"|"bottom"|number, clearance: number, rapid: "straight"|"box", unit: "mm"|"inch"|null, start: number[]|null, whole_numbers: "units"|"thousandths", thickness: number|null, peg_height: number|null}} Wish */
 
 const PROGRAMS = /\.(nc|ngc|cnc|tap|gcode|gc|mpf|eia|iso|min|fnc|h|txt)$/i;
 const TABLES = /\.(toml|csv|tbl)$/i;
@@ -59,7 +59,7 @@ export async function openProgram(files) {
     say(`${table?.name} is a table of tools: open the program that uses them too.`);
     return;
   }
-  const known = before ?? { zero: [0, 0], z_zero: "top", clearance: 1, rapid: "straight", unit: null, thickness: state.supports.thickness ?? state.sheet.thickness ?? null, peg_height: state.sheet.peg_height ?? null };
+  const known = before ?? { zero: [0, 0], z_zero: "top", clearance: 1, rapid: "straight", unit: null, start: null, whole_numbers: "units", thickness: state.supports.thickness ?? state.sheet.thickness ?? null, peg_height: state.sheet.peg_height ?? null };
   const file = program ? { name: program.name, text: await program.text() } : { name: known.name, text: known.text };
   change({ program: { ...known, ...file, tools: tools ?? waiting } });
   waiting = null;
@@ -93,11 +93,19 @@ function takeFields() {
     clearance: size("program-clearance") ?? 1,
     rapid: field("program-rapid").value,
     unit: field("program-unit").value || null,
+    start: startOf(field("program-start").value),
+    whole_numbers: field("program-whole").value,
   };
   const { thickness } = program;
   const sheet = thickness && !state.sheet.thickness ? { sheet: { ...state.sheet, thickness } } : {};
   const supports = thickness && !state.supports.thickness ? { supports: { ...state.supports, thickness } } : {};
   change({ program, ...sheet, ...supports });
+}
+
+/** Three lengths in mm of a place with commas or spaces between them, or null. @param {string} words */
+function startOf(words) {
+  const values = words.trim().split(/[\s,;]+/).map((word) => readLength(word));
+  return values.length === 3 && values.every((value) => value !== null && Number.isFinite(value)) ? values : null;
 }
 
 /** Write the state into the fields. */
@@ -119,6 +127,8 @@ function writeFields() {
   field("program-clearance").value = program.clearance === 1 ? "" : fieldLength(program.clearance);
   field("program-rapid").value = program.rapid;
   field("program-unit").value = program.unit ?? "";
+  field("program-start").value = program.start ? program.start.map((value) => fieldLength(value)).join(", ") : "";
+  field("program-whole").value = program.whole_numbers ?? "units";
 }
 
 /** Have the program read as it stands now. */

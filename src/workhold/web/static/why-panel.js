@@ -43,7 +43,7 @@ export async function explain(job) {
 }
 
 /** Write the explanation. */
-function write(box, { contacts, removals, nearest, helps }) {
+function write(box, { contacts, removals, nearest, helps, asked_words }) {
   const parts = [make("p", {}, contacts
     ? `Four pegs can touch the part at the same time in ${countText(contacts)} ways. Each rule takes some of them away:`
     : `Four pegs of this ${kindOf(state.toolkit).noun} cannot touch the part at the same time in any way.`)];
@@ -55,6 +55,7 @@ function write(box, { contacts, removals, nearest, helps }) {
       make("thead", {}, make("tr", {}, make("th", { scope: "col" }, "Rule"), make("th.number", { scope: "col" }, "takes"), make("th.number", { scope: "col" }, "leaves"))),
       make("tbody", {}, ...lines)));
   }
+  if (asked_words) parts.push(make("p", {}, asked_words));
   if (nearest) parts.push(make("h3", {}, "The nearest miss, as drawn"), make("p", {}, sentence(nearest.words)));
   parts.push(make("h3", {}, "What would help"));
   if (helps.length) parts.push(make("div.helps", {}, ...helps.map(helpButton)));
@@ -67,7 +68,8 @@ function write(box, { contacts, removals, nearest, helps }) {
 function helpButton(help) {
   const count = `${help.complete ? "" : "over "}${countText(help.fixtures)}`;
   const words = `${help.change}: ${count} fixture${help.fixtures === 1 ? "" : "s"}`;
-  const patch = help.toolkit ? { toolkit: withFields(state.toolkit, help.toolkit), toolkitName: "own" } : appliedHelp(help.change, state);
+  // What helps only together is more than one change of the settings.
+  const patch = help.rules.length > 1 ? null : help.toolkit ? { toolkit: withFields(state.toolkit, help.toolkit), toolkitName: "own" } : appliedHelp(help.change, state);
   if (!patch) return make("p", {}, words);
   return make("button", { type: "button", click: () => change(patch) }, words);
 }

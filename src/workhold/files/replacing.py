@@ -1,0 +1,141 @@
+"""Which files may be written over: workhold's own earlier outputs, and nothing that is read.
+
+One rule for the command, for Python and for programs that call either. A file that workhold has written is
+known by a mark in it and may be replaced; any other only where that is asked for. What is read for an output
+is never replaced by it, under its own name or through links.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from pathlib import Path
+
+from workhold.errors import InputError
+
+__all__ = ["IN_PYTHON", "is_own", "refuse_other_ending", "refuse_output", "refuse_output_folder"]
+
+# What the permission to replace a file is called in Python.
+IN_PYTHON = "overwrite=True"
+# What stands within the first or the last so many bytes of everything that workhold writes, and of nothing
+# else.
+ENDS = 4096
+MARKS = (
+    b'{"format": "workhold-result/',
+    b'{"format": "workhold-family/',
+    b'{"format": "workhold-supports/',
+    b'{"format": "workhold-benchmark',
+    b"format workhold-benchmark/1",
+    b"\0workhold-result/",
+    b"number,type,theta_deg,x,y,jaw_separation,",
+    b"toolkit,fixtures,type_",
+    b"hole,carrier,column,row,x,y,diameter,length,unit,dowel,face\n",
+    b"part,file,toolkit,",
+    b"workhold-table/1",
+    b"<!-- workhold -->",
+    b"tEXtSoftware\0workhold",
+    b"/Producer (workhold)",
+    b"$LASTSAVEDBY\n  1\nworkhold\n",
+    b"'workhold','",
+    b'"generator":"workhold"',
+)
+# Endings by which people and programs take a file for one of a certain kind.
+ENDINGS = (
+    *(".json", ".csv", ".npz", ".parquet", ".toml", ".tbl", ".nc", ".ngc", ".tap", ".gcode", ".html", ".zip"),
+    *(".svg", ".png", ".jpg", ".jpeg", ".pdf", ".dxf", ".dwg", ".step", ".stp", ".igs", ".iges"),
+    *(".glb", ".gltf", ".stl", ".obj", ".3mf"),
+)
+
+
+def refuse_output(
+    path: str | Path,
+    inputs: Iterable[str | Path | None] = (),
+    force: bool = False,
+    called: str = IN_PYTHON,
+) -> None:
+    """Refuses an output file before any work is done for it.
+
+    Parameters
+    ----------
+    inputs : what is read: files, names of other things, and None for what is not given.
+    force : whether a file that workhold has not written may be replaced.
+    called : what that is called where it is asked for.
+
+    Raises
+    ------
+    InputError
+        When it cannot be written, is one of the inputs (also through links), or is a foreign file.
+    """
+    from workhold.files.atomic import refuse_unwritable
+
+    refuse_unwritable(path)
+    refuse_replacing(Path(path), inputs, force, called)
+
+
+def refuse_output_folder(
+    folder: Path,
+    names: Iterable[str],
+    inputs: Iterable[str | Path | None],
+    force: bool,
+    called: str = IN_PYTHON,
+) -> None:
+    """Refuses an output folder, or the files of some names that would be written into it.
+
+    Raises
+    ------
+    InputError
+        See :func:`refuse_output`.
+    """
+    from workhold.files.atomic import refuse_unwritable_folder
+
+    refuse_unwritable_folder(folder)
+    inputs = list(inputs)
+    for name in names:
+        refuse_replacing(folder / name, inputs, force, called)
+
+
+def refuse_replacing(path: Path, inputs: Iterable[str | Path | None], force: bool, called: str) -> None:
+    """Refuses to write over an input, and over a foreign file unless that is asked for."""
+    if not path.is_file():
+        return
+    if any(is_same(path, given) for given in inputs if given is not None):
+        raise InputError(f"{path} is also what is read: give the output another name.")
+    if not force and not is_own(path):
+        raise InputError(f"{path} was not written by workhold: give another name, or {called} to replace it.")
+
+
+def refuse_other_ending(path: str | Path, own: Sequence[str], what: str) -> None:
+    """Refuses an output whose name says that it is a file of another kind.
+
+    Parameters
+    ----------
+    own : endings of such files, in small letters.
+    what : such a file, in words.
+
+    Raises
+    ------
+    InputError
+        Naming the endings that it may have.
+    """
+    ending = Path(path).suffix.lower()
+    if ending in ENDINGS and ending not in own:
+        raise InputError(f"{path} is not the name of {what}: let the name end in {' or '.join(own)}.")
+
+
+def is_same(path: Path, given: str | Path) -> bool:
+    """Whether a path and another name lead to the same file."""
+    try:
+        return path.samefile(given)
+    except (OSError, ValueError):
+        return False
+
+
+def is_own(path: Path) -> bool:
+    """Whether workhold has written a file, or the file is empty."""
+    with suppress(OSError), path.open("rb") as stream:
+        first = stream.read(ENDS)
+        stream.seek(-min(ENDS, os.fstat(stream.fileno()).st_size), os.SEEK_END)
+        ends = first + stream.read(ENDS)
+        return not ends or any(mark in ends for mark in MARKS)
+    return False

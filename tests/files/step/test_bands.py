@@ -1,0 +1,298 @@
+"""Bands of solids against upright lines of Open CASCADE: covered throughout, and alike however the part lies."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from math import cos, hypot, pi, radians, sin, sqrt
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+pytest.importorskip("OCP", reason="the extra 'step' is not installed")
+
+from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder, BRepPrimAPI_MakeSphere, BRepPrimAPI_MakeTorus
+from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
+from step_shapes import box, cut, cylinder, fused, write_step
+from typer.testing import CliRunner
+
+from band_truth import band_faults, mirrored, placed, runs_beside, unlike
+from solid_examples import cone, tilted
+from workhold import Vise, design, load
+from workhold.cli.main import app
+from workhold.errors import InputError
+from workhold.files.step.by_height import HeightView, shapes_by_height
+from workhold.files.step.heights import HeightOutline, height_table, standing
+from workhold.files.step.library import along
+from workhold.geometry.loop import loop_segments
+from workhold.model.solid import run_at
+
+
+def sloped(body: Any, z: float, rise: float, across: float = 0.0) -> Any:
+    """A body below a plane that passes a height at x = y = 0 and rises along x and y."""
+    return cut(body, tilted((0, 0, z), (-rise, -across, 1), (1, 0, rise)))
+
+
+def ball(radius: float, at: tuple[float, float, float]) -> Any:
+    """A ball."""
+    return BRepPrimAPI_MakeSphere(gp_Pnt(*at), radius).Shape()
+
+
+def ring(at: tuple[float, float, float], major: float, minor: float) -> Any:
+    """A ring about an upright axis."""
+    return BRepPrimAPI_MakeTorus(gp_Ax2(gp_Pnt(*at), gp_Dir(0, 0, 1)), major, minor).Shape()
+
+
+def across(x: float, z: float, radius: float) -> Any:
+    """A bore along y."""
+    return cylinder(radius, 200, (x, -50, z), (0, 1, 0))
+
+
+def eye() -> Any:
+    """A bored eye that stands on a base, flush with nothing."""
+    standing_ring = cut(cylinder(15, 18, (35, 12, 26), (0, 1, 0)), cylinder(6, 30, (35, 5, 26), (0, 1, 0)))
+    return fused(box(70, 12, 20), standing_ring)
+
+
+def ramp() -> Any:
+    """A plate of 8 mm that climbs as a ramp between two parallel slopes."""
+    return cut(
+        sloped(box(60, 40, 60), 12, 0.5),
+        cut(box(200, 60, 90, (-10, -5, -60)), tilted((0, 0, 2), (-0.5, 0, 1), (1, 0, 0.5))),
+    )
+
+
+SOLIDS: dict[str, Callable[[], Any]] = {
+    "sloping top over a bore": lambda: cut(sloped(box(60, 40, 40), 20, 0.2), cylinder(10, 60, (30, 20, -5))),
+    "steep top over a bore": lambda: cut(sloped(box(60, 40, 60), -10, 1.2), cylinder(10, 80, (30, 20, -5))),
+    "sloping boss": lambda: fused(box(60, 60, 5), sloped(cylinder(14, 60, (30, 30, 0)), 3, 0.5, 0.3)),
+    "domed top over a bore": lambda: cut(
+        BRepAlgoAPI_Common(box(60, 40, 40), ball(45, (30, 20, -10))).Shape(), cylinder(9, 90, (22, 18, -20))
+    ),
+    "saddle": lambda: cut(cylinder(20, 40, (0, 0, 0)), cylinder(14, 100, (-50, 0, 40), (1, 0, 0))),
+    "bore across a shaft": lambda: cut(
+        cylinder(20, 40, (0, 0, 0)), cylinder(8, 100, (-50, 3, 22), (1, 0, 0))
+    ),
+    "aslant bore": lambda: cut(box(60, 40, 30), cylinder(6, 100, (30, -10, 2), (0, 1, 0.3))),
+    "tunnel": lambda: cut(box(70, 40, 30), across(28, 0, 18)),
+    "arch on legs": lambda: cut(box(70, 40, 40), across(28, 10, 12), box(24, 100, 10, (16, -10, 0))),
+    "notches above": lambda: cut(box(70, 40, 30), across(30, 30, 10), across(60, 32, 6)),
+    "bores of all heights": lambda: cut(
+        box(90, 30, 60),
+        *(across(*one) for one in ((15, 10, 5), (22, 28, 4), (50, 20, 7), (54, 34, 3), (72, 45, 4))),
+    ),
+    "slots": lambda: cut(
+        box(80, 40, 30),
+        box(10, 60, 8, (10, -5, -1)),
+        box(10, 60, 8, (30, -5, 11)),
+        box(10, 60, 10, (50, -5, 24)),
+    ),
+    "eye": eye,
+    "ramp": ramp,
+    "cone into a side": lambda: cut(box(60, 40, 30), cone(20, 2, 25, (30, -3, 5))),
+    "ring into the top": lambda: cut(box(60, 40, 30), ring((30, 0, 30), 14, 5)),
+}
+CASES = [
+    (name, axis, share)
+    for name in SOLIDS
+    for axis, share in (("z", 1.0), ("z", 0.83), ("z", 0.41), ("-z", 0.67), ("x", 0.73), ("-y", 0.57))
+]
+
+
+def outline_at(shape: Any, height: float) -> HeightOutline | str:
+    """The outline of a standing solid, or why there is none."""
+    try:
+        return standing(shape).outline(height)
+    except InputError as error:
+        return str(error)[:40]
+
+
+@pytest.mark.parametrize(("name", "axis", "share"), CASES)
+def test_bands_are_covered_and_no_longer_run_is_passed_over(name: str, axis: str, share: float) -> None:
+    """A peg touches over all of its band, half as much as it can, and the moved part has the moved bands."""
+    solid = standing(along(SOLIDS[name](), axis))
+    height = round(share * solid.height, 3)
+    outline = outline_at(solid.shape, height)
+    if isinstance(outline, str):
+        assert "neither line nor arc" in outline
+        return
+    assert list(band_faults(solid.shape, outline, count=3)) == []
+    for moved in (placed(solid.shape, 37.3, 11.1, -5.7), placed(mirrored(solid.shape), -71.9)):
+        other = outline_at(moved, height)
+        assert isinstance(other, HeightOutline) and unlike(outline, other) == ""
+
+
+@pytest.mark.parametrize("height", [24.5, 26.0, 27.9])
+@pytest.mark.parametrize("degrees", [0.0, 90.0, 180.0, 233.0])
+def test_a_closed_edge_may_be_lowest_where_it_begins(height: float, degrees: float) -> None:
+    """Of a bore through a sloping top pegs touch up to the lowest point of the rim, wherever the rim begins."""
+    start = gp_Dir(cos(radians(degrees)), sin(radians(degrees)), 0)
+    frame = gp_Ax2(gp_Pnt(30, 20, -5), gp_Dir(0, 0, 1), start)
+    bore = BRepPrimAPI_MakeCylinder(frame, 10, 80).Shape()
+    outline = standing(cut(sloped(box(60, 40, 40), 20, 0.2), bore)).outline(height)
+    walls = [strip.band for loop in outline.loops for strip in loop if strip.bulge]
+    assert walls and all(band == (0.0, pytest.approx(24.0, abs=1e-6)) for band in walls)
+
+
+def test_a_rim_that_rises_far_is_halved_alike_from_its_lowest_point() -> None:
+    """A whole circle has no joint of its own: it is halved from where its wall is lowest."""
+    bore = cylinder(10, 80, (30, 20, -5))
+    strips = [
+        strip
+        for loop in standing(cut(sloped(box(60, 40, 60), -10, 1.2), bore)).outline().loops
+        for strip in loop
+        if strip.bulge
+    ]
+    assert sorted(strip.band or () for strip in strips) == pytest.approx([(0, 14), (0, 14), (0, 26)])
+    # The lowest point of the rim, and the wall there, is that at (20, 20).
+    assert any(strip.start == pytest.approx((20.0, 20.0), abs=1e-6) for strip in strips)
+
+
+def test_no_band_bridges_a_bore() -> None:
+    """Over a bore a peg touches below it and above, and the band is one of both, covered throughout."""
+    solid = standing(eye())
+    outline = solid.outline()
+    for strip in outline.loops[0]:
+        if strip.start[1] == strip.end[1] == 30.0 and min(strip.start[0], strip.end[0]) < 35 < max(
+            strip.start[0], strip.end[0]
+        ):
+            assert strip.band == (pytest.approx(26 - sqrt(189), abs=1e-6), pytest.approx(20.0, abs=1e-6))
+            break
+    else:
+        pytest.fail("nothing is touched over the bore")
+    # Beside the bore the ring is touched as far as its wall is long enough.
+    touched = sum(
+        abs(strip.end[0] - strip.start[0])
+        for strip in outline.loops[0]
+        if strip.band and strip.start[1] == 30.0
+    )
+    assert touched == pytest.approx(2 * sqrt(15**2 - 0.5**2), abs=1e-3)
+
+
+def test_both_sides_of_a_tunnel_are_cut_alike() -> None:
+    """The upright tangent of an arch is where the walls beside it end, whatever rounding makes of it."""
+    for degrees in (0.0, 37.3, 52.7, 141.0):
+        solid = standing(placed(SOLIDS["tunnel"](), degrees, 3.1, 0.7))
+        strips = [strip for strip in solid.outline(29.5).loops[0] if strip.band]
+        long = sorted(
+            (round(hypot(*sub(strip)), 4), strip.band) for strip in strips if strip.band == (0.0, 29.5)
+        )
+        assert [size for size, _ in long] == [10.0, 10.0, 24.0, 24.0, 40.0, 40.0]
+
+
+def sub(strip: Any) -> tuple[float, float]:
+    """The vector from a strip's start to its end."""
+    return strip.end[0] - strip.start[0], strip.end[1] - strip.start[1]
+
+
+def test_the_run_at_a_contact_is_the_walls_own() -> None:
+    """What a file keeps along a segment is the run that an upright line finds there."""
+    solid = standing(eye())
+    outline = solid.outline()
+    segments = [segment for loop in outline.vertices for segment in loop_segments(loop)]
+    looked = 0
+    for segment, band, rows in zip(segments, outline.bands, outline.runs, strict=True):
+        if not rows:
+            continue
+        assert band is not None
+        for share in (0.1, 0.37, 0.5, 0.92):
+            (x, y), (nx, ny) = (
+                function(segment.half_extent * (2 * share - 1)) for function in (segment.at, segment.normal)
+            )
+            runs = runs_beside(solid.shape, (x - 1e-5 * nx, y - 1e-5 * ny), 0.0, 50.0)
+            (run,) = (one for one in runs if one[0] <= band[0] + 1e-4 and band[1] <= one[1] + 1e-4)
+            assert run_at(rows, share) == pytest.approx(run, abs=1e-4)
+            looked += 1
+    assert looked > 20
+
+
+def test_supports_hold_for_all_that_a_peg_can_press_on(tmp_path: Path) -> None:
+    """The worst heights of a peg are the run where it touches, not what its whole segment has in common."""
+    path = write_step(tmp_path / "sloping.step", sloped(box(60, 40, 22), 14, 0.2))
+    vise = Vise(pitch=10, columns=6, peg_radius=3)
+    result = design(load(path, peg_height=20.0), vise, best=3)
+    part = result.workpiece
+    assert part.solid is not None and any(part.solid.runs)
+    for found in result.supports(best=1, inside=1, tip_radius=3):
+        fixture = found.fixture
+        assert found.request.bands is not None
+        for peg, run in zip(fixture.pegs, found.request.bands, strict=True):
+            x, y = fixture.pose.inverse.apply(peg.x, peg.y)
+            face = next(one for one in part.faces if peg.face in one.segments)
+            px, _ = face.segment.at(face.segment.parameter((x, y)))
+            assert run == (0.0, pytest.approx(min(20.0, 14 + 0.2 * px), abs=1e-6))
+
+
+def test_runs_survive_a_file(tmp_path: Path) -> None:
+    """A result file keeps the runs, and is read back as it was; a prism's file says nothing of them."""
+    path = write_step(tmp_path / "sloping.step", sloped(box(60, 40, 40), 14, 0.2))
+    out = tmp_path / "result.json"
+    options = ["--pitch", "10", "--columns", "2", "--peg-radius", "3", "--peg-height", "30", "--best", "2"]
+    done = CliRunner().invoke(app, ["design", str(path), *options, "--out", str(out)])
+    assert done.exit_code == 0, done.output
+    written = json.loads(out.read_text())["workpiece"]
+    assert any(written["runs"]) and len(written["runs"]) == len(written["bands"])
+    done = CliRunner().invoke(app, ["verify", str(out)])
+    assert done.exit_code == 0, done.output
+    plain = write_step(tmp_path / "plain.step", box(60, 40, 40))
+    done = CliRunner().invoke(app, ["design", str(plain), *options, "--out", str(out)])
+    assert done.exit_code == 0 and "runs" not in json.loads(out.read_text())["workpiece"]
+
+
+def lid_on_a_leaning_post() -> Any:
+    """A plate, and a lid over it on a post that leans and reaches out between them."""
+    post = cut(cylinder(10, 60, (40, 30, 0), (0.6, 0, 1)), box(300, 300, 100, (-50, -50, 25)))
+    return fused(box(60, 60, 6), cut(post, box(300, 300, 6, (-50, -50, -1))), box(80, 60, 10, (0, 0, 25)))
+
+
+@pytest.mark.parametrize("name", ["post", "flange", "chamfer", "eye", "sloping boss"])
+def test_a_row_of_heights_holds_all_through(name: str) -> None:
+    """Within a row no height is refused, and where touchability jumps there is another row."""
+    made = {
+        "post": lid_on_a_leaning_post,
+        "flange": lambda: fused(box(60, 40, 20), box(80, 60, 5, (-10, -10, 20))),
+        "chamfer": lambda: cut(fused(box(60, 40, 12), cone(14, 10, 4, (30, 20, 12))), across(20, 0, 3)),
+        **SOLIDS,
+    }
+    solid = standing(made[name]())
+    rows = height_table(solid, 0.5, 1.0)
+    assert rows and all(row.low < row.high for row in rows)
+    for row in rows:
+        touched = []
+        for share in (0.02, 0.21, 0.48, 0.77, 0.998):
+            outline = solid.outline(row.low + share * (row.high - row.low))
+            touched.append(sum(length_of(strip) for loop in outline.loops for strip in loop if strip.band))
+        if row.touchable == 0.0:
+            assert max(touched) == 0.0
+        else:
+            assert min(touched) > 0.0
+
+
+def length_of(strip: Any) -> float:
+    """Length of the chord of a strip in mm."""
+    return hypot(*sub(strip))
+
+
+def test_a_row_begins_where_a_growing_band_is_long_enough() -> None:
+    """A flange from 20 up is met from 19.5, and touched once a band of 1 mm is below the pegs' ends."""
+    rows = height_table(standing(fused(box(60, 40, 20), box(80, 60, 5, (-10, -10, 20)))), 0.5, 1.0)
+    assert [(row.low, row.high, row.touchable) for row in rows] == [
+        (1.0, 19.5, pytest.approx(200.0)),
+        (19.5, 21.0, 0.0),
+        (21.0, 25.0, pytest.approx(280.0)),
+    ]
+
+
+@pytest.mark.parametrize("aside", [2e-5, 1e-6, 3e-4, -2e-5, 0.0])
+def test_a_slot_that_all_but_touches_a_hole(aside: float) -> None:
+    """A blind slot from below as wide as a hole through, but for rounding, leaves the hole as it is."""
+    body = cut(box(20, 16, 4, (-10, -8, 0)), cylinder(1.7, 10, (0, 0, -1)))
+    for degrees in (0.0, 45.0):
+        slot = box(2 * (1.7 + aside), 6, 2.5, (-1.7 - aside, -3, -1))
+        drawing = shapes_by_height([placed(cut(body, slot), degrees)], HeightView(peg_height=5.0))
+        assert len(drawing.loops) == 2
+        hole = loop_segments(drawing.loops[1])
+        assert all(segment.radius == pytest.approx(1.7, abs=1e-6) for segment in hole)
+        assert sum(segment.length for segment in hole) == pytest.approx(2 * pi * 1.7, abs=1e-3)
