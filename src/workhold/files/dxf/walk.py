@@ -108,7 +108,8 @@ class DxfWalk:
 
     def effective_layer(self, entity: Any, nest: BlockNesting) -> str:
         """The layer an entity counts as being on."""
-        layer = str(entity.dxf.get("layer", "0"))
+        # Entities of kinds that the library does not know have no layer it could tell.
+        layer = str(entity.dxf.get("layer", "0")) if entity.dxf.is_supported("layer") else "0"
         return nest.layer if layer == "0" and nest.layer is not None else layer
 
     def is_used(self, entity: Any, layer: str, nest: BlockNesting) -> bool:

@@ -67,7 +67,7 @@ def read_json(path: Path, content: bytes, options: Mapping[str, Any], own: bool)
     if isinstance(data, dict) and str(data.get("format", "")).startswith("workhold-result"):
         solid = solid_of(data)
         data = data.get("workpiece")
-    if solid is not None:
+    if own or solid is not None:
         refuse_fit(fit)
     if not isinstance(data, dict):
         raise InputError(
@@ -87,9 +87,9 @@ def read_json(path: Path, content: bytes, options: Mapping[str, Any], own: bool)
     name = data.get("name") or path.stem
     workpiece = built(name, loops, False, departure, solid)
     of_chords = list[str]()
-    if solid is None:
+    if solid is None and not own:
         # What is checked has no arcs of absurd sizes, which the chords would be compared with.
-        budget = Budget(LIMITS["dxf"], len(content))
+        budget = Budget(LIMITS["json"], len(content))
         drawn = [Loop(loop, ("",) * len(loop)) for loop in workpiece.loops]
         merged, away, of_chords = with_chords_merged(drawn, {}, fit, budget)
         if fit is not None:
