@@ -275,7 +275,7 @@ def chorded_arcs(
     chords = len(vertices) - len(merged.vertices)
     if chords <= 0 or not merged.vertices[:, 2].any():
         return None
-    radii = []
+    radii = list[float]()
     for piece, after in arcs:
         arc = segment_from_bulge(piece.start, after.start, piece.bulge)
         if isinstance(arc, Arc) and not any(abs(arc.radius - radius) < CHORDS_ON for radius in radii):

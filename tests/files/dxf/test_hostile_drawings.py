@@ -1,4 +1,4 @@
-"""Drawings that somebody made to hurt: one plain sentence, within limits of elements and time, and no warning of a library."""
+"""Drawings that somebody made to hurt: one plain sentence, within limits, and no warning of a library."""
 
 from __future__ import annotations
 

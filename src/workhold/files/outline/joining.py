@@ -366,7 +366,7 @@ def close_gaps(
     for i, j in candidates:
         if partner[i] < 0 and partner[j] < 0:
             partner[i], partner[j] = j, i
-    found = []
+    found = list[tuple[Junction, Sequence[int]]]()
     for i, j in candidates:
         if (partner[i] < 0) != (partner[j] < 0):
             joined = i if partner[j] < 0 else j
