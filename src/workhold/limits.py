@@ -16,6 +16,7 @@ from workhold.errors import InputError
 
 __all__ = [
     "MOST_BLOCKED",
+    "MOST_COMPARED",
     "MOST_FORCE",
     "MOST_FRICTION",
     "MOST_HOLES",
@@ -82,6 +83,9 @@ MOST_RADIUS = 1e9
 MOST_FORCE = 1e9
 # Coefficients of friction.
 MOST_FRICTION = 100.0
+# Pairs of segments of one part that come near each other, as bounding boxes go, and are compared: some 10 s.
+# Ordinary outlines have a few for each segment.
+MOST_COMPARED = 1_000_000
 # Holes of one carrier, rows without end counted once: what is drawn, and looked through for pairs of free
 # holes.
 MOST_HOLES = 25_000

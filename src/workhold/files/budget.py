@@ -21,10 +21,14 @@ from attrs import frozen
 
 from workhold.errors import InputError
 
-__all__ = ["LIMITS", "PART_BYTES", "UNLIMITED", "Budget", "FileLimits"]
+__all__ = ["LIMITS", "PART_BYTES", "UNLIMITED", "Budget", "FileLimits", "OverBudgetError"]
 
 # Processor seconds for any file, and for every million bytes of it.
 SECONDS, SECONDS_PER_MILLION = 12.0, 2.0
+
+
+class OverBudgetError(InputError):
+    """A file asks for more than its reader may take; no reader goes on after it."""
 
 
 @frozen
@@ -83,14 +87,21 @@ LIMITS = {
     "dxf": FileLimits(
         "a DXF drawing",
         PART_BYTES,
-        500_000,
-        "entities, those of blocks written out",
+        # The library takes some 10 s for them.
+        100_000,
+        "entities and vertices, those of blocks written out",
         50,
         SECONDS,
         SECONDS_PER_MILLION,
         OUTLINE_ONLY,
     ),
-    "json": FileLimits("a part in JSON", PART_BYTES, remedy="draw its outline with fewer segments"),
+    "json": FileLimits(
+        "a part in JSON",
+        PART_BYTES,
+        seconds=SECONDS,
+        seconds_per_million=SECONDS_PER_MILLION,
+        remedy="draw its outline with fewer segments",
+    ),
     "step": FileLimits("a STEP file", PART_BYTES, seconds=SECONDS, seconds_per_million=SECONDS_PER_MILLION),
     "toolkit": FileLimits("a file that describes a toolkit", 1_000_000),
     "loads": FileLimits("a file that describes loads", 1_000_000),
@@ -126,7 +137,7 @@ class Budget:
     >>> budget.spend()
     Traceback (most recent call last):
         ...
-    workhold.errors.InputError: the file has more than the 2 rows that a table may have: split it.
+    workhold.files.budget.OverBudgetError: the file has more than the 2 rows that a table may have: split it.
     """
 
     # Elements after which the clock is looked at.
@@ -152,7 +163,7 @@ class Budget:
         self.elements += elements
         most = self.limits.most_elements
         if most is not None and self.elements > most:
-            raise InputError(
+            raise OverBudgetError(
                 f"the file has more than the {most:,} {self.limits.elements} that {self.limits.what} may "
                 f"have: {self.limits.remedy}."
             )
@@ -180,7 +191,7 @@ class Budget:
             Then.
         """
         if self.seconds is not None and time.thread_time() - self.started > self.seconds:
-            raise InputError(
+            raise OverBudgetError(
                 f"reading it was given up after {self.seconds:.0f} s, the most for {self.limits.what} of its "
                 f"size: {self.limits.remedy}."
             )
@@ -201,7 +212,7 @@ class Budget:
         self.depth += 1
         try:
             if self.limits.deepest is not None and self.depth > self.limits.deepest:
-                raise InputError(
+                raise OverBudgetError(
                     f"{label} is nested more than {self.limits.deepest} levels deep: {self.limits.remedy}."
                 )
             yield

@@ -104,7 +104,7 @@ def refuse_layers(layers: Sequence[str] | None) -> None:
 
 
 def refuse_fit(fit: float | None) -> None:
-    """Refuses a fit for a file that holds lines and arcs only.
+    """Refuses a fit for a built-in part, and for the outline of a solid in a result file.
 
     Raises
     ------
@@ -112,7 +112,7 @@ def refuse_fit(fit: float | None) -> None:
         When a fit was given.
     """
     if fit is not None:
-        raise InputError(f"a JSON file holds lines and arcs only: leave {FIT} out.")
+        raise InputError(f"its outline has no chords for arcs: leave {FIT} out.")
 
 
 def refuse_axis(options: Mapping[str, object]) -> None:

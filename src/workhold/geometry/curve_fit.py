@@ -15,7 +15,7 @@ joint : where the two arcs of a biarc meet.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from math import atan2, cos, dist, inf, isfinite, pi, sin, sqrt, tan
 
 import numpy as np
@@ -37,7 +37,7 @@ from workhold.geometry.rational import (
 from workhold.geometry.segment import Arc, Line, Point, segment_from_bulge
 from workhold.limits import MOST_RADIUS
 
-__all__ = ["FittedCurve", "biarcs", "circle_of_points", "corners_of", "fitted_curve"]
+__all__ = ["FittedCurve", "biarcs", "circle_of_points", "corners_of", "fitted_curve", "go_on"]
 
 # A biarc is as long as it can be but for this share, and so many lengths are tried.
 STEP, MOST_STEPS = 0.02, 60
@@ -61,7 +61,11 @@ class FittedCurve:
     is_disguise: bool = False
 
 
-def biarcs(pieces: Pieces, tolerance: float) -> list[FittedCurve]:
+def go_on() -> None:
+    """Interrupt nothing."""
+
+
+def biarcs(pieces: Pieces, tolerance: float, interrupt: Callable[[], None] = go_on) -> list[FittedCurve]:
     """Biarcs in place of a curve, each as long as the tolerance allows, tangent to the curve where they meet.
 
     Corners of the curve stay corners.
@@ -69,15 +73,16 @@ def biarcs(pieces: Pieces, tolerance: float) -> list[FittedCurve]:
     corners = [0, *corners_of(pieces)]
     found: list[FittedCurve] = []
     for first, last in zip(corners, [*corners[1:], len(pieces)], strict=True):
-        found += smooth_biarcs(pieces[first:last], tolerance)
+        found += smooth_biarcs(pieces[first:last], tolerance, interrupt)
     return found
 
 
-def smooth_biarcs(pieces: Pieces, tolerance: float) -> Iterator[FittedCurve]:
+def smooth_biarcs(pieces: Pieces, tolerance: float, interrupt: Callable[[], None]) -> Iterator[FittedCurve]:
     """Biarcs in place of a curve without corners."""
     total = float(len(pieces))
     place, step = 0.0, total
     while place < total:
+        interrupt()
         run, reach = longest_biarc(pieces, place, step, tolerance)
         yield run
         step, place = 1.2 * (reach - place), reach
@@ -211,8 +216,14 @@ def corners_of(pieces: Pieces) -> list[int]:
     return [int(k) + 1 for k in np.flatnonzero(turned)]
 
 
-def fitted_curve(pieces: Pieces, tolerance: float) -> FittedCurve | None:
+def fitted_curve(
+    pieces: Pieces, tolerance: float, interrupt: Callable[[], None] = go_on
+) -> FittedCurve | None:
     """Lines and arcs for a curve: its own where it is a disguise, else biarcs within a tolerance in mm.
+
+    Parameters
+    ----------
+    interrupt : is called before every line or arc, and may raise an error.
 
     Returns
     -------
@@ -225,7 +236,7 @@ def fitted_curve(pieces: Pieces, tolerance: float) -> FittedCurve | None:
     whole = whole_circle(pieces, DISGUISE)
     if whole is not None:
         return evolve(whole, is_disguise=True)
-    runs = disguised(pieces, [0, *breaks_of(pieces), len(pieces)])
+    runs = disguised(pieces, [0, *breaks_of(pieces), len(pieces)], interrupt)
     if all(run is not None for _, _, run in runs):
         return put_together([run for _, _, run in runs if run is not None], True)
     whole = whole_circle(pieces, tolerance)
@@ -233,7 +244,7 @@ def fitted_curve(pieces: Pieces, tolerance: float) -> FittedCurve | None:
         return whole
     fitted: list[FittedCurve] = []
     for first, last, run in runs:
-        fitted += [run] if run is not None else biarcs(pieces[first:last], tolerance)
+        fitted += [run] if run is not None else biarcs(pieces[first:last], tolerance, interrupt)
     return put_together(fitted, False)
 
 
@@ -255,7 +266,9 @@ def breaks_of(pieces: Pieces) -> list[int]:
     return [k for k in range(1, len(pieces)) if k in corners or not smooth[k - 1]]
 
 
-def disguised(pieces: Pieces, places: list[int]) -> list[tuple[int, int, FittedCurve | None]]:
+def disguised(
+    pieces: Pieces, places: list[int], interrupt: Callable[[], None]
+) -> list[tuple[int, int, FittedCurve | None]]:
     """Longest rows of stretches that are one line or arc, as (first piece, last piece + 1, run).
 
     Stretches that are none come alone, with None.
@@ -263,6 +276,7 @@ def disguised(pieces: Pieces, places: list[int]) -> list[tuple[int, int, FittedC
     found: list[tuple[int, int, FittedCurve | None]] = []
     k = 0
     while k < len(places) - 1:
+        interrupt()
         run, taken, step, growing = one_segment(pieces[places[k] : places[k + 1]], DISGUISE), k + 1, 1, True
         # Steps that double and then halve: as many stretches as one line or arc takes in.
         while run is not None and step >= 1:

@@ -12,8 +12,8 @@ face : a run of neighbouring segments that continue the same line or the same ci
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from functools import cached_property
-from math import atan2, dist, pi, sin
+from functools import cached_property, partial
+from math import atan2, cos, dist, pi, sin
 from typing import TypeVar
 
 import numpy as np
@@ -41,9 +41,10 @@ from workhold.geometry.segment import (
     segment_rows,
 )
 from workhold.kernels.base.distance import turns_around
-from workhold.limits import MOST_LENGTH, MOST_RADIUS
+from workhold.limits import MOST_COMPARED, MOST_LENGTH, MOST_RADIUS
 
 __all__ = [
+    "Comparisons",
     "Face",
     "LoopShape",
     "checked_vertices",
@@ -51,6 +52,7 @@ __all__ = [
     "faces_of_loop",
     "loop_segments",
     "near_pairs",
+    "refuse_meeting",
     "refuse_meeting_loops",
     "refuse_no_area",
     "refuse_self_crossing",
@@ -61,6 +63,35 @@ __all__ = [
 
 Place = Callable[[int], str]
 Item = TypeVar("Item")
+
+
+class Comparisons:
+    """How many pairs of segments and loops of a part may still be compared.
+
+    Parameters
+    ----------
+    part : what a refusal calls it.
+    most : how many there may be.
+    """
+
+    def __init__(self, part: str, most: int = MOST_COMPARED) -> None:
+        self.part = part
+        self.most = self.left = most
+
+    def spend(self, pairs: int) -> None:
+        """Counts pairs.
+
+        Raises
+        ------
+        InputError
+            Where there are more than the limit.
+        """
+        self.left -= pairs
+        if self.left < 0:
+            raise InputError(
+                f"{self.part} has more than {self.most:,} pairs of segments that come near each other, too "
+                "many to compare: draw its outline with fewer segments."
+            )
 
 
 @define(frozen=True, slots=False, eq=False)
@@ -85,6 +116,13 @@ class LoopShape:
     def rows(self) -> NDArray[np.float64]:
         """Kernel rows of the segments, shape (N, 10)."""
         return segment_rows(self.segments)
+
+    @cached_property
+    def chords(self) -> NDArray[np.float64]:
+        """(N, 5) starts, ends, and how far each segment is from its chord at most."""
+        return np.array(
+            [(*segment.start, *segment.end, depth_of(segment)) for segment in self.segments]
+        ).reshape(-1, 5)
 
     @cached_property
     def box(self) -> NDArray[np.float64]:
@@ -235,44 +273,108 @@ def near_pairs(boxes_a: NDArray[np.float64], boxes_b: NDArray[np.float64]) -> It
             yield i, int(j)
 
 
-def refuse_self_crossing(shape: LoopShape, place: Place) -> None:
+def depth_of(segment: Segment) -> float:
+    """How far a segment reaches from its chord: the rise of an arc, 0 of a line."""
+    return segment.radius * (1 - cos(segment.half_sweep)) if isinstance(segment, Arc) else 0.0
+
+
+# Segments that more others come near to are compared with their chords first.
+MANY_NEAR = 32
+
+
+def near_segments(one: LoopShape, k: int, others: LoopShape, comparisons: Comparisons) -> NDArray[np.int64]:
+    """Numbers of the segments of another shape that segment ``k`` of one may come near to.
+
+    Boxes of slanted segments overlap though these run side by side, so that where there are many such boxes
+    what lies on one side of the chord is left out.
+    """
+    x0, y0, x1, y1 = one.boxes[k]
+    boxes = others.boxes
+    apart = (
+        (boxes[:, 0] > x1 + TOUCHING)
+        | (boxes[:, 2] < x0 - TOUCHING)
+        | (boxes[:, 1] > y1 + TOUCHING)
+        | (boxes[:, 3] < y0 - TOUCHING)
+    )
+    found = np.flatnonzero(~apart)
+    if len(found) > MANY_NEAR:
+        (px, py, qx, qy, depth), chords = one.chords[k], others.chords[found]
+        length = float(np.hypot(qx - px, qy - py))
+        if length >= SHORTEST:
+            ux, uy = (qx - px) / length, (qy - py) / length
+            first = ux * (chords[:, 1] - py) - uy * (chords[:, 0] - px)
+            last = ux * (chords[:, 3] - py) - uy * (chords[:, 2] - px)
+            reach = depth + chords[:, 4] + TOUCHING
+            found = found[(np.minimum(first, last) <= reach) & (np.maximum(first, last) >= -reach)]
+    comparisons.spend(len(found))
+    return found
+
+
+def refuse_self_crossing(shape: LoopShape, place: Place, comparisons: Comparisons | None = None) -> None:
     """Refuses a loop that crosses or touches itself anywhere but at its joints.
 
     Raises
     ------
     InputError
-        Naming both segments and the point.
+        Naming both segments and the point; also for more comparisons than may be made.
     """
+    comparisons = comparisons or Comparisons("the outline")
     segments, box = shape.segments, shape.boxes
     count = len(segments)
     # Tangent neighbours meet again within rounding of their joint; that is no crossing.
     backward_error = max(*(MEETS_AGAIN * float(np.ptp(box[:, ends])) for ends in ([0, 2], [1, 3])), TOUCHING)
-    for i, j in near_pairs(box, box):
-        if j <= i:
-            continue
-        joints = [segments[k].end for k, after in ((i, j), (j, i)) if (k + 1) % count == after]
-        for x, y in common_points(segments[i], segments[j], TOUCHING):
-            if all(dist((x, y), joint) > backward_error for joint in joints):
-                raise InputError(
-                    f"{place(i)} and {place(j)} cross or touch at ({x:.6g}, {y:.6g}): an outline may meet "
-                    "itself only where one segment ends and the next begins."
-                )
+    for i in range(count):
+        for j in near_segments(shape, i, shape, comparisons).tolist():
+            if j <= i:
+                continue
+            joints = [segments[k].end for k, after in ((i, j), (j, i)) if (k + 1) % count == after]
+            for x, y in common_points(segments[i], segments[j], TOUCHING):
+                if all(dist((x, y), joint) > backward_error for joint in joints):
+                    raise InputError(
+                        f"{place(i)} and {place(j)} cross or touch at ({x:.6g}, {y:.6g}): an outline may "
+                        "meet itself only where one segment ends and the next begins."
+                    )
 
 
-def refuse_meeting_loops(a: LoopShape, b: LoopShape, place_a: Place, place_b: Place) -> None:
+def refuse_meeting_loops(
+    a: LoopShape, b: LoopShape, place_a: Place, place_b: Place, comparisons: Comparisons | None = None
+) -> None:
     """Refuses two loops that cross or touch.
 
     Raises
     ------
     InputError
-        Naming both segments and the point.
+        Naming both segments and the point; also for more comparisons than may be made.
     """
-    for i, j in near_pairs(a.boxes, b.boxes):
-        for x, y in common_points(a.segments[i], b.segments[j], TOUCHING):
-            raise InputError(
-                f"{place_a(i)} and {place_b(j)} cross or touch at ({x:.6g}, {y:.6g}): loops must stay apart "
-                "from each other."
-            )
+    comparisons = comparisons or Comparisons("the outline")
+    for i in range(len(a.segments)):
+        for j in near_segments(a, i, b, comparisons).tolist():
+            for x, y in common_points(a.segments[i], b.segments[j], TOUCHING):
+                raise InputError(
+                    f"{place_a(i)} and {place_b(j)} cross or touch at ({x:.6g}, {y:.6g}): loops must stay "
+                    "apart from each other."
+                )
+
+
+def refuse_meeting(
+    shapes: Sequence[LoopShape], place: Callable[[int, int], str], comparisons: Comparisons
+) -> None:
+    """Refuses loops of which two cross or touch.
+
+    Parameters
+    ----------
+    place : the place of a loop and one of its segments.
+
+    Raises
+    ------
+    InputError
+        Naming both segments and the point; also for more comparisons than may be made.
+    """
+    boxes = np.array([shape.box for shape in shapes])
+    for a, b in near_pairs(boxes, boxes):
+        comparisons.spend(1)
+        if a < b:
+            refuse_meeting_loops(shapes[a], shapes[b], partial(place, a), partial(place, b), comparisons)
 
 
 def encloses(around: LoopShape, inner: LoopShape) -> bool:

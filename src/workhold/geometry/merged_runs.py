@@ -13,20 +13,20 @@ run : neighbouring segments of a loop that one line or arc through the ends of t
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from math import atan2, cos, dist, inf, isfinite, pi, sin, tan, tau
+from collections.abc import Callable, Sequence
+from math import atan2, cos, dist, floor, inf, isfinite, log10, pi, sin, tan, tau
 
 import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import DISGUISE, DRAWN_ON, READING, SHORTEST
-from workhold.geometry.curve_fit import circle_of_points
+from workhold.geometry.curve_fit import circle_of_points, go_on
 from workhold.geometry.loop import runs_around
 from workhold.geometry.rational import arc_pieces, departure, joined_pieces
-from workhold.geometry.segment import Arc, Line, Point, Segment
+from workhold.geometry.segment import Arc, Line, Point, Segment, segment_from_bulge
 
-__all__ = ["MergedLoop", "merged_chords", "on_one_circle"]
+__all__ = ["ChordedArcs", "MergedLoop", "chorded_arcs", "chords_remark", "merged_chords", "on_one_circle"]
 
 Array = NDArray[np.float64]
 
@@ -174,7 +174,12 @@ class Piece:
     departure: float = 0.0
 
 
-def merged_chords(vertices: Array, fit: float | None = None, kept: Sequence[bool] = ()) -> MergedLoop:
+def merged_chords(
+    vertices: Array,
+    fit: float | None = None,
+    kept: Sequence[bool] = (),
+    interrupt: Callable[[], None] = go_on,
+) -> MergedLoop:
     """One line or arc for each run of segments that is nowhere farther from it than ``DISGUISE``.
 
     Parameters
@@ -182,6 +187,7 @@ def merged_chords(vertices: Array, fit: float | None = None, kept: Sequence[bool
     vertices : (N, 3) array of a loop.
     fit : how far chords may be from an arc that stands for them, in mm, where that is more.
     kept : for each segment whether it stays as it is; none does if this is empty.
+    interrupt : is called before every run, and may raise an error.
     """
     pieces = [
         Piece((float(x), float(y)), float(b), k, bool(kept) and kept[k])
@@ -194,11 +200,11 @@ def merged_chords(vertices: Array, fit: float | None = None, kept: Sequence[bool
         pieces = whole
     elif count > 2:
         drawn = from_a_corner(pieces)
-        pieces = all_merged(drawn, tolerance)
+        pieces = all_merged(drawn, tolerance, interrupt)
         if 1 < len(pieces) < count:
             # Where a run has ended the loop can begin: no other goes across.
             number = next(k for k, piece in enumerate(drawn) if piece.first == pieces[1].first)
-            pieces = all_merged(drawn[number:] + drawn[:number], tolerance)
+            pieces = all_merged(drawn[number:] + drawn[:number], tolerance, interrupt)
     if len(pieces) == count:
         return MergedLoop(vertices, tuple(range(count)), 0, 0.0)
     begin = min(range(len(pieces)), key=lambda k: pieces[k].first)
@@ -208,11 +214,98 @@ def merged_chords(vertices: Array, fit: float | None = None, kept: Sequence[bool
     return MergedLoop(rows, tuple(piece.first for piece in pieces), count - len(pieces), away)
 
 
-def all_merged(pieces: list[Piece], tolerance: float) -> list[Piece]:
+# mm. Vertices this near to a circle are drawn on it, with the digits of a file that gives few.
+CHORDS_ON = 0.01
+# Steps of the fits that are proposed.
+FITS = (1.0, 2.0, 5.0, 10.0, 20.0)
+
+
+@frozen
+class ChordedArcs:
+    """Arcs and circles that a loop has as chords, farther from them than a disguise may be.
+
+    Parameters
+    ----------
+    chords : how many.
+    radii : of the arcs, in mm.
+    departure : how far the chords are from the arcs, in mm.
+    fit : with which :func:`merged_chords` makes them arcs, in mm.
+    """
+
+    chords: int
+    radii: tuple[float, ...]
+    departure: float
+    fit: float
+
+
+def chorded_arcs(
+    vertices: Array, kept: Sequence[bool] = (), interrupt: Callable[[], None] = go_on
+) -> ChordedArcs | None:
+    """The arcs that a loop has as chords; None where it has none.
+
+    Four chords and more are an arc where they meet at less than ``CORNER_OF_CHORDS`` and all their ends lie on
+    one circle. So a polygon of 15 equal sides and fewer is a polygon, and one of 16 may be a circle: a quarter
+    turn of four chords is the coarsest that programs write.
+
+    Parameters
+    ----------
+    vertices, kept, interrupt : as in :func:`merged_chords`.
+    """
+    if len(vertices) <= LEAST_CHORDS:
+        return None
+    pieces = [
+        Piece((float(x), float(y)), float(b), k, b != 0.0 or (bool(kept) and kept[k]))
+        for k, (x, y, b) in enumerate(vertices)
+    ]
+    found = whole_circle(pieces, inf, CHORDS_ON)
+    if found is None:
+        found = runs_merged(from_a_corner(pieces), CHORDS_ON, inf, LEAST_CHORDS, interrupt)
+    arcs = [
+        (piece, after)
+        for piece, after in zip(found, found[1:] + found[:1], strict=True)
+        if piece.bulge and piece.departure > DISGUISE
+    ]
+    if not arcs:
+        return None
+    away = max(piece.departure for piece, _ in arcs)
+    scale = 10.0 ** floor(log10(away))
+    fit = next(step * scale for step in FITS if step * scale >= 1.05 * away)
+    fit = float(f"{fit:.1g}")
+    merged = merged_chords(vertices, fit, kept, interrupt)
+    chords = len(vertices) - len(merged.vertices)
+    if chords <= 0 or not merged.vertices[:, 2].any():
+        return None
+    radii = list[float]()
+    for piece, after in arcs:
+        arc = segment_from_bulge(piece.start, after.start, piece.bulge)
+        if isinstance(arc, Arc) and not any(abs(arc.radius - radius) < CHORDS_ON for radius in radii):
+            radii.append(arc.radius)
+    return ChordedArcs(chords + len(arcs), tuple(radii), away, fit)
+
+
+def chords_remark(found: Sequence[ChordedArcs], fit: str) -> list[str]:
+    """What to say of arcs that came as chords.
+
+    Parameters
+    ----------
+    fit : what the choice of a fit is called.
+    """
+    if not found:
+        return []
+    radii = sorted({float(f"{radius:.4g}") for one in found for radius in one.radii})
+    named = ", ".join(f"{radius:g}" for radius in radii[:5]) + (" mm and others" if len(radii) > 5 else " mm")
+    chords, away = sum(one.chords for one in found), max(one.departure for one in found)
+    return [
+        f"{chords} straight pieces lie on arcs or circles of radius {named}, up to {away:.2g} mm inside them: "
+        f"give {fit} {max(one.fit for one in found):g} to read these as arcs; without it each piece is a face."
+    ]
+
+
+def all_merged(pieces: list[Piece], tolerance: float, interrupt: Callable[[], None]) -> list[Piece]:
     """A row of pieces with its runs merged, first those with vertices on them to a file's digits."""
     for near in (min(DRAWN_ON, tolerance), tolerance):
-        pieces = runs_merged(pieces, near, tolerance, LEAST_CHORDS)
-    return runs_merged(pieces, DISGUISE, DISGUISE, 2)
+        pieces = runs_merged(pieces, near, tolerance, LEAST_CHORDS, interrupt)
+    return runs_merged(pieces, DISGUISE, DISGUISE, 2, interrupt)
 
 
 def from_a_corner(pieces: list[Piece]) -> list[Piece]:
@@ -238,8 +331,11 @@ def turns_of(pieces: Sequence[Piece]) -> Array:
     return np.asarray((turned + pi) % (2 * pi) - pi)
 
 
-def whole_circle(pieces: list[Piece], tolerance: float) -> list[Piece] | None:
-    """The two halves of the circle that a loop is to within a tolerance; None where it is none."""
+def whole_circle(pieces: list[Piece], tolerance: float, near: float | None = None) -> list[Piece] | None:
+    """The two halves of the circle that a loop is to within a tolerance; None where it is none.
+
+    Its vertices are as near to the circle, or as ``near`` says.
+    """
     count = len(pieces)
     if not worth(pieces, 2 * LEAST_CHORDS) or any(piece.kept for piece in pieces):
         return None
@@ -255,7 +351,7 @@ def whole_circle(pieces: list[Piece], tolerance: float) -> list[Piece] | None:
     turned = sum(turns_of(pieces)) + sum(4 * np.arctan(piece.bulge) for piece in pieces)
     sign = 1.0 if turned > 0 else -1.0
     angle = atan2(points[0, 1] - cy, points[0, 0] - cx)
-    away = off(pieces, points, Arc((cx, cy), radius, angle + pi, pi, sign), tolerance, tolerance)
+    away = off(pieces, points, Arc((cx, cy), radius, angle + pi, pi, sign), near or tolerance, tolerance)
     if not isfinite(away) or (count == 2 and away < READING):
         return None
     x, y = cx + radius * np.cos(angle), cy + radius * np.sin(angle)
@@ -269,7 +365,13 @@ def worth(pieces: Sequence[Piece], least: int) -> bool:
     return len(pieces) >= (2 if arcs == len(pieces) else least)
 
 
-def runs_merged(pieces: list[Piece], near: float, tolerance: float, least: int) -> list[Piece]:
+def runs_merged(
+    pieces: list[Piece],
+    near: float,
+    tolerance: float,
+    least: int,
+    interrupt: Callable[[], None] = go_on,
+) -> list[Piece]:
     """The longest runs one after the other; those of fewer than ``LEAST_CHORDS`` chords are lines only.
 
     Parameters
@@ -286,6 +388,7 @@ def runs_merged(pieces: list[Piece], near: float, tolerance: float, least: int) 
     out: list[Piece] = []
     k = 0
     while k < len(pieces):
+        interrupt()
         stop = int(stops[np.searchsorted(stops, k + 1)])
         # Two arcs can be a run, and so many chords; then steps that double and afterwards halve.
         best, taken, step, growing = None, k + 1, 1, True

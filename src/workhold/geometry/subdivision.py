@@ -23,7 +23,7 @@ from attrs import Factory, define, field, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
-from workhold.geometry.loop import near_pairs
+from workhold.geometry.loop import Comparisons, near_pairs
 from workhold.geometry.segment import Arc, Line, Point, Segment, bounding_box, carrier_intersections
 
 __all__ = ["BorderPiece", "CutCarrier", "border_loops", "border_pieces", "distinct_sorted", "subdivide"]
@@ -45,11 +45,13 @@ class CutCarrier:
     segment : one segment on it, which fixes positions: they are its parameters.
     spans : (low, high) positions; of a circle low is in [-pi, pi) and high less than a turn above.
     cuts : positions.
+    owners : for every span the number of the segment that covers it, by the order in which they were given.
     """
 
     segment: Segment
     spans: list[tuple[float, float]] = Factory(list)
     cuts: list[float] = Factory(list)
+    owners: list[int] = Factory(list)
     # The number of spans, and the points (N, 2) of their ends, once these were asked for.
     ends: tuple[int, NDArray[np.float64]] | None = field(init=False, default=None, eq=False, repr=False)
 
@@ -152,35 +154,58 @@ def distinct_sorted(values: NDArray[np.float64], slack: float) -> list[float]:
     return distinct
 
 
-def subdivide(segments: Iterable[Segment], cuts: Iterable[tuple[Segment, Point]] = ()) -> list[CutCarrier]:
+def subdivide(
+    segments: Iterable[Segment],
+    cuts: Iterable[tuple[Segment, Point]] = (),
+    comparisons: Comparisons | None = None,
+) -> list[CutCarrier]:
     """Carriers of some segments, cut wherever two of them meet.
 
     Parameters
     ----------
     segments : in any order and direction; they may overlap.
     cuts : further points at which the carrier of a segment is to be cut.
+    comparisons : how many pairs may still be compared; None is no limit.
+
+    Raises
+    ------
+    InputError
+        For more pairs than that.
     """
     carriers: list[CutCarrier] = []
     found: dict[tuple[int, ...], list[CutCarrier]] = {}
-    for segment in segments:
-        carrier_of(segment, carriers, found).add(segment)
+    for number, segment in enumerate(segments):
+        carrier = carrier_of(segment, carriers, found, comparisons)
+        carrier.add(segment)
+        carrier.owners.append(number)
     for segment, point in cuts:
         carrier = carrier_of(segment, carriers, found)
         carrier.cuts.append(carrier.position(point))
     carriers = [carrier for carrier in carriers if carrier.spans]
+    if comparisons is not None:
+        # Every piece is asked for all spans.
+        comparisons.spend(sum(len(one.spans) * (len(one.cuts) // 32 + 1) for one in carriers))
     boxes = np.array([covered_box(carrier) for carrier in carriers]).reshape(-1, 4)
     for a, b in near_pairs(boxes, boxes):
+        if comparisons is not None:
+            # It takes about as long as so many others.
+            comparisons.spend(10)
         if a < b:
             cut_each_other(carriers[a], carriers[b])
     return carriers
 
 
 def carrier_of(
-    segment: Segment, carriers: list[CutCarrier], found: dict[tuple[int, ...], list[CutCarrier]]
+    segment: Segment,
+    carriers: list[CutCarrier],
+    found: dict[tuple[int, ...], list[CutCarrier]],
+    comparisons: Comparisons | None = None,
 ) -> CutCarrier:
     """The carrier of a segment, made if it is not there; ``found`` holds carriers by rough place."""
     keys = rough_keys(segment)
     for key in keys:
+        if comparisons is not None:
+            comparisons.spend(len(found.get(key, ())))
         for carrier in found.get(key, ()):
             if carrier.holds(segment):
                 return carrier

@@ -12,7 +12,7 @@ import numpy as np
 from attrs import evolve, frozen
 
 from workhold.errors import InputError
-from workhold.geometry.loop import Face, LoopShape, encloses, near_pairs
+from workhold.geometry.loop import Comparisons, Face, LoopShape, encloses, near_pairs
 from workhold.geometry.segment import Arc, Point, Segment
 from workhold.model.solid import Band, RunRows, SolidOutline, run_at
 
@@ -156,13 +156,13 @@ def outer_count(name: str, shapes: Sequence[LoopShape]) -> int:
     return first_hole
 
 
-def refuse_misplaced_holes(name: str, shapes: Sequence[LoopShape]) -> None:
+def refuse_misplaced_holes(name: str, shapes: Sequence[LoopShape], comparisons: Comparisons) -> None:
     """Refuses holes outside the outer loop and holes inside one another (loops are known not to meet).
 
     Raises
     ------
     InputError
-        Naming the hole.
+        Naming the hole; also for more comparisons than may be made.
     """
     boxes = np.array([shape.box for shape in shapes])
     for index, hole in enumerate(shapes[1:], start=1):
@@ -173,6 +173,7 @@ def refuse_misplaced_holes(name: str, shapes: Sequence[LoopShape]) -> None:
                 "must be the outline that encloses all the others."
             )
         for _, other in near_pairs(boxes[index : index + 1], boxes):
+            comparisons.spend(1)
             if other not in (0, index) and encloses(shapes[other], hole):
                 raise InputError(
                     f"{name}: loop {index}, at ({x:.6g}, {y:.6g}), lies inside the hole of loop {other}: "

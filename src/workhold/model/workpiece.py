@@ -19,19 +19,19 @@ from workhold.errors import InputError, encodable
 from workhold.fixels.carrier import WALL
 from workhold.geometry.hull import HullEdge, hull_edges
 from workhold.geometry.loop import (
+    Comparisons,
     Face,
     LoopShape,
     checked_vertices,
     faces_of_loop,
     loop_segments,
-    near_pairs,
-    refuse_meeting_loops,
+    refuse_meeting,
     refuse_no_area,
     refuse_self_crossing,
     reversed_vertices,
     signed_area,
 )
-from workhold.geometry.merged_runs import merged_chords, on_one_circle
+from workhold.geometry.merged_runs import chorded_arcs, chords_remark, merged_chords, on_one_circle
 from workhold.geometry.segment import Point, Segment, bounding_box
 from workhold.limits import real
 from workhold.model.numbered_outlines import NumberedOutlines, outer_count, refuse_misplaced_holes, unlike
@@ -131,6 +131,7 @@ class Workpiece:
             label = f" ({labels[loop][k]})" if labels else ""
             return f"{name}: loop {loop}, segment {k}{label}"
 
+        comparisons = Comparisons(name)
         straightened = rounded = 0
         used: list[NDArray[np.float64]] = []
         drawn: list[LoopShape] = []
@@ -142,17 +143,14 @@ class Workpiece:
             vertices, changed = on_one_circle(vertices, segments)
             rounded += changed
             shape = LoopShape.of(loop_segments(vertices) if changed else segments)
-            refuse_self_crossing(shape, place)
+            refuse_self_crossing(shape, place, comparisons)
             refuse_no_area(shape, f"{name}: loop {index}")
             used.append(vertices)
             drawn.append(shape)
-        boxes = np.array([shape.box for shape in drawn])
-        for a, b in near_pairs(boxes, boxes):
-            if a < b:
-                refuse_meeting_loops(drawn[a], drawn[b], partial(segment_place, a), partial(segment_place, b))
+        refuse_meeting(drawn, segment_place, comparisons)
         pieces = 1
         if solid is None:
-            refuse_misplaced_holes(name, drawn)
+            refuse_misplaced_holes(name, drawn, comparisons)
         else:
             pieces = outer_count(name, drawn)
         order: list[int] = []
@@ -202,12 +200,15 @@ class Workpiece:
         """
         if fit is not None and not (isfinite(real(fit)) and fit > 0):
             raise InputError(f"the fit {fit} is not usable: give a length above 0, in mm.")
-        loops, away = [], 0.0
+        loops, away, chorded = [], 0.0, []
         for index, points in enumerate([outline, *holes]):
             merged = merged_chords(corners_of(points, f"{name}: loop {index}"), fit)
             loops.append(merged.vertices)
             away = max(away, merged.departure)
-        return cls.from_loops(name, loops, departure=away)
+            left = chorded_arcs(merged.vertices)
+            chorded += [left] if left is not None and (fit is None or left.fit > fit) else []
+        part = cls.from_loops(name, loops, departure=away)
+        return evolve(part, remarks=(*part.remarks, *chords_remark(chorded, "fit")))
 
     def is_alike(self, other: Workpiece) -> bool:
         """Whether another part is this one, whatever it is called."""

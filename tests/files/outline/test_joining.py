@@ -180,8 +180,9 @@ def test_junctions_are_refused_with_place_and_entities(tmp_path: Any) -> None:
         space.add_lwpolyline([(100, 0), (110, 0), (110, 9), (100.0004, 0)])
         space.add_line((100, 0.0003), (70, 3))
 
-    with pytest.raises(InputError, match=r"3 ends meet within 0\.001 mm at \(100, "):
-        read_dxf(tmp_path, nearly)
+    # The rectangle beside it is sound.
+    (said,) = [remark for remark in read_dxf(tmp_path, nearly).remarks if "ends meet" in remark]
+    assert "3 ends meet within 0.001 mm at (100, " in said
 
 
 def test_a_grid_of_lines_is_refused_at_once(tmp_path: Any) -> None:

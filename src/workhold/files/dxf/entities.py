@@ -28,6 +28,8 @@ __all__ = ["REFUSED", "SHAPES", "RawChain"]
 
 Point3 = tuple[float, float, float]
 
+# Fit points of one spline: the library takes seconds for as many.
+MOST_FIT_POINTS = 5_000
 # What is refused, and what messages call it.
 REFUSED = {
     "HELIX": "a helix",
@@ -185,6 +187,11 @@ def through_fit_points(entity: Any) -> RawChain:
     count = len(points) - 1
     if count < (2 if closed else 1):
         raise InputError("has neither control points nor enough fit points: delete it.")
+    if count > MOST_FIT_POINTS:
+        raise InputError(
+            f"has {count} fit points and no control points, more than the {MOST_FIT_POINTS:,} that are read: "
+            "save it with control points."
+        )
     ends = [entity.dxf.get(name) for name in ("start_tangent", "end_tangent")]
     tangents = ends if not closed and all(one is not None and abs(one) > 0 for one in ends) else None
     # Once around before and once after, a closed one has forgotten that it has ends.

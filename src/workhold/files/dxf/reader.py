@@ -11,21 +11,25 @@ label : entity kind and handle (the hexadecimal name every CAD program shows), t
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
+from itertools import islice
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
 from attrs import evolve
 
-from workhold.errors import InputError
+from workhold.errors import InputError, plain, shortened
 from workhold.files.budget import LIMITS, Budget
 from workhold.files.dxf.walk import BlockNesting, DxfWalk
 from workhold.files.outline.chain import Drawing, Placement
 from workhold.files.outline.diagnostics import unit_asked
 from workhold.files.questions import DRAWING_UNIT
+from workhold.limits import real
 from workhold.units import unit_named
 
-__all__ = ["read_document", "read_dxf"]
+__all__ = ["code_said", "read_document", "read_dxf"]
 
 # $INSUNITS (DXF reference, header variables): name and millimetres.
 INSUNITS = {
@@ -42,6 +46,9 @@ INSUNITS = {
     21: ("US survey feet", 1200e3 / 3937),
     22: ("US survey inches", 100e3 / 3937),
 }
+
+
+BINARY = b"AutoCAD Binary DXF"
 
 
 def read_dxf(
@@ -74,7 +81,9 @@ def read_dxf(
     """
     refuse_other_formats(content)
     budget = budget or Budget(LIMITS["dxf"], len(content))
+    refuse_crowded(content, budget)
     document, remarks = opened(path)
+    budget.check_time()
     code = unit_code(document, content)
     drawing = read_document(
         document, code, unit=unit, usual_unit=usual_unit, layers=layers, fit=fit, budget=budget
@@ -84,7 +93,7 @@ def read_dxf(
 
 def read_document(
     document: Any,
-    code: int,
+    code: int | str,
     *,
     unit: str | None,
     usual_unit: str | None = None,
@@ -95,16 +104,22 @@ def read_document(
     """Reads the outline entities of the model space of a document of ezdxf; see :func:`read_dxf`."""
     known = scale_of(code, unit, usual_unit)
     scale, unit_remarks = known or (1.0, [])
-    walk = DxfWalk(document, layers, fit, budget or Budget(LIMITS["dxf"]))
     try:
-        walk.visit_all(document.modelspace(), BlockNesting(Placement(a=scale, d=scale, height_scale=scale)))
+        walk = DxfWalk(document, layers, fit, budget or Budget(LIMITS["dxf"]))
+        space = document.modelspace()
+    except Exception as error:  # tables and layouts of a damaged file may fail in any way
+        raise damaged(error) from error
+    try:
+        walk.visit_all(space, BlockNesting(Placement(a=scale, d=scale, height_scale=scale)))
         walk.refuse_missing_layers()
     except InputError:
         if known is not None:
             raise
         walk.chains = []
     if known is None:
-        lacking = f"is not one for parts ($INSUNITS {code})" if code else "is not said"
+        lacking = (
+            f"is not one for parts ($INSUNITS {shortened(plain(str(code)), 40)})" if code else "is not said"
+        )
         raise unit_asked(f"the drawing's unit {lacking}", walk.chains)
     return Drawing(tuple(walk.chains), (*unit_remarks, *walk.remarks()), walk.curves.found, walk.layers)
 
@@ -116,7 +131,7 @@ def refuse_other_formats(content: bytes) -> None:
     """
     if content[:4] == b"AC10" or content[:2] == b"MC":
         raise InputError("this is a DWG drawing, not a DXF file: save it as DXF.")
-    if content.startswith(b"AutoCAD Binary DXF"):
+    if content.startswith(BINARY):
         return
     if b"SECTION" not in content[:65536]:
         raise InputError("this is not a DXF file: export the part's outline as DXF.")
@@ -138,12 +153,41 @@ def opened(path: Path) -> tuple[Any, list[str]]:
         try:
             document, _ = recover.readfile(path)
         except Exception:
-            raise InputError(
-                f"the DXF file is damaged ({one_line(first)}): open it in a CAD program and export it again."
-            ) from first
+            raise damaged(first) from first
         return document, [
             f"The DXF file was damaged and had to be repaired ({one_line(first)}); check the outline."
         ]
+
+
+def damaged(error: Exception) -> InputError:
+    """The refusal of a file that the library cannot read."""
+    reason = "it has no model space" if isinstance(error, KeyError) else one_line(error)
+    return InputError(f"the DXF file is damaged ({reason}): open it in a CAD program and export it again.")
+
+
+# Where an entity, a vertex of an old polyline or an entry of a table begins.
+BEGINS = re.compile(rb"\n[ \t]*0[ \t]*\r?\n[ \t]*[A-Z]")
+# Bytes of a file that has too few entities to be worth a look, and of each tag of a binary one.
+FEW_BYTES, TAG_BYTES = 1_000_000, 10
+# Tags (a group code and its value) for each entity and vertex that a drawing may have: few have more than ten.
+MOST_TAGS = 15
+
+
+def refuse_crowded(content: bytes, budget: Budget) -> None:
+    """Refuses a file with more in it than a drawing may have, before the library takes long to read it.
+
+    Raises
+    ------
+    InputError
+        With the limit.
+    """
+    most = budget.limits.most_elements
+    if most is None or len(content) <= FEW_BYTES:
+        return
+    is_binary = content.startswith(BINARY)
+    tags = len(content) // TAG_BYTES if is_binary else content.count(b"\n") // 2
+    found = 0 if is_binary else sum(1 for _ in islice(BEGINS.finditer(content), most + 1))
+    Budget(budget.limits).spend(max(found, tags // MOST_TAGS))
 
 
 def one_line(error: Exception) -> str:
@@ -152,18 +196,24 @@ def one_line(error: Exception) -> str:
     return text[:120].rstrip(".")
 
 
-def unit_code(document: Any, content: bytes) -> int:
+def unit_code(document: Any, content: bytes) -> int | str:
     """The $INSUNITS of a document; 0 for none."""
     # Into a file without a header ezdxf writes one of its own, with metres in it.
-    return int(document.header.get("$INSUNITS", 0)) if b"$INSUNITS" in content else 0
+    return code_said(document.header.get("$INSUNITS", 0)) if b"$INSUNITS" in content else 0
 
 
-def scale_of(code: int, unit: str | None, usual_unit: str | None) -> tuple[float, list[str]] | None:
+def code_said(value: Any) -> int | str:
+    """An $INSUNITS as a whole number, or as it is written where it is none."""
+    number = real(value)
+    return int(number) if isfinite(number) and number == int(number) else str(value)
+
+
+def scale_of(code: int | str, unit: str | None, usual_unit: str | None) -> tuple[float, list[str]] | None:
     """Millimetres per drawing unit, and a remark when the user's unit is not the file's $INSUNITS.
 
     None when neither the file nor the user gives a unit.
     """
-    name, scale = INSUNITS.get(code, ("", None))
+    name, scale = INSUNITS.get(code, ("", None)) if isinstance(code, int) else ("", None)
     asked = unit if unit is not None or scale is not None else usual_unit
     if asked is not None:
         millimetres = unit_named(asked).millimetres

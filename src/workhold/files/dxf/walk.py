@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 from attrs import evolve, frozen
 
 from workhold.conventions import LEVEL
-from workhold.errors import InputError
+from workhold.errors import InputError, plain, shortened
 from workhold.files.budget import LIMITS, Budget
 from workhold.files.dxf.entities import REFUSED, SHAPES, RawChain, seen_from_below
 from workhold.files.outline.chain import Chain, Placement, counted, listed
@@ -58,7 +58,7 @@ class DxfWalk:
     ) -> None:
         self.budget = budget
         self.document = document
-        self.curves = CurveReader(fit)
+        self.curves = CurveReader(fit, budget)
         self.wanted = None if layers is None else {name.strip().casefold(): name for name in layers}
         self.chains: list[Chain] = []
         self.names: dict[str, str] = {}
@@ -90,7 +90,7 @@ class DxfWalk:
         """
         self.budget.spend()
         kind = entity.dxftype()
-        label = f"{kind} {entity.dxf.handle}{nest.suffix}"
+        label = f"{kind} {name_of(entity)}{nest.suffix}"
         try:
             layer = self.effective_layer(entity, nest)
             if kind == "INSERT":
@@ -108,7 +108,8 @@ class DxfWalk:
 
     def effective_layer(self, entity: Any, nest: BlockNesting) -> str:
         """The layer an entity counts as being on."""
-        layer = str(entity.dxf.get("layer", "0"))
+        # Entities of kinds that the library does not know have no layer it could tell.
+        layer = str(entity.dxf.get("layer", "0")) if entity.dxf.is_supported("layer") else "0"
         return nest.layer if layer == "0" and nest.layer is not None else layer
 
     def is_used(self, entity: Any, layer: str, nest: BlockNesting) -> bool:
@@ -137,6 +138,7 @@ class DxfWalk:
                 f"{label} at ({x:.6g}, {y:.6g}) is {REFUSED[kind]}, which is not made of lines and arcs: "
                 f"convert it to lines and arcs in the CAD program, or leave its layer out with {LAYERS}."
             )
+        self.budget.spend(vertex_count(entity))
         raw = said_of(label, SHAPES[kind], entity)
         self.interpolated += kind == "SPLINE" and not len(entity.control_points)
         if not raw.bulges:
@@ -199,13 +201,15 @@ class DxfWalk:
             nest,
             layer=layer,
             frozen=nest.frozen or key in self.hidden_layers,
-            suffix=f" of INSERT {insert.dxf.handle}{nest.suffix}",
+            suffix=f" of INSERT {name_of(insert)}{nest.suffix}",
             blocks=(*nest.blocks, name.casefold()),
         )
         for single in insert.multi_insert() if rows * columns > 1 else [insert]:
             placement = nest.placement.after(block_placement(single))
             if placement.flat:
                 raise InputError(f"{label} has a scale of zero: correct it.")
+            # An empty block costs something too.
+            self.budget.spend()
             self.visit_all(block, evolve(inner, placement=placement))
 
     def refuse_missing_layers(self) -> None:
@@ -227,8 +231,8 @@ class DxfWalk:
         """What was left out, one sentence for each reason."""
         remarks = []
         if self.ignored:
-            kinds = ", ".join(f"{count} {kind}" for kind, count in sorted(self.ignored.items()))
-            remarks.append(f"Ignored entities that are no outline: {kinds}.")
+            kinds = [f"{count} {quoted(kind)}" for kind, count in sorted(self.ignored.items())]
+            remarks.append(f"Ignored entities that are no outline: {enumerated(kinds)}.")
         if self.interpolated:
             splines = counted(self.interpolated, "spline", "splines")
             remarks.append(
@@ -237,18 +241,48 @@ class DxfWalk:
             )
         if self.hidden:
             total = sum(self.hidden.values())
-            places = ", ".join(f"{count} {where}" for where, count in sorted(self.hidden.items()))
+            places = [f"{count} {quoted(where)}" for where, count in sorted(self.hidden.items())]
             remarks.append(
-                f"Left out {counted(total, 'hidden entity', 'hidden entities')} ({places}); name a layer "
+                f"Left out {counted(total, 'hidden entity', 'hidden entities')} ({enumerated(places)}); name a layer "
                 f"with {LAYERS} to read it all the same."
             )
         if self.missing_blocks:
-            names = listed(sorted(self.missing_blocks))
+            names = listed([quoted(name) for name in sorted(self.missing_blocks)])
             remarks.append(
                 f"Left out blocks that the file does not contain: {names}; bind external references to read "
                 "them."
             )
         return remarks
+
+
+# Letters of a name that a file gives, and how many things a remark names before it only counts.
+LONGEST_NAME, MOST_NAMED = 80, 10
+
+
+def quoted(name: str) -> str:
+    """A name as a file gives it, in few letters and fit to be shown."""
+    return shortened(plain(name), LONGEST_NAME)
+
+
+def enumerated(words: Sequence[str]) -> str:
+    """The first of some words with commas between them, and how many more there are."""
+    more = len(words) - MOST_NAMED
+    return ", ".join(words[:MOST_NAMED]) + (f" and {more} more" if more > 0 else "")
+
+
+def name_of(entity: Any) -> str:
+    """The handle of an entity, in few letters: labels repeat it for every segment."""
+    return shortened(str(entity.dxf.handle), 20)
+
+
+def vertex_count(entity: Any) -> int:
+    """How many vertices, control points and fit points an entity has."""
+    kind = entity.dxftype()
+    if kind == "LWPOLYLINE":
+        return len(entity)
+    if kind == "POLYLINE":
+        return len(entity.vertices)
+    return len(entity.control_points) + len(entity.fit_points) if kind == "SPLINE" else 0
 
 
 def said_of(label: str, function: Callable[[Any], T], entity: Any) -> T:

@@ -14,13 +14,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite
 
+from attrs import evolve
+
 from workhold.conventions import READING, SAME_POINT
 from workhold.errors import InputError
+from workhold.files.budget import UNLIMITED, Budget
 from workhold.files.outline.chain import Chain, CurveReading, Placement, at, counted, listed, refuse_numbers
 from workhold.files.outline.joining import Loop
 from workhold.files.questions import FIT, LAYERS
 from workhold.geometry.curve_fit import FittedCurve, fitted_curve
-from workhold.geometry.merged_runs import merged_chords
+from workhold.geometry.merged_runs import ChordedArcs, chorded_arcs, chords_remark, merged_chords
 from workhold.geometry.rational import Pieces, arc_pieces, joined_pieces, mapped
 
 __all__ = [
@@ -56,9 +59,13 @@ def checked_fit(fit: float | None) -> float | None:
 
 
 class CurveReader:
-    """Turns the curves of one drawing into lines and arcs, and keeps how each was read, by its label."""
+    """Turns the curves of one drawing into lines and arcs, and keeps how each was read, by its label.
 
-    def __init__(self, fit: float | None) -> None:
+    What reading the file may still take is left in ``budget``; None is no limit.
+    """
+
+    def __init__(self, fit: float | None, budget: Budget | None = None) -> None:
+        self.budget = budget or Budget(UNLIMITED)
         self.fit = PROPOSED[0] if fit is None else fit
         self.found: dict[str, CurveReading] = {}
         self.count = 0
@@ -128,15 +135,15 @@ class CurveReader:
         InputError
             For more curves than a drawing has, and coordinates that are not finite or too large.
         """
-        for x, y in (pieces[..., :2] / pieces[..., 2:]).reshape(-1, 2).tolist():
-            refuse_numbers(label, x, y)
         self.count += len(pieces)
         if self.count > MOST_PIECES:
             raise InputError(
                 f"the curves of the drawing have more than {MOST_PIECES} pieces: export the part's outline "
                 "only."
             )
-        fitted = fitted_curve(pieces, self.fit)
+        for x, y in (pieces[..., :2] / pieces[..., 2:]).reshape(-1, 2).tolist():
+            refuse_numbers(label, x, y)
+        fitted = fitted_curve(pieces, self.fit, self.budget.check_time)
         if fitted is not None:
             self.found[label] = CurveReading(
                 fitted.points[0], fitted.departure, fitted.is_disguise, pieces, len(fitted.bulges)
@@ -150,7 +157,11 @@ def readings_of(labels: Iterable[str], found: Mapping[str, CurveReading]) -> dic
 
 
 def refuse_true_curves(
-    labels: Iterable[str], found: Mapping[str, CurveReading], fit: float | None, layered: bool
+    labels: Iterable[str],
+    found: Mapping[str, CurveReading],
+    fit: float | None,
+    layered: bool,
+    budget: Budget | None = None,
 ) -> None:
     """Refuses an outline with curves that are no lines or arcs, unless a fit is given.
 
@@ -158,6 +169,7 @@ def refuse_true_curves(
     ----------
     labels : of the outline's segments.
     layered : whether the file has layers to choose.
+    budget : what reading the file may still take; None is no limit.
 
     Raises
     ------
@@ -169,7 +181,7 @@ def refuse_true_curves(
         return
     for proposed in PROPOSED:
         fitted = [
-            (one.arcs, one.departure) if proposed == PROPOSED[0] else refitted(one, proposed)
+            (one.arcs, one.departure) if proposed == PROPOSED[0] else refitted(one, proposed, budget)
             for one in true.values()
         ]
         arcs, away = sum(count for count, _ in fitted), max(departure for _, departure in fitted)
@@ -189,24 +201,32 @@ def refuse_true_curves(
     )
 
 
-def refitted(one: CurveReading, fit: float) -> tuple[int, float]:
+def refitted(one: CurveReading, fit: float, budget: Budget | None) -> tuple[int, float]:
     """How many lines and arcs stand for a curve with another fit, and their departure."""
-    fitted = fitted_curve(one.pieces, fit)
+    fitted = fitted_curve(one.pieces, fit, (budget or Budget(UNLIMITED)).check_time)
     return (0, 0.0) if fitted is None else (len(fitted.bulges), fitted.departure)
 
 
 def with_chords_merged(
-    loops: Sequence[Loop], found: Mapping[str, CurveReading], fit: float | None
+    loops: Sequence[Loop],
+    found: Mapping[str, CurveReading],
+    fit: float | None,
+    budget: Budget | None = None,
 ) -> tuple[tuple[Loop, ...], float, list[str]]:
     """Loops with one line or arc for each chain of short ones, the departure in mm, and remarks.
 
-    The biarcs of true curves stay as they are.
+    The biarcs of true curves stay as they are. What reading the file may still take is left in ``budget``;
+    None is no limit.
     """
+    interrupt = (budget or Budget(UNLIMITED)).check_time
     out, away, merged = [], 0.0, 0
+    chorded = list[ChordedArcs]()
     for loop in loops:
         kept = [label in found and not found[label].is_disguise for label in loop.labels]
-        one = merged_chords(loop.vertices, fit, kept)
-        out.append(Loop(one.vertices, tuple(loop.labels[k] for k in one.firsts)))
+        one = merged_chords(loop.vertices, fit, kept, interrupt)
+        out.append(evolve(loop, vertices=one.vertices, labels=tuple(loop.labels[k] for k in one.firsts)))
+        left = chorded_arcs(one.vertices, [kept[k] for k in one.firsts], interrupt)
+        chorded += [left] if left is not None and (fit is None or left.fit > fit) else []
         away = max(away, one.departure)
         merged += (one.merged + len(one.firsts)) * (one.departure > SAME_POINT)
     total = sum(len(loop.labels) for loop in out)
@@ -215,7 +235,10 @@ def with_chords_merged(
     return (
         tuple(out),
         away,
-        [f"{remark}{off}: the outline has {counted(total, 'segment', 'segments')}."] if merged else [],
+        [
+            *([f"{remark}{off}: the outline has {counted(total, 'segment', 'segments')}."] if merged else []),
+            *chords_remark(chorded, FIT),
+        ],
     )
 
 

@@ -134,9 +134,10 @@ def gap_around(part: DrawnPart, strays: Sequence[Stray]) -> float | None:
     widest = MOST_GAP * float(np.hypot(*np.ptp(ends, axis=0)))
     for gap in sorted({float(gap) for gap in away.min(axis=1) if 0.0 < gap <= widest})[-MOST_GAPS:]:
         try:
-            loops = join(chains, gap * (1 + 1e-9)).loops
+            joined = join(chains, gap * (1 + 1e-9))
         except InputError:
             continue
+        loops = () if joined.junctions else joined.loops
         if any(surrounds(box_around(loop_segments(loop.vertices)), part.bounds) for loop in loops):
             return gap
     return None
@@ -207,7 +208,7 @@ def with_layers_named(error: InputError, drawing: Drawing, usable: Callable[[Dra
     meeting = {
         layer: label
         for label, layer in drawing.layers.items()
-        if re.search(rf"{re.escape(label)}(?!\w)", said) is not None
+        if label in said and re.search(rf"{re.escape(label)}(?!\w)", said) is not None
     }
     every = list(dict.fromkeys(drawing.layers.values()))
     if len(meeting) < 2 or len(every) > MOST_LAYERS:

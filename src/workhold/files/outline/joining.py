@@ -25,11 +25,12 @@ from numpy.typing import NDArray
 
 from workhold.conventions import SAME_POINT, SHORTEST
 from workhold.errors import InputError
+from workhold.files.budget import UNLIMITED, Budget
 from workhold.files.outline.chain import Chain, at, counted, listed, rebulged, without_segment
 from workhold.files.questions import JOIN_TOLERANCE
 from workhold.geometry.segment import Point
 
-__all__ = ["Joined", "Loop", "Stray", "close_pairs", "groups", "join"]
+__all__ = ["Joined", "Junction", "Loop", "Stray", "close_pairs", "groups", "join"]
 
 # More distinct points than this within one tolerance: the tolerance is larger than the drawing's details.
 CROWD = 64
@@ -123,10 +124,12 @@ class Loop:
     ----------
     vertices : (N, 3) array of x, y in mm and bulge.
     labels : N names for messages.
+    nest : the number of the nest that it is an outline of, from 1; 0 for others, see ``outline.shared_lines``.
     """
 
     vertices: NDArray[np.float64]
     labels: tuple[str, ...]
+    nest: int = 0
 
 
 @frozen
@@ -139,35 +142,77 @@ class Stray:
 
 
 @frozen
+class Junction:
+    """A point where three or more ends meet.
+
+    Parameters
+    ----------
+    point : in mm.
+    labels : of the segments that end there.
+    within : how far apart the ends are, in words; empty where they are one point.
+    """
+
+    point: Point
+    labels: tuple[str, ...]
+    within: str = ""
+
+    def __str__(self) -> str:
+        names = listed(self.labels)
+        return f"{len(self.labels)} ends meet{self.within} at {at(self.point)} ({names})"
+
+    @property
+    def refusal(self) -> InputError:
+        """The error for a drawing whose outline goes through it."""
+        return InputError(
+            f"{self}, so the outline could go on in more than one way: remove the extra entity, or put it on "
+            "a layer that is not chosen."
+        )
+
+
+@frozen
 class Joined:
-    """Loops, what stayed open, and remarks on gaps closed and entities dropped."""
+    """Loops, what stayed open, and remarks on gaps closed and entities dropped.
+
+    Parameters
+    ----------
+    junctions : points where an outline could go on in more than one way.
+    tangled : the chains that hang together with a junction, which are in no loop and no stray.
+    """
 
     loops: tuple[Loop, ...]
     strays: tuple[Stray, ...]
     remarks: tuple[str, ...]
+    junctions: tuple[Junction, ...] = ()
+    tangled: tuple[Chain, ...] = ()
 
 
-def join(chains: Sequence[Chain], tolerance: float) -> Joined:
+def join(chains: Sequence[Chain], tolerance: float, budget: Budget | None = None) -> Joined:
     """Joins chains end to end.
 
     Parameters
     ----------
     chains : open and closed chains in mm, without segments of zero length.
     tolerance : largest gap to close, in mm.
+    budget : what reading the file may still take; None is no limit.
 
     Raises
     ------
     InputError
-        For a junction, naming its place and the entities that meet there.
+        Where so many ends crowd within the tolerance that it cannot be meant, and where time is up.
     """
+    budget = budget or Budget(UNLIMITED)
     open_chains = [c for c in chains if not c.closed]
     loops = [closed_loop(c) for c in chains if c.closed]
     node = end_nodes(open_chains)
-    open_chains, node, repeated = without_repeats(open_chains, node)
-    partner = joined_ends(open_chains, node, tolerance)
+    open_chains, node, repeated = without_repeats(open_chains, node, budget)
+    partner, junctions = joined_ends(open_chains, node, tolerance)
+    is_tangled = hanging_together(node, partner, [end for _, ends in junctions for end in ends])
     gaps: list[tuple[Point, float]] = []
     strays = []
     for run, is_closed in runs(partner):
+        budget.work(len(run))
+        if is_tangled[run[0][0]]:
+            continue
         members = [open_chains[k].reversed() if turned else open_chains[k] for k, turned in run]
         whole = connected(members, is_closed, gaps)
         if is_closed:
@@ -186,7 +231,22 @@ def join(chains: Sequence[Chain], tolerance: float) -> Joined:
         gaps.sort(key=lambda gap: -gap[1])
         places = listed([f"{size:.3g} mm at {at(point)}" for point, size in gaps])
         remarks.append(f"Closed {counted(len(gaps), 'gap', 'gaps')} between ends: {places}.")
-    return Joined(tuple(loops), tuple(strays), tuple(remarks))
+    tangled = tuple(chain for chain, tangles in zip(open_chains, is_tangled, strict=True) if tangles)
+    met = tuple(junction for junction, _ in junctions)
+    return Joined(tuple(loops), tuple(strays), tuple(remarks), met, tangled)
+
+
+def hanging_together(node: NDArray[np.int64], partner: Sequence[int], ends: Sequence[int]) -> list[bool]:
+    """For every chain whether it hangs together, by common ends, with one of which an end is among these."""
+    count = len(node) // 2
+    if not ends:
+        return [False] * count
+    pairs = [(end // 2, other // 2) for end, other in enumerate(partner) if other >= 0]
+    first: dict[int, int] = {}
+    pairs += [(first.setdefault(number, end // 2), end // 2) for end, number in enumerate(node.tolist())]
+    name = groups(count, np.array(pairs, dtype=np.int64).reshape(-1, 2))
+    tangled = {int(name[end // 2]) for end in ends}
+    return [int(one) in tangled for one in name]
 
 
 def closed_loop(chain: Chain) -> Loop:
@@ -202,7 +262,7 @@ def end_nodes(chains: Sequence[Chain]) -> NDArray[np.int64]:
 
 
 def without_repeats(
-    chains: Sequence[Chain], node: NDArray[np.int64]
+    chains: Sequence[Chain], node: NDArray[np.int64], budget: Budget
 ) -> tuple[list[Chain], NDArray[np.int64], list[str]]:
     """Keeps one of chains that were drawn twice; also the kept ones' nodes, and the others' names."""
     between: defaultdict[tuple[int, int, int], list[int]] = defaultdict(list)
@@ -211,6 +271,7 @@ def without_repeats(
     for k, chain in enumerate(chains):
         first, last = sorted((int(node[2 * k]), int(node[2 * k + 1])))
         rivals = between[first, last, len(chain.bulges)]
+        budget.work(1 + len(rivals))
         twin = next((j for j in rivals if same_course(chains[j], chain)), None)
         if twin is None:
             rivals.append(k)
@@ -263,33 +324,39 @@ def arc_middles(vertices: NDArray[np.float64]) -> NDArray[np.float64]:
     return middles
 
 
-def joined_ends(chains: Sequence[Chain], node: NDArray[np.int64], tolerance: float) -> list[int]:
-    """The end that every end is joined to, or -1; raises InputError for a junction."""
+def joined_ends(
+    chains: Sequence[Chain], node: NDArray[np.int64], tolerance: float
+) -> tuple[list[int], list[tuple[Junction, Sequence[int]]]]:
+    """The end that every end is joined to, or -1, and the junctions with their ends."""
     partner = [-1] * len(node)
+    junctions = list[tuple[Junction, Sequence[int]]]()
     at_node: defaultdict[int, list[int]] = defaultdict(list)
     for end, number in enumerate(node.tolist()):
         at_node[number].append(end)
     for ends in at_node.values():
         if len(ends) > 2:
-            raise junction(chains, ends)
+            junctions.append((junction(chains, ends), ends))
         if len(ends) == 2:
             partner[ends[0]], partner[ends[1]] = ends[1], ends[0]
-    close_gaps(chains, partner, tolerance)
-    return partner
+    meeting = {end for _, ends in junctions for end in ends}
+    loose = [end for end, other in enumerate(partner) if other < 0 and end not in meeting]
+    return partner, junctions + close_gaps(chains, partner, loose, tolerance)
 
 
-def close_gaps(chains: Sequence[Chain], partner: list[int], tolerance: float) -> None:
+def close_gaps(
+    chains: Sequence[Chain], partner: list[int], loose: Sequence[int], tolerance: float
+) -> list[tuple[Junction, Sequence[int]]]:
     """Joins open ends across gaps, nearest first, writing into ``partner``.
 
-    Raises InputError when a third end lies within the tolerance of a gap's ends, or very many do.
+    Returns the junctions where a third end lies within the tolerance of a gap's ends. Raises InputError where
+    very many do.
     """
-    loose = [end for end, other in enumerate(partner) if other < 0]
     if not loose or tolerance <= 0:
-        return
+        return []
     points = np.array([end_point(chains, end) for end in loose])
     pairs = close_pairs(points, tolerance)
     if not len(pairs):
-        return
+        return []
     apart = np.hypot(*(points[pairs[:, 0]] - points[pairs[:, 1]]).T)
     candidates = []
     for position in np.argsort(apart, kind="stable").tolist():
@@ -299,10 +366,13 @@ def close_gaps(chains: Sequence[Chain], partner: list[int], tolerance: float) ->
     for i, j in candidates:
         if partner[i] < 0 and partner[j] < 0:
             partner[i], partner[j] = j, i
+    found = list[tuple[Junction, Sequence[int]]]()
     for i, j in candidates:
         if (partner[i] < 0) != (partner[j] < 0):
             joined = i if partner[j] < 0 else j
-            raise junction(chains, sorted({i, j, partner[joined]}), f" within {tolerance:g} mm")
+            ends = sorted({i, j, partner[joined]})
+            found.append((junction(chains, ends, f" within {tolerance:g} mm"), ends))
+    return found
 
 
 def length(chain: Chain) -> float:
@@ -318,13 +388,10 @@ def end_point(chains: Sequence[Chain], end: int) -> Point:
     return chains[end // 2].points[-(end % 2)]
 
 
-def junction(chains: Sequence[Chain], ends: Sequence[int], within: str = "") -> InputError:
-    """The error for three or more ends at one point."""
-    names = listed([chains[end // 2].labels[-(end % 2)] for end in ends])
-    return InputError(
-        f"{len(ends)} ends meet{within} at {at(end_point(chains, ends[0]))} ({names}), so the outline could "
-        "go on in more than one way: remove the extra entity, or put it on a layer that is not chosen."
-    )
+def junction(chains: Sequence[Chain], ends: Sequence[int], within: str = "") -> Junction:
+    """Three or more ends at one point."""
+    names = tuple(chains[end // 2].labels[-(end % 2)] for end in ends)
+    return Junction(end_point(chains, ends[0]), names, within)
 
 
 def runs(partner: Sequence[int]) -> Iterable[tuple[list[tuple[int, bool]], bool]]:

@@ -14,10 +14,12 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
+from workhold.conventions import TOUCHING
 from workhold.errors import InputError, plain, shortened
 from workhold.files.budget import UNLIMITED, Budget
 from workhold.files.outline.joining import Loop
 from workhold.geometry.loop import (
+    Comparisons,
     LoopShape,
     loop_segments,
     refuse_meeting_loops,
@@ -25,9 +27,14 @@ from workhold.geometry.loop import (
     signed_area,
 )
 from workhold.geometry.segment import Segment, box_around, segment_rows
-from workhold.kernels.base.distance import is_inside
+from workhold.geometry.subdivision import subdivide
+from workhold.kernels.base.distance import is_inside, outline_distances
 
 __all__ = ["DrawnPart", "as_one", "nest", "refuse_loops_across"]
+
+
+# mm. How far beside a line it is asked whether both of two outlines lie there.
+BESIDE = 1e-4
 
 
 @frozen
@@ -83,10 +90,12 @@ class MeasuredLoop:
 def nest(loops: Sequence[Loop], budget: Budget | None = None) -> tuple[DrawnPart, ...]:
     """Sorts loops into parts, by decreasing area; loops that cross are sorted somehow, and refused later.
 
-    What reading the file may still take is left in ``budget``; None is no limit.
+    Outlines of one nest lie beside each other, though their borders touch. What reading the file may still
+    take is left in ``budget``; None is no limit.
     """
     budget = budget or Budget(UNLIMITED)
     rings = sorted(map(MeasuredLoop.of, loops), key=lambda r: -r.area)
+    nests = np.array([ring.loop.nest for ring in rings])
     boxes = np.array([r.box for r in rings]).reshape(-1, 4)
     depths: list[int] = []
     holes: dict[int, list[int]] = {}
@@ -94,17 +103,21 @@ def nest(loops: Sequence[Loop], budget: Budget | None = None) -> tuple[DrawnPart
         x0, y0, x1, y1 = inner.box
         larger = boxes[:k]
         around = (larger[:, 0] <= x0) & (larger[:, 1] <= y0) & (larger[:, 2] >= x1) & (larger[:, 3] >= y1)
-        x, y = inner.segments[0].start
-        outer = [j for j in np.flatnonzero(around).tolist() if is_inside(x, y, rings[j].rows)]
-        budget.work(1 + int(around.sum()))
-        depths.append(len(outer))
-        if len(outer) % 2 == 0:
+        if nests[k]:
+            around &= nests[:k] != nests[k]
+        # The smallest loop around it says how deep it lies, unless loops cross.
+        parent = None
+        for j in reversed(np.flatnonzero(around).tolist()):
+            budget.work()
+            if lies_in(inner, rings[j]):
+                parent = j
+                break
+        depths.append(0 if parent is None else depths[parent] + 1)
+        if depths[k] % 2 == 0:
             holes[k] = []
         else:
-            # The smallest loop around a hole at odd depth is an outer loop, unless loops cross.
-            parent = next((j for j in reversed(outer) if j in holes), None)
-            if parent is not None:
-                holes[parent].append(k)
+            assert parent is not None
+            holes[parent].append(k)
     parts = []
     for outline, inside in holes.items():
         area = rings[outline].area - sum(rings[k].area for k in inside)
@@ -116,6 +129,17 @@ def nest(loops: Sequence[Loop], budget: Budget | None = None) -> tuple[DrawnPart
     )
 
 
+def lies_in(inner: MeasuredLoop, outer: MeasuredLoop) -> bool:
+    """Whether a loop lies in another one, which may share lines with it from either side."""
+    x, y = inner.segments[0].start
+    if outline_distances(np.array([(x, y)]), outer.rows)[0] > TOUCHING:
+        return bool(is_inside(x, y, outer.rows))
+    # It begins on the border of the other: what is farthest from that decides.
+    places = np.array([p for one in inner.segments for p in (one.start, one.middle)])
+    farthest = places[int(outline_distances(places, outer.rows).argmax())]
+    return bool(is_inside(float(farthest[0]), float(farthest[1]), outer.rows))
+
+
 def as_one(loops: Sequence[Loop]) -> DrawnPart:
     """Loops of one workpiece as one part, also where it has several outer ones."""
     parts = nest(loops)
@@ -125,27 +149,54 @@ def as_one(loops: Sequence[Loop]) -> DrawnPart:
     return DrawnPart(1, inside, sum(part.area for part in parts), bounds)
 
 
-def refuse_loops_across(part: DrawnPart, others: Sequence[DrawnPart]) -> None:
+def refuse_loops_across(part: DrawnPart, others: Sequence[DrawnPart], budget: Budget | None = None) -> None:
     """Refuses a part that loops of other parts cross or touch: holes that were drawn half outside.
+
+    Another outline may lie along its own, on the other side: neighbours of a nest that share a cut.
 
     Raises
     ------
     InputError
-        Naming both segments and the point.
+        Naming both segments and the point; also where time is up.
     """
+    budget = budget or Budget(UNLIMITED)
+    comparisons = Comparisons("the part")
     own = [MeasuredLoop.of(loop) for loop in part.loops]
+    shapes = [LoopShape.of(loop_segments(one.loop.vertices)) for one in own]
     for other in others:
+        budget.work()
         if not overlap(part.bounds, other.bounds):
             continue
         for theirs in map(MeasuredLoop.of, other.loops):
-            for ours in own:
-                if overlap(ours.box, theirs.box):
+            for ours, shape in zip(own, shapes, strict=True):
+                budget.work()
+                if not overlap(ours.box, theirs.box) or 0 != ours.loop.nest == theirs.loop.nest:
+                    continue
+                try:
                     refuse_meeting_loops(
-                        LoopShape.of(loop_segments(ours.loop.vertices)),
+                        shape,
                         LoopShape.of(loop_segments(theirs.loop.vertices)),
                         ours.loop.labels.__getitem__,
                         theirs.loop.labels.__getitem__,
+                        comparisons,
                     )
+                except InputError:
+                    outer = ours is own[0] and theirs.loop is other.loops[0]
+                    if not (outer and lie_side_by_side(ours, theirs)):
+                        raise
+
+
+def lie_side_by_side(one: MeasuredLoop, other: MeasuredLoop) -> bool:
+    """Whether two loops touch each other from outside: no piece of either lies in the other."""
+    carriers = subdivide([*one.segments, *other.segments], comparisons=Comparisons("the part"))
+    for carrier in carriers:
+        for low, high in carrier.pieces():
+            (x, y), (nx, ny) = carrier.at((low + high) / 2), carrier.left((low + high) / 2)
+            for side in (-BESIDE, BESIDE):
+                place = x + side * nx, y + side * ny
+                if is_inside(*place, one.rows) and is_inside(*place, other.rows):
+                    return False
+    return True
 
 
 def overlap(a: Sequence[float], b: Sequence[float]) -> bool:

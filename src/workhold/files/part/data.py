@@ -21,11 +21,13 @@ import numpy as np
 from attrs import frozen
 
 from workhold.errors import InputError
+from workhold.files.budget import LIMITS, Budget
 from workhold.files.outline.chain import Chain, Drawing
+from workhold.files.outline.curves import with_chords_merged
 from workhold.files.outline.joining import Loop
 from workhold.files.outline.nesting import as_one, chosen_part
 from workhold.files.part.loaded import Loaded, built, refuse_large
-from workhold.files.questions import DRAWING_UNIT, by_height, refuse_axis, refuse_fit, refuse_layers
+from workhold.files.questions import DRAWING_UNIT, FIT, by_height, refuse_axis, refuse_fit, refuse_layers
 from workhold.files.text import json_value
 from workhold.model.solid import SolidOutline
 from workhold.units import unit_named
@@ -51,8 +53,8 @@ def read_json(path: Path, content: bytes, options: Mapping[str, Any], own: bool)
         For content that is not JSON, or not of this shape, naming the place. Also for choices that do not
         apply to JSON.
     """
-    refuse_fit(options["fit"])
     refuse_layers(options["layers"])
+    fit = options["fit"]
     if options["unit"] is not None:
         raise InputError(f'the JSON file gives its own "units": leave {DRAWING_UNIT} out.')
     try:
@@ -65,6 +67,8 @@ def read_json(path: Path, content: bytes, options: Mapping[str, Any], own: bool)
     if isinstance(data, dict) and str(data.get("format", "")).startswith("workhold-result"):
         solid = solid_of(data)
         data = data.get("workpiece")
+    if own or solid is not None:
+        refuse_fit(fit)
     if not isinstance(data, dict):
         raise InputError(
             'The file holds no workpiece: it must be {"name": ..., "units": "mm", "loops": [...]}.'
@@ -80,10 +84,22 @@ def read_json(path: Path, content: bytes, options: Mapping[str, Any], own: bool)
     refuse_large(sum(map(len, data["loops"])))
     loops = [Loop(np.array(loop).reshape(-1, 3) * (scale, scale, 1.0), ()) for loop in data["loops"]]
     departure = scale * (data.get("departure") or 0.0)
-    workpiece = built(data.get("name") or path.stem, loops, False, departure, solid)
+    name = data.get("name") or path.stem
+    workpiece = built(name, loops, False, departure, solid)
+    of_chords = list[str]()
+    if solid is None and not own:
+        # What is checked has no arcs of absurd sizes, which the chords would be compared with.
+        budget = Budget(LIMITS["json"], len(content))
+        drawn = [Loop(loop, ("",) * len(loop)) for loop in workpiece.loops]
+        merged, away, of_chords = with_chords_merged(drawn, {}, fit, budget)
+        if fit is not None:
+            workpiece = built(name, merged, False, departure + away, None)
+        else:
+            # Without a fit a file of numbers is read as it is.
+            of_chords = [said for said in of_chords if FIT in said]
     part = (as_one([Loop(loop, ("",) * len(loop)) for loop in workpiece.loops]),)
     chosen_part(part, options["part_number"])
-    return Loaded(workpiece, workpiece.remarks, part)
+    return Loaded(workpiece, (*workpiece.remarks, *of_chords), part)
 
 
 def solid_of(content: Mapping[str, Any]) -> SolidOutline | None:
@@ -151,10 +167,10 @@ def drawing_of_object(
         scale = unit_named(unit or usual_unit or "mm").millimetres
         return ObjectPart(Drawing(tuple(geometry_chains(part, scale))), "polygon", part_number)
     if hasattr(part, "modelspace") and hasattr(part, "header"):
-        from workhold.files.dxf.reader import read_document
+        from workhold.files.dxf.reader import code_said, read_document
 
         refuse_axis(view)
-        code = int(part.header.get("$INSUNITS", 0))
+        code = code_said(part.header.get("$INSUNITS", 0))
         drawing = read_document(part, code, unit=unit, usual_unit=usual_unit, layers=layers, fit=fit)
         return ObjectPart(
             drawing, Path(getattr(part, "filename", None) or "drawing").stem, part_number, layered=True

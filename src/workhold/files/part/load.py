@@ -8,6 +8,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from attrs import evolve
 
 from workhold.errors import InputError
@@ -87,6 +88,8 @@ def load(
     InputError
         For a part that cannot be found, read or used, naming the place.
 
+    The ``remarks`` of the workpiece say how it was read: what was left out, joined, or chosen of several parts.
+
     Examples
     --------
     >>> from workhold import load
@@ -94,7 +97,7 @@ def load(
     >>> len(widget.segments)
     16
     """
-    workpiece = read_workpiece(
+    loaded = read_workpiece(
         part,
         unit=unit,
         layers=layers,
@@ -107,7 +110,8 @@ def load(
         head_room=head_room,
         least_band=least_band,
         heights=heights,
-    ).workpiece
+    )
+    workpiece = evolve(loaded.workpiece, remarks=loaded.remarks)
     return workpiece if name is None else evolve(workpiece, name=name)
 
 
@@ -165,10 +169,12 @@ def read_workpiece(
     }
     path = found(part) if isinstance(part, str | PathLike) else None
     try:
-        if path is None:
-            loaded = from_object(part, options, join_tolerance)
-        else:
-            loaded = from_file(path, options, join_tolerance)
+        # Numbers that overflow are refused where they are looked at; NumPy would warn of them before.
+        with np.errstate(all="ignore"):
+            if path is None:
+                loaded = from_object(part, options, join_tolerance)
+            else:
+                loaded = from_file(path, options, join_tolerance)
     except InputError as error:
         kind_of_error = UnitAskedError if isinstance(error, UnitAskedError) else InputError
         place = f"this {type(part).__name__}" if path is None else path.name

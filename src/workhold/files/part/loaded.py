@@ -28,8 +28,9 @@ from workhold.files.outline.diagnostics import (
     stray_remarks,
     with_layers_named,
 )
-from workhold.files.outline.joining import Loop, join
-from workhold.files.outline.nesting import DrawnPart, as_one, chosen_part, nest, refuse_loops_across
+from workhold.files.outline.joining import Loop
+from workhold.files.outline.nesting import DrawnPart, as_one, refuse_loops_across
+from workhold.files.outline.shared_lines import chosen_outline, outlines_of, spot_remarks
 from workhold.files.part.finding import found, kind_of, read_bytes
 from workhold.files.questions import PART_NUMBER
 from workhold.model.own_outlines import own_name
@@ -147,29 +148,31 @@ def outline_of(
 ) -> Loaded:
     """The workpiece, or a refusal, see :func:`from_drawing`."""
     clean = cleaned(drawing.chains)
-    joined = join(clean.chains, tolerance)
-    if not joined.loops:
-        refuse_nothing_closed(joined.strays, drawing.remarks)
+    outlines = outlines_of(clean.chains, tolerance, drawing.layers, budget)
+    parts = outlines.parts
+    if not parts and outlines.spots:
+        raise outlines.spots[0].junction.refusal
+    if not parts:
+        refuse_nothing_closed(outlines.strays, drawing.remarks)
     budget.check_time()
-    parts = nest(joined.loops, budget)
-    part = chosen_part(parts, part_number)
+    part = chosen_outline(outlines, part_number)
     if part_number is None:
-        refuse_open_outline(part, joined.strays)
+        refuse_open_outline(part, outlines.strays)
     labels = [label for loop in part.loops for label in loop.labels]
-    refuse_true_curves(labels, drawing.curves, fit, layered)
+    refuse_true_curves(labels, drawing.curves, fit, layered, budget)
     departure, of_curves = curve_remarks(labels, drawing.curves)
-    loops, more, of_chords = with_chords_merged(part.loops, drawing.curves, fit)
+    loops, more, of_chords = with_chords_merged(part.loops, drawing.curves, fit, budget)
     departure += more
     merged = evolve(part, loops=loops)
     refuse_large(merged.segment_count)
     try:
         workpiece = built(path.stem, loops, departure=departure)
-        refuse_loops_across(merged, [other for other in parts if other is not part])
+        refuse_loops_across(merged, [other for other in parts if other is not part], budget)
     except ZeroDivisionError as error:  # pragma: no cover - geometry checks first
         raise InputError("the outline has a segment too short to use: simplify the drawing.") from error
-    remarks = (*drawing.remarks, *clean.remarks, *joined.remarks, *of_curves, *of_chords, *workpiece.remarks)
-    remarks += (*departure_remark(departure), *stray_remarks(joined.strays))
-    remarks += tuple(part_remarks(parts, part, part_number))
+    remarks = (*drawing.remarks, *clean.remarks, *outlines.remarks, *of_curves, *of_chords)
+    remarks += (*workpiece.remarks, *departure_remark(departure), *stray_remarks(outlines.strays))
+    remarks += (*spot_remarks(outlines), *part_remarks(parts, part, part_number))
     return Loaded(workpiece, remarks, parts, part.number, solids=drawing.solids)
 
 
@@ -208,7 +211,8 @@ def part_remarks(parts: Sequence[DrawnPart], chosen: DrawnPart, asked: int | str
     if len(parts) == 1:
         return []
     more = f"; and {len(parts) - PART_LIST} smaller ones" if len(parts) > PART_LIST else ""
-    because = "" if asked is not None else f", the largest (choose another with {PART_NUMBER})"
+    largest = "the largest" if chosen.number == 1 else "the largest that can be read"
+    because = "" if asked is not None else f", {largest} (choose another with {PART_NUMBER})"
     listing = "; ".join(str(part) for part in parts[:PART_LIST])
     used = f"Part {chosen.number} is used{because}."
     return [f"The file holds {len(parts)} separate parts: {listing}{more}. {used}"]

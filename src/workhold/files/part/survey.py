@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from math import hypot
 from pathlib import Path
@@ -22,12 +22,19 @@ import numpy as np
 from attrs import evolve, frozen
 
 from workhold.errors import InputError
-from workhold.files.budget import LIMITS, Budget
-from workhold.files.dxf.reader import opened, refuse_other_formats, scale_of, unit_code
+from workhold.files.budget import LIMITS, Budget, OverBudgetError
+from workhold.files.dxf.reader import (
+    damaged,
+    opened,
+    refuse_crowded,
+    refuse_other_formats,
+    scale_of,
+    unit_code,
+)
 from workhold.files.dxf.walk import BlockNesting, DxfWalk
 from workhold.files.outline.chain import Chain, Drawing, Placement, cleaned
 from workhold.files.outline.diagnostics import size_of
-from workhold.files.outline.joining import join
+from workhold.files.outline.joining import Loop, join
 from workhold.files.outline.nesting import DrawnPart, nest
 from workhold.files.part.finding import found, kind_of, read_bytes
 from workhold.files.part.load import Loaded, read_workpiece
@@ -62,8 +69,8 @@ class DrawnLayer:
 class LayerWalk(DxfWalk):
     """Visits everything, on hidden layers too, whatever is wrong with it."""
 
-    def __init__(self, document: Any) -> None:
-        super().__init__(document, None, None, Budget(LIMITS["dxf"]))
+    def __init__(self, document: Any, budget: Budget) -> None:
+        super().__init__(document, None, None, budget)
         self.kinds: dict[str, Counter[str]] = {}
 
     def visit(self, entity: Any, nest: BlockNesting) -> None:
@@ -73,6 +80,8 @@ class LayerWalk(DxfWalk):
             self.kinds.setdefault(self.effective_layer(entity, nest), Counter())[kind] += 1
         try:
             super().visit(entity, nest)
+        except OverBudgetError:
+            raise
         except InputError:
             self.level = None
 
@@ -97,16 +106,33 @@ def drawn_layers(
         raise InputError(f"{file.name}: only DXF files have layers.")
     try:
         refuse_other_formats(content)
+        budget = Budget(LIMITS["dxf"], len(content))
+        refuse_crowded(content, budget)
         document, _ = opened(file)
+        with np.errstate(all="ignore"):
+            return layers_of(document, unit_code(document, content), unit, usual_unit, budget)
     except InputError as error:
         raise InputError(f"{file.name}: {error}") from error
-    known = scale_of(unit_code(document, content), unit, usual_unit)
+
+
+def layers_of(
+    document: Any, code: int | str, unit: str | None, usual_unit: str | None, budget: Budget
+) -> tuple[tuple[DrawnLayer, ...], bool]:
+    """The layers of a document, see :func:`drawn_layers`."""
+    known = scale_of(code, unit, usual_unit)
     scale = 1.0 if known is None else known[0]
-    walk = LayerWalk(document)
-    walk.visit_all(document.modelspace(), BlockNesting(Placement(a=scale, d=scale, height_scale=scale)))
+    try:
+        walk, space = LayerWalk(document, budget), document.modelspace()
+    except Exception as error:  # tables and layouts of a damaged file may fail in any way
+        raise damaged(error) from error
+    walk.visit_all(space, BlockNesting(Placement(a=scale, d=scale, height_scale=scale)))
     layers = []
+    on_layer: dict[str | None, list[Chain]] = {}
+    for chain in walk.chains:
+        on_layer.setdefault(walk.layers.get(chain.labels[0]), []).append(chain)
     for name in sorted(walk.kinds, key=str.casefold):
-        chains = [chain for chain in walk.chains if walk.layers.get(chain.labels[0]) == name]
+        budget.check_time()
+        chains = usable(on_layer.get(name, []))
         hidden = name.casefold() in walk.hidden_layers
         layers.append(
             DrawnLayer(name, walk.kinds[name], hidden, loops_of(chains), size_of(chains), tuple(chains))
@@ -114,10 +140,20 @@ def drawn_layers(
     return tuple(layers), known is not None
 
 
+def usable(chains: list[Chain]) -> list[Chain]:
+    """Chains, or none of them where a number is none or far too large."""
+    try:
+        cleaned(chains)
+    except InputError:
+        return []
+    return chains
+
+
 def loops_of(chains: list[Chain]) -> int | None:
     """How many closed outlines chains make; None where they could go on in more than one way."""
     try:
-        return len(join(cleaned(chains).chains, 1e-3).loops)
+        joined = join(cleaned(chains).chains, 1e-3)
+        return None if joined.junctions else len(joined.loops)
     except InputError:
         return None
 
@@ -189,7 +225,9 @@ def survey(path: Path, *, called: Mapping[str, str] | None = None, **options: An
     with suppress(InputError):
         kind = kind_of(path, content)
     drawing = drawing_of(kind, path, content, options if unit is None else {**options, "unit": unit})
-    chains = cleaned(drawing.chains).chains
+    chains = tuple[Chain, ...]()
+    with suppress(InputError):
+        chains = cleaned(drawing.chains).chains
     size = size_of(chains)
     gaps, parts = gaps_and_parts(chains, options.get("join_tolerance", 1e-3), size)
     layers = tuple[DrawnLayer, ...]()
@@ -218,11 +256,13 @@ def drawing_of(kind: str, path: Path, content: bytes, options: Mapping[str, Any]
         if kind == "dxf":
             from workhold.files.dxf.reader import read_dxf
 
-            return read_dxf(path, content, layers=options.get("layers"), **taken)
+            with np.errstate(all="ignore"):
+                return read_dxf(path, content, layers=options.get("layers"), **taken)
         if kind == "svg":
             from workhold.files.svg.reader import read_svg
 
-            return read_svg(content, **taken)
+            with np.errstate(all="ignore"):
+                return read_svg(content, **taken)
     return Drawing(())
 
 
@@ -235,6 +275,14 @@ def solids_of(content: bytes) -> tuple[FileSolid, ...]:
     return ()
 
 
+def nest_of(loops: Sequence[Loop]) -> tuple[DrawnPart, ...]:
+    """The parts that loops make; none where it takes too long to tell."""
+    try:
+        return nest(loops, Budget(LIMITS["dxf"]))
+    except InputError:
+        return ()
+
+
 def gaps_and_parts(
     chains: tuple[Chain, ...], tolerance: float, size: tuple[float, float] | None
 ) -> tuple[tuple[float, ...], tuple[DrawnPart, ...]]:
@@ -245,6 +293,8 @@ def gaps_and_parts(
         strays = join(chains, 0.0).strays
         joined = join(chains, tolerance)
     except InputError:
+        return (), ()
+    if joined.junctions:
         # Ends that could go on in more than one way; the refusal says where.
         return (), ()
     ends = np.array(
@@ -257,4 +307,4 @@ def gaps_and_parts(
         away[k] = np.inf
         found.add(float(f"{away.min():.6g}"))
     widest = WIDEST_GAP * hypot(*size)
-    return tuple(sorted(gap for gap in found if 0.0 < gap <= widest)), nest(joined.loops)
+    return tuple(sorted(gap for gap in found if 0.0 < gap <= widest)), nest_of(joined.loops)

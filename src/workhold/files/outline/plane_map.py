@@ -1,0 +1,414 @@
+"""Drawn lines and arcs as a map of the plane: the outlines that neighbours share lines with, and doubled lines.
+
+Where three ends or more meet, an outline could go on in more than one way, but together the lines still bound
+regions: the parts of a nest along their common cuts. Lines that lie partly on each other count once.
+
+Glossary
+--------
+node : a point where edges end.
+edge : a piece of a line or an arc from node to node, on which no other node lies; drawn twice it is there
+    once.
+half-edge : an edge run one way: number 2 e runs edge e forward, 2 e + 1 backward.
+face : a region that half-edges bound, with the region on their left (doubly connected edge list; de Berg et
+    al., "Computational Geometry", chapter 2).
+dangle : an edge with the same region on both sides, such as one that leads nowhere.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from math import asin, atan2, dist, pi
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.files.outline.chain import Chain, rebulged
+from workhold.files.outline.joining import Loop, close_pairs, groups
+from workhold.geometry.loop import Comparisons, loop_segments, signed_area
+from workhold.geometry.segment import Arc, Point, Segment, bounding_box, segment_from_bulge
+from workhold.geometry.subdivision import CutCarrier, subdivide
+
+__all__ = ["Cluster", "clusters_of"]
+
+# More lines and arcs are no nest, and pairs of them that come near each other.
+MOST_SEGMENTS, MOST_PAIRS = 20_000, 1_000_000
+# mm. Ends of pieces this near are one node: twice what the subdivision rounds.
+NODE = 4e-6
+
+
+@frozen
+class Edge:
+    """A piece of what was drawn, between two nodes.
+
+    Parameters
+    ----------
+    first, last : numbers of its nodes.
+    bulge : run from the first to the last.
+    owners : numbers of the segments that it is a piece of.
+    """
+
+    first: int
+    last: int
+    bulge: float
+    owners: tuple[int, ...]
+
+
+@frozen
+class Cluster:
+    """Lines and arcs that hang together.
+
+    Parameters
+    ----------
+    faces : the closed outlines that they make, each counter-clockwise.
+    open : the pieces that bound none.
+    chains : numbers of the chains that they are of.
+    shared : for every line or arc between two faces its label, and its ends.
+    doubled : for every stretch on which two were drawn their labels, and its ends.
+    box : (smallest x, smallest y, largest x, largest y) in mm.
+    """
+
+    faces: tuple[Loop, ...]
+    open: tuple[Chain, ...]
+    chains: frozenset[int]
+    shared: tuple[tuple[str, Point, Point], ...]
+    doubled: tuple[tuple[str, str, Point, Point], ...]
+    box: tuple[float, float, float, float]
+
+
+def clusters_of(chains: Sequence[Chain], tolerance: float) -> list[Cluster]:
+    """The lines and arcs of some chains, cut where they meet, by what hangs together.
+
+    Parameters
+    ----------
+    tolerance : ends this near to others, or to a line or an arc, lie on it; in mm.
+
+    Raises
+    ------
+    InputError
+        Where there is too much of it.
+    """
+    segments, labels, numbers = list[Segment](), list[str](), list[int]()
+    for number, chain in enumerate(chains):
+        segments += chain.segments
+        labels += [
+            label for label, p, q in zip(chain.labels, chain.points, chain.points[1:], strict=False) if p != q
+        ]
+        numbers += [number] * (len(segments) - len(numbers))
+    comparisons = Comparisons("the drawing", MOST_PAIRS)
+    if len(segments) > MOST_SEGMENTS:
+        comparisons.spend(MOST_PAIRS + 1)
+    points, edges = plane_map(segments, tolerance, comparisons)
+    faces = faces_of(points, edges)
+    return [
+        cluster(points, edges, faces, members, labels, numbers) for members in connected(len(points), edges)
+    ]
+
+
+def plane_map(
+    segments: Sequence[Segment], tolerance: float, comparisons: Comparisons
+) -> tuple[NDArray[np.float64], list[Edge]]:
+    """The (N, 2) nodes of some lines and arcs, and the edges between them."""
+    touching = ends_on(segments, max(tolerance, NODE), comparisons)
+    carriers = subdivide(segments, [(segments[k], point) for k, point in touching], comparisons)
+    pieces = [
+        (carrier, low, high, owners_of(carrier, (low + high) / 2))
+        for carrier in carriers
+        for low, high in carrier.pieces()
+    ]
+    drawn = [end for segment in segments for end in (segment.start, segment.end)]
+    ends = [carrier.at(position) for carrier, low, high, _ in pieces for position in (low, high)]
+    places = np.array([*drawn, *ends], dtype=np.float64).reshape(-1, 2)
+    # A group is named by its smallest number: what was drawn comes before what was computed.
+    pairs = close_pairs(places, NODE)
+    across = [
+        (int(np.hypot(*(places - point).T).argmin()), nearest_other(places, segments[k], point))
+        for k, point in touching
+    ]
+    pairs = np.concatenate([pairs, np.array(across, dtype=np.int64).reshape(-1, 2)])
+    node = groups(len(places), pairs)
+    first_end = len(drawn)
+    edges: dict[tuple[int, int], list[tuple[Edge, Point]]] = defaultdict(list)
+    for k, (carrier, low, high, owners) in enumerate(pieces):
+        one, other = int(node[first_end + 2 * k]), int(node[first_end + 2 * k + 1])
+        if one == other:
+            continue
+        bulge = bulge_between(carrier, low, high)
+        start, end = ends[2 * k], ends[2 * k + 1]
+        new = tuple(places[one].tolist()), tuple(places[other].tolist())
+        if max(dist(start, new[0]), dist(end, new[1])) > NODE:
+            bulge = rebulged(start, end, bulge, new[0], new[1])
+        if one > other:
+            one, other, bulge = other, one, -bulge
+        middle = carrier.at((low + high) / 2)
+        twins = edges[one, other]
+        comparisons.spend(len(twins))
+        twin = next((at for at, (_, place) in enumerate(twins) if dist(place, middle) <= tolerance), None)
+        if twin is None:
+            twins.append((Edge(one, other, bulge + 0.0, owners), middle))
+        else:
+            kept, place = twins[twin]
+            twins[twin] = Edge(one, other, kept.bulge, (*kept.owners, *owners)), place
+    found = [edge for twins in edges.values() for edge, _ in twins]
+    return places, with_gaps_closed(places, found, tolerance)
+
+
+def ends_on(
+    segments: Sequence[Segment], tolerance: float, comparisons: Comparisons
+) -> list[tuple[int, Point]]:
+    """Ends of segments that lie on another one, away from its ends, to a tolerance: its number and the end."""
+    ends = np.unique(
+        np.array([end for one in segments for end in (one.start, one.end)]).reshape(-1, 2), axis=0
+    )
+    boxes = np.array([bounding_box(one) for one in segments]).reshape(-1, 4)
+    boxes += np.array([-tolerance, -tolerance, tolerance, tolerance])
+    found = []
+    for k, (x0, y0, x1, y1) in enumerate(boxes):
+        inside = (ends[:, 0] >= x0) & (ends[:, 0] <= x1) & (ends[:, 1] >= y0) & (ends[:, 1] <= y1)
+        near = ends[inside]
+        segment = segments[k]
+        if isinstance(segment, Arc):
+            (cx, cy), radius = segment.center, segment.radius
+            away = np.abs(np.hypot(near[:, 0] - cx, near[:, 1] - cy) - radius)
+        else:
+            (px, py), (tx, ty) = segment.middle, segment.tangent
+            away = np.abs((near[:, 0] - px) * ty - (near[:, 1] - py) * tx)
+        near = near[away <= tolerance]
+        comparisons.spend(len(near))
+        slack = tolerance if not isinstance(segment, Arc) else tolerance / segment.radius
+        for x, y in near.tolist():
+            if abs(segment.parameter((x, y))) < segment.half_extent - slack:
+                found.append((k, (x, y)))
+    return found
+
+
+def nearest_other(places: NDArray[np.float64], segment: Segment, point: Point) -> int:
+    """The number of the place nearest to the foot of a point on a segment."""
+    foot = segment.at(segment.parameter(point))
+    return int(np.hypot(*(places - foot).T).argmin())
+
+
+def owners_of(carrier: CutCarrier, position: float) -> tuple[int, ...]:
+    """Numbers of the segments that cover a position of a carrier."""
+    turns = (0.0, -2 * pi, 2 * pi) if isinstance(carrier.segment, Arc) else (0.0,)
+    return tuple(
+        owner
+        for owner, (low, high) in zip(carrier.owners, carrier.spans, strict=True)
+        if any(low <= position + turn <= high for turn in turns)
+    )
+
+
+def bulge_between(carrier: CutCarrier, low: float, high: float) -> float:
+    """The bulge of a carrier's piece, run as its positions grow: counter-clockwise on a circle."""
+    return float(np.tan((high - low) / 4)) if isinstance(carrier.segment, Arc) else 0.0
+
+
+def with_gaps_closed(places: NDArray[np.float64], edges: list[Edge], tolerance: float) -> list[Edge]:
+    """The edges, with ends that lead nowhere moved onto the nearest node within a tolerance."""
+    degree = degrees_of(edges)
+    loose = [node for node, count in degree.items() if count == 1]
+    nodes = np.array(sorted(degree), dtype=np.int64)
+    moved: dict[int, int] = {}
+    for node in loose:
+        away = np.hypot(*(places[nodes] - places[node]).T)
+        away[nodes == node] = np.inf
+        if len(away) and away.min() <= tolerance:
+            other = int(nodes[away.argmin()])
+            moved[node] = moved.get(other, other)
+    out = []
+    for edge in edges:
+        first, last = moved.get(edge.first, edge.first), moved.get(edge.last, edge.last)
+        if first == last:
+            continue
+        bulge = edge.bulge
+        if (first, last) != (edge.first, edge.last):
+            ends = [tuple(places[node].tolist()) for node in (edge.first, edge.last, first, last)]
+            bulge = rebulged(ends[0], ends[1], bulge, ends[2], ends[3])
+        out.append(Edge(first, last, bulge, edge.owners))
+    return out
+
+
+def degrees_of(edges: Iterable[Edge]) -> dict[int, int]:
+    """How many edges end at each node."""
+    degree: dict[int, int] = defaultdict(int)
+    for edge in edges:
+        degree[edge.first] += 1
+        degree[edge.last] += 1
+    return degree
+
+
+def connected(count: int, edges: Sequence[Edge]) -> list[list[int]]:
+    """Numbers of the edges that hang together."""
+    pairs = np.array([(edge.first, edge.last) for edge in edges], dtype=np.int64).reshape(-1, 2)
+    name = groups(count, pairs)
+    members: dict[int, list[int]] = defaultdict(list)
+    for k, edge in enumerate(edges):
+        members[int(name[edge.first])].append(k)
+    return list(members.values())
+
+
+def faces_of(points: NDArray[np.float64], edges: Sequence[Edge]) -> list[list[int]]:
+    """The half-edges of each region's border, without dangles; also of the region outside, run clockwise."""
+    kept = set(range(len(edges)))
+    while True:
+        kept = without_loose_ends(edges, kept)
+        walks = walks_of(points, edges, kept)
+        dangles = set()
+        for walk in walks:
+            seen = set(walk)
+            dangles |= {half // 2 for half in walk if half ^ 1 in seen}
+        if not dangles:
+            return walks
+        kept -= dangles
+
+
+def without_loose_ends(edges: Sequence[Edge], kept: set[int]) -> set[int]:
+    """Numbers of the edges that are left when those that lead nowhere are taken away, again and again."""
+    at: dict[int, set[int]] = defaultdict(set)
+    for k in kept:
+        at[edges[k].first].add(k)
+        at[edges[k].last].add(k)
+    loose = [node for node, some in at.items() if len(some) == 1]
+    left = set(kept)
+    while loose:
+        node = loose.pop()
+        for k in tuple(at[node]) if len(at[node]) == 1 else ():
+            left.discard(k)
+            for end in (edges[k].first, edges[k].last):
+                at[end].discard(k)
+                if len(at[end]) == 1:
+                    loose.append(end)
+    return left
+
+
+def walks_of(points: NDArray[np.float64], edges: Sequence[Edge], kept: set[int]) -> list[list[int]]:
+    """Closed walks of half-edges, each followed by the one that turns farthest to the left at its end."""
+    leaving: dict[int, list[int]] = defaultdict(list)
+    for k in sorted(kept):
+        leaving[edges[k].first].append(2 * k)
+        leaving[edges[k].last].append(2 * k + 1)
+    after: dict[int, int] = {}
+    for halves in leaving.values():
+        near = min(chord_of(points, edges[half // 2]) for half in halves) / 2
+        around = sorted(halves, key=lambda half: direction(points, edges, half, near))
+        for k, half in enumerate(around):
+            # Counter-clockwise about the node, the walk that comes in along a half-edge leaves by the one
+            # before it.
+            after[half ^ 1] = around[k - 1]
+    walks, done = [], set[int]()
+    for half in sorted(after):
+        walk = []
+        while half not in done:
+            done.add(half)
+            walk.append(half)
+            half = after[half]
+        if walk:
+            walks.append(walk)
+    return walks
+
+
+def chord_of(points: NDArray[np.float64], edge: Edge) -> float:
+    """The distance between the ends of an edge in mm."""
+    return float(np.hypot(*(points[edge.last] - points[edge.first])))
+
+
+def direction(points: NDArray[np.float64], edges: Sequence[Edge], half: int, near: float) -> float:
+    """The direction in radians in which a half-edge crosses the circle of some radius about its first node.
+
+    Edges that are tangent at the node differ there by their curvature.
+    """
+    edge = edges[half // 2]
+    start, end = (edge.first, edge.last) if half % 2 == 0 else (edge.last, edge.first)
+    bulge = edge.bulge if half % 2 == 0 else -edge.bulge
+    along = points[end] - points[start]
+    heading = atan2(along[1], along[0])
+    if abs(bulge) > 0:
+        segment = segment_from_bulge(tuple(points[start].tolist()), tuple(points[end].tolist()), bulge)
+        if isinstance(segment, Arc):
+            # The tangent leads half the sweep away from the chord, and the arc bends back by the angle of
+            # the chord to the circle.
+            heading -= segment.sign * segment.half_sweep
+            heading += segment.sign * asin(min(near / (2 * segment.radius), 1.0))
+    return (heading + pi) % (2 * pi)
+
+
+def cluster(
+    points: NDArray[np.float64],
+    edges: Sequence[Edge],
+    walks: Sequence[Sequence[int]],
+    members: Sequence[int],
+    labels: Sequence[str],
+    numbers: Sequence[int],
+) -> Cluster:
+    """The cluster of some edges."""
+    own = set(members)
+    place = [tuple(row) for row in points.tolist()]
+    faces, inner = [], defaultdict[int, int](int)
+    used = set[int]()
+    for walk in walks:
+        if walk[0] // 2 not in own:
+            continue
+        used.update(half // 2 for half in walk)
+        loop = loop_of(place, edges, walk, labels)
+        if signed_area(loop_segments(loop.vertices)) > 0:
+            faces.append(loop)
+            for half in walk:
+                inner[half // 2] += 1
+
+    def ends(k: int) -> tuple[Point, Point]:
+        return place[edges[k].first], place[edges[k].last]
+
+    shared = tuple((labels[edges[k].owners[0]], *ends(k)) for k in members if inner[k] == 2)
+    doubled = []
+    for k in members:
+        owners = edges[k].owners
+        if len(owners) > 1:
+            doubled.append((labels[owners[0]], labels[owners[1]], *ends(k)))
+    corners = np.array([place[node] for k in members for node in (edges[k].first, edges[k].last)])
+    return Cluster(
+        tuple(faces),
+        tuple(open_chains(place, [edges[k] for k in members if k not in used], labels)),
+        frozenset(numbers[owner] for k in members for owner in edges[k].owners),
+        shared,
+        tuple(doubled),
+        (*corners.min(axis=0).tolist(), *corners.max(axis=0).tolist()),
+    )
+
+
+def loop_of(
+    place: Sequence[Point], edges: Sequence[Edge], walk: Sequence[int], labels: Sequence[str]
+) -> Loop:
+    """The loop of a walk."""
+    rows, names = [], []
+    for half in walk:
+        edge = edges[half // 2]
+        start, bulge = (edge.first, edge.bulge) if half % 2 == 0 else (edge.last, -edge.bulge)
+        rows.append((*place[start], bulge + 0.0))
+        names.append(labels[edge.owners[0]])
+    return Loop(np.array(rows, dtype=np.float64), tuple(names))
+
+
+def open_chains(place: Sequence[Point], edges: Sequence[Edge], labels: Sequence[str]) -> Iterable[Chain]:
+    """Edges that bound nothing as chains, joined where just two of them meet."""
+    at: dict[int, list[int]] = defaultdict(list)
+    for k, edge in enumerate(edges):
+        at[edge.first].append(k)
+        at[edge.last].append(k)
+    done = set[int]()
+    starts = [node for node, some in at.items() if len(some) != 2]
+    for node in starts:
+        for k in at[node]:
+            here, points, bulges, names = node, [place[node]], list[float](), list[str]()
+            while k not in done:
+                done.add(k)
+                edge = edges[k]
+                forward = edge.first == here
+                here = edge.last if forward else edge.first
+                points.append(place[here])
+                bulges.append(edge.bulge if forward else 0.0 - edge.bulge)
+                names.append(labels[edge.owners[0]])
+                if len(at[here]) == 2:
+                    k = next((other for other in at[here] if other not in done), k)
+            if bulges:
+                yield Chain(tuple(points), tuple(bulges), tuple(names))

@@ -1,0 +1,396 @@
+"""The outlines of a drawing, also of neighbours that share lines, and the spots where none can be told.
+
+Glossary
+--------
+nest : outlines that share lines, as parts do that are cut apart by one common cut.
+bad spot : lines and arcs that hang together and could be an outline in more than one way. What it lies in
+    cannot be read; the rest can.
+frame : a nest with whole parts inside one of its outlines, as a sheet's border with its title block is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import pi
+
+import numpy as np
+from attrs import evolve, frozen
+from numpy.typing import NDArray
+
+from workhold.errors import InputError
+from workhold.files.budget import Budget, OverBudgetError
+from workhold.files.outline.chain import Chain, at, counted, listed, without_segment
+from workhold.files.outline.diagnostics import surrounds
+from workhold.files.outline.joining import Joined, Junction, Loop, Stray, join
+from workhold.files.outline.nesting import DrawnPart, MeasuredLoop, chosen_part, nest
+from workhold.files.outline.plane_map import Cluster, clusters_of
+from workhold.files.questions import PART_NUMBER
+from workhold.geometry.segment import Arc, Line, Segment, box_around
+from workhold.kernels.base.distance import is_inside
+
+__all__ = ["BadSpot", "Outlines", "chosen_outline", "outlines_of", "spot_remarks"]
+
+# mm. Cells no wider are graph paper or letters, and no parts.
+LEAST_CELL = 2.0
+# A sound outline is taken beside a bad spot that is so many times as large at most: otherwise it is a detail.
+MOST_LARGER = 4.0
+
+
+@frozen
+class BadSpot:
+    """Where an outline could go on in more than one way.
+
+    Parameters
+    ----------
+    junction : the first such point.
+    box : around all that hangs together with it: (smallest x, smallest y, largest x, largest y) in mm.
+    bounds_something : whether it can be the border of anything.
+    layer : that its lines are on, where the drawing has layers and it is one.
+    """
+
+    junction: Junction
+    box: tuple[float, float, float, float]
+    bounds_something: bool
+    layer: str = ""
+
+    def __str__(self) -> str:
+        return f"{self.junction}{f' on layer {self.layer!r}' if self.layer else ''}"
+
+    @property
+    def area(self) -> float:
+        """Area of its box in mm²."""
+        return (self.box[2] - self.box[0]) * (self.box[3] - self.box[1])
+
+
+@frozen
+class Outlines:
+    """What a drawing's lines and arcs are.
+
+    Parameters
+    ----------
+    parts : by decreasing area.
+    strays : what is open.
+    spots : what cannot be told.
+    remarks : what was joined, left out and shared.
+    """
+
+    parts: tuple[DrawnPart, ...]
+    strays: tuple[Stray, ...]
+    spots: tuple[BadSpot, ...]
+    remarks: tuple[str, ...]
+
+
+def outlines_of(
+    chains: Sequence[Chain], tolerance: float, layers: Mapping[str, str], budget: Budget
+) -> Outlines:
+    """The outlines that chains make.
+
+    Parameters
+    ----------
+    chains : in mm, without segments of zero length.
+    tolerance : largest gap to close, in mm.
+    layers : that segments are on, by their labels; nothing for drawings without layers.
+    budget : what reading the file may still take.
+
+    Raises
+    ------
+    InputError
+        Where the tolerance cannot be meant, and where time is up.
+    """
+    joined = join(chains, tolerance, budget)
+    remarks = list(joined.remarks)
+    if joined.strays and not joined.junctions:
+        joined = with_doubled_lines_once(joined, tolerance, remarks)
+    if not joined.junctions:
+        return Outlines(nest(joined.loops, budget), joined.strays, (), tuple(remarks))
+    return untangled(joined, tolerance, layers, budget, remarks)
+
+
+def with_doubled_lines_once(joined: Joined, tolerance: float, remarks: list[str]) -> Joined:
+    """Joins what did not close because lines or arcs were drawn partly on each other, with remarks."""
+    chains = [stray.chain for stray in joined.strays]
+    if not lie_on_each_other([segment for chain in chains for segment in chain.segments], tolerance):
+        return joined
+    clusters = [one for one in clusters_or_none(chains, tolerance) if one.doubled]
+    if not clusters:
+        return joined
+    taken = {number for one in clusters for number in one.chains}
+    strays = [stray for number, stray in enumerate(joined.strays) if number not in taken]
+    loops = list(joined.loops)
+    for number, one in enumerate(clusters, start=1):
+        loops += [evolve(face, nest=number if len(one.faces) > 1 else 0) for face in one.faces]
+        strays += [stray_of(chain) for chain in one.open]
+        remarks += shared_remarks(one)
+    places = listed([said for one in clusters for said in doubled_places(one)])
+    remarks.append(f"Read lines or arcs that lie on each other as one: {places}.")
+    return evolve(joined, loops=tuple(loops), strays=tuple(strays))
+
+
+def untangled(
+    joined: Joined, tolerance: float, layers: Mapping[str, str], budget: Budget, remarks: list[str]
+) -> Outlines:
+    """The outlines of a drawing with points where one could go on in more than one way."""
+    tangled = list(joined.tangled)
+    around = box_around([segment for chain in tangled for segment in chain.segments])
+    near = [loop for loop in joined.loops if meets(box_of(loop), around)]
+    extra = [*(stray.chain for stray in joined.strays), *map(chain_of, near)]
+    clusters = [
+        one
+        for one in clusters_or_none([*tangled, *extra], tolerance)
+        if any(number < len(tangled) for number in one.chains)
+    ]
+    clusters.sort(key=lambda one: (one.box[0] - one.box[2]) * (one.box[3] - one.box[1]))
+    loops, strays = list(joined.loops), list(joined.strays)
+    spots, nests = list[BadSpot](), list[Cluster]()
+    known = set[int]()
+    for one in clusters:
+        known |= one.chains
+        budget.check_time()
+        gone = {
+            id(near[k - len(tangled) - len(joined.strays)])
+            for k in one.chains
+            if k >= len(tangled) + len(joined.strays)
+        }
+        others = [loop for loop in loops if id(loop) not in gone]
+        if is_nest(one, layers) and not in_material(one, others):
+            nests.append(one)
+            taken = {k - len(tangled) for k in one.chains}
+            strays = [
+                stray
+                for stray in strays
+                if not any(stray is joined.strays[k] for k in taken if 0 <= k < len(joined.strays))
+            ]
+            loops = others + [evolve(face, nest=len(nests)) for face in one.faces]
+            strays += [stray_of(chain) for chain in one.open]
+        else:
+            labels = {label for k in one.chains if k < len(tangled) for label in tangled[k].labels}
+            spots += spot_of(joined.junctions, labels, one.box, bool(one.faces), layers)
+    for k, chain in enumerate(tangled):
+        if k not in known:
+            # There is too much of it to look at.
+            spots += spot_of(joined.junctions, set(chain.labels), box_around(chain.segments), True, layers)
+    parts = nest(loops, budget)
+    frames = {number for number in range(1, len(nests) + 1) if is_frame(number, parts)}
+    if frames:
+        parts = nest([loop for loop in loops if loop.nest not in frames], budget)
+    for number, one in enumerate(nests, start=1):
+        names = listed(list(dict.fromkeys(without_segment(label) for label, _, _ in one.shared)))
+        remarks += (
+            [f"Left out a frame around the parts ({names})."] if number in frames else shared_remarks(one)
+        )
+    return Outlines(parts, tuple(strays), tuple(spots_once(spots)), tuple(remarks))
+
+
+def clusters_or_none(chains: Sequence[Chain], tolerance: float) -> list[Cluster]:
+    """What hangs together; nothing where there is too much to look at."""
+    try:
+        return clusters_of(chains, tolerance)
+    except OverBudgetError:
+        raise
+    except InputError:
+        return []
+
+
+def is_nest(one: Cluster, layers: Mapping[str, str]) -> bool:
+    """Whether lines that hang together are outlines that share some: on one layer, and larger than letters."""
+    if not one.faces or (len(one.faces) == 1 and one.open):
+        return False
+    used = {layers.get(label, "").casefold() for face in one.faces for label in face.labels}
+    size = max(max(x1 - x0, y1 - y0) for x0, y0, x1, y1 in map(box_of, one.faces))
+    return len(used) == 1 and size > LEAST_CELL
+
+
+def in_material(one: Cluster, loops: Sequence[Loop]) -> bool:
+    """Whether lines that hang together lie inside a part, where they are holes."""
+    x, y, _ = one.faces[0].vertices[0]
+    around = [loop for loop in loops if surrounds(box_of(loop), one.box)]
+    return sum(is_inside(float(x), float(y), MeasuredLoop.of(loop).rows) for loop in around) % 2 == 1
+
+
+def is_frame(number: int, parts: Sequence[DrawnPart]) -> bool:
+    """Whether whole parts lie in a hole of an outline of a nest."""
+    for part in parts:
+        if part.loops[0].nest != number:
+            continue
+        for hole in map(MeasuredLoop.of, part.loops[1:]):
+            for other in parts:
+                if surrounds(hole.box, other.bounds) and other.loops[0].nest != number:
+                    x, y, _ = other.loops[0].vertices[0]
+                    if is_inside(float(x), float(y), hole.rows):
+                        return True
+    return False
+
+
+def spot_of(
+    junctions: Sequence[Junction],
+    labels: set[str],
+    box: tuple[float, float, float, float],
+    bounds_something: bool,
+    layers: Mapping[str, str],
+) -> list[BadSpot]:
+    """The bad spot of lines that hang together, by the first junction among them."""
+    for junction in junctions:
+        if not labels.isdisjoint(junction.labels):
+            used = {layers.get(label, "") for label in junction.labels}
+            return [BadSpot(junction, box, bounds_something, used.pop() if len(used) == 1 else "")]
+    return []
+
+
+def spots_once(spots: Sequence[BadSpot]) -> list[BadSpot]:
+    """Bad spots of one junction as one, in the order of their junctions."""
+    found: dict[int, BadSpot] = {}
+    for spot in spots:
+        known = found.setdefault(id(spot.junction), spot)
+        low, high = np.minimum(known.box, spot.box), np.maximum(known.box, spot.box)
+        found[id(spot.junction)] = evolve(known, box=(*low[:2].tolist(), *high[2:].tolist()))
+    return list(found.values())
+
+
+def chosen_outline(outlines: Outlines, number: int | str | None) -> DrawnPart:
+    """The part of a number, or the largest that can be told.
+
+    Raises
+    ------
+    InputError
+        Where there is none, where a bad spot lies in it, and where something larger that cannot be told may
+        be meant.
+    """
+    parts, spots = outlines.parts, outlines.spots
+    if number is not None or not spots:
+        part = chosen_part(parts, number)
+        for spot in spots:
+            if is_spoiled(part, spot):
+                raise spot.junction.refusal
+        return part
+    sound = [part for part in parts if not any(is_spoiled(part, spot) for spot in spots)]
+    if not sound:
+        raise spots[0].junction.refusal
+    best = sound[0]
+    for spot in spots:
+        larger = [spot.area, *(part.area for part in parts if is_spoiled(part, spot))]
+        around = [spot.box, *(part.bounds for part in parts if is_spoiled(part, spot))]
+        if max(larger) > MOST_LARGER * best.area or any(surrounds(box, best.bounds) for box in around):
+            said = str(spot.junction.refusal).rstrip(".")
+            raise InputError(f"{said}. To read {best} all the same, give {PART_NUMBER} {best.number}.")
+    return best
+
+
+def is_spoiled(part: DrawnPart, spot: BadSpot) -> bool:
+    """Whether a bad spot lies in the material of a part, where it may be the border of a hole."""
+    if not spot.bounds_something or not meets(part.bounds, spot.box):
+        return False
+    x, y = spot.junction.point
+    outer, *holes = (MeasuredLoop.of(loop) for loop in part.loops)
+    return bool(is_inside(x, y, outer.rows)) and not any(is_inside(x, y, hole.rows) for hole in holes)
+
+
+def spot_remarks(outlines: Outlines) -> list[str]:
+    """What to say of the bad spots of a drawing of which a part is read all the same."""
+    if not outlines.spots:
+        return []
+    places = listed([str(spot) for spot in outlines.spots])
+    spoiled = [
+        str(part.number) for part in outlines.parts if any(is_spoiled(part, spot) for spot in outlines.spots)
+    ]
+    cannot = f"; part {', '.join(spoiled[:10])} around cannot be read" if spoiled else ""
+    count = counted(len(outlines.spots), "place", "places")
+    return [f"Left out {count} where an outline could go on in more than one way: {places}{cannot}."]
+
+
+def shared_remarks(one: Cluster) -> list[str]:
+    """What to say of outlines that share lines."""
+    if len(one.faces) < 2:
+        return []
+    places = listed([f"{label} from {at(start)} to {at(end)}" for label, start, end in one.shared])
+    return [
+        f"Read {len(one.faces)} outlines that share lines as separate parts: {places}; where such a line is no "
+        "cut, remove it, or put it on a layer that is not chosen."
+    ]
+
+
+def doubled_places(one: Cluster) -> list[str]:
+    """Where lines lie on each other."""
+    return [
+        f"{without_segment(label)} and {without_segment(other)} from {at(start)} to {at(end)}"
+        for label, other, start, end in one.doubled
+    ]
+
+
+def stray_of(chain: Chain) -> Stray:
+    """An open piece."""
+    return Stray(chain, without_segment(chain.labels[0]), without_segment(chain.labels[-1]))
+
+
+def chain_of(loop: Loop) -> Chain:
+    """A loop as a closed chain."""
+    points = [(float(x), float(y)) for x, y in loop.vertices[:, :2]]
+    return Chain((*points, points[0]), tuple(loop.vertices[:, 2].tolist()), loop.labels)
+
+
+def box_of(loop: Loop) -> tuple[float, float, float, float]:
+    """The bounding box of a loop."""
+    return box_around(chain_of(loop).segments)
+
+
+def meets(a: Sequence[float], b: Sequence[float]) -> bool:
+    """Whether two bounding boxes meet."""
+    return a[0] <= b[2] and b[0] <= a[2] and a[1] <= b[3] and b[1] <= a[3]
+
+
+# Radians and mm: lines and circles nearer than this are looked at as one.
+NEAR_ANGLE, NEAR_PLACE = 1e-6, 1e-5
+
+
+def lie_on_each_other(segments: Sequence[Segment], tolerance: float) -> bool:
+    """Whether two of some lines and arcs run along each other for more than a tolerance, in mm."""
+    lines = [one for one in segments if isinstance(one, Line)]
+    if len(lines) > 1 and lines_overlap(lines, tolerance):
+        return True
+    arcs: dict[tuple[float, ...], list[tuple[float, float]]] = {}
+    for one in segments:
+        if isinstance(one, Arc):
+            key = tuple(round(value / NEAR_PLACE) for value in (*one.center, one.radius))
+            first = (one.mid_angle - one.half_sweep) % (2 * pi)
+            spans = arcs.setdefault(key, [])
+            slack = tolerance / one.radius
+            for turn in (-2 * pi, 0.0):
+                spans.append((first + turn + slack, first + turn + 2 * one.half_sweep - slack))
+    return any(spans_overlap(spans) for spans in arcs.values())
+
+
+def lines_overlap(lines: Sequence[Line], tolerance: float) -> bool:
+    """Whether two of some lines run along each other."""
+    rows = np.array([(*one.start, *one.end) for one in lines])
+    rows = rows - np.tile(rows.reshape(-1, 2).mean(axis=0), 2)
+    angle = np.arctan2(rows[:, 3] - rows[:, 1], rows[:, 2] - rows[:, 0]) % pi
+    angle[angle > pi - NEAR_ANGLE] -= pi
+    for some in runs_near(angle, np.arange(len(rows)), NEAR_ANGLE):
+        turned = float(angle[some[0]])
+        c, s = np.cos(turned), np.sin(turned)
+        off = c * rows[some, 1] - s * rows[some, 0]
+        for same in runs_near(off, some, NEAR_PLACE):
+            along = np.sort(rows[same][:, [0, 2]] * c + rows[same][:, [1, 3]] * s, axis=1)
+            if spans_overlap([(low + tolerance / 2, high - tolerance / 2) for low, high in along.tolist()]):
+                return True
+    return False
+
+
+def runs_near(
+    values: NDArray[np.float64], numbers: NDArray[np.int64], slack: float
+) -> list[NDArray[np.int64]]:
+    """Numbers in groups of two and more whose values follow each other within a slack."""
+    order = np.argsort(values, kind="stable")
+    breaks = np.flatnonzero(np.diff(values[order]) > slack) + 1
+    return [numbers[part] for part in np.split(order, breaks) if len(part) > 1]
+
+
+def spans_overlap(spans: Sequence[tuple[float, float]]) -> bool:
+    """Whether one of some spans begins before one that began earlier has ended."""
+    reached = -np.inf
+    for low, high in sorted(spans):
+        if high <= low:
+            continue
+        if low < reached:
+            return True
+        reached = max(reached, high)
+    return False
