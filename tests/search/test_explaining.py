@@ -259,6 +259,6 @@ def test_a_part_is_called_round_only_if_it_is() -> None:
 def test_the_pitch_is_to_blame_only_if_it_is() -> None:
     """Two pegs of one jaw reach the part in more rows than the one asked for; on a wide pitch they do not anyway."""
     too_far = no_fixture_notes(WIDE.wording)[1]
-    (said, _) = reasons(PLAIN_PLATE, evolve(WIDE, rows=1))
+    (said,) = reasons(PLAIN_PLATE, evolve(WIDE, rows=1))
     assert said != too_far and "rows of holes" in said and "pitch" not in said
     assert reasons(PLAIN_PLATE, evolve(WIDE, pitch=500, rows=1))[0] == too_far

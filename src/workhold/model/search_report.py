@@ -239,7 +239,7 @@ def asked_note(asked: Sequence[str]) -> str:
 
     Parameters
     ----------
-    asked : see ``Query.asked``.
+    asked : see ``Query.restricted_by``; what limits the hardware is named by an explanation.
     """
     return f"So it is with what was asked for: {listed(asked)}." if asked else ""
 
