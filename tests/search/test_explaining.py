@@ -18,6 +18,7 @@ from workhold.search import explaining
 from workhold.search.explaining import explain
 from workhold.search.toolkit_search import count_contacts
 from workhold.units import MILLIMETRE
+from workhold.verification.verify import verify
 
 PLAIN = Vise(pitch=8, columns=1, peg_radius=3)
 
@@ -227,8 +228,9 @@ def test_what_takes_the_last_fixture_together_is_left_out_together(
 
 
 def reasons(workpiece: Workpiece, toolkit: Any, margin: float = 0.0, **asked: Any) -> tuple[str, ...]:
-    """Why a search finds nothing."""
+    """Why a search finds nothing, which a verification takes as what follows."""
     result = answer(Query(workpiece, toolkit, None, margin, Restrictions(**asked)))
+    assert verify(result).faults == ()
     assert not any(result.found.values()) and result.complete
     return result.reasons
 
