@@ -17,7 +17,7 @@ import attrs
 import numpy as np
 import pytest
 
-from workhold import Vise, Workpiece, answer, load
+from workhold import Vise, Workpiece, answer, limits, load
 from workhold.cli.values import optional_force
 from workhold.errors import InputError, lacks_memory
 from workhold.files.part.load import read_workpiece
@@ -33,6 +33,16 @@ HOLE: list[list[float]] = [[20, 20, 1], [30, 20, 1]]
 VISE: dict[str, object] = {"pitch": 10, "columns": 2, "peg_radius": 2}
 ADDRESS_SPACE = 3 << 30
 SECONDS = 600
+
+
+@pytest.mark.parametrize("needed", [160_000_000, 1_000_400_000, 999_999_999])
+def test_the_address_space_that_is_named_is_enough(needed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    limited = needed // 2
+    monkeypatch.setattr(resource, "getrlimit", lambda kind: (limited, limited))
+    with pytest.raises(InputError, match=r"takes [\d,]+ MB") as told:
+        limits.refuse_little_space(needed, "this", "raise the limit")
+    limited = int(str(told.value).split("takes ")[1].split(" MB")[0].replace(",", "")) * 10**6
+    limits.refuse_little_space(needed, "this", "raise the limit")
 
 
 def with_bulge(bulge: float) -> Loops:

@@ -126,8 +126,9 @@ def refuse_little_space(needed: int, what: str, remedy: str) -> None:
         return
     limit = resource.getrlimit(resource.RLIMIT_AS)[0]
     if limit != resource.RLIM_INFINITY and limit < needed:
+        # Rounded up, so that a limit of just so much is enough.
         raise InputError(
-            f"{what} takes {needed / 1e6:,.0f} MB of address space, and this process is limited to "
+            f"{what} takes {ceil(needed / 1e6):,} MB of address space, and this process is limited to "
             f"{limit / 1e6:,.0f} MB (ulimit -v): {remedy}."
         )
 

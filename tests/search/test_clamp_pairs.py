@@ -454,8 +454,8 @@ def test_a_part_far_too_large_for_the_pitch_is_refused_with_one_that_does() -> N
 @pytest.mark.parametrize("pitch", [20.0, (25.0, 10.0)], ids=str)
 def test_the_pitch_that_a_refusal_names_is_counted(pitch: float | tuple[float, float]) -> None:
     """Of a panel with many slanted holes, in which more contacts are left than the number of holes lets expect."""
-    step, ring = 36, np.exp(-2j * np.pi * np.arange(5) / 5) * 8
-    holes = [ring + step * (1 + i + 1j * (1 + j)) for i in range(5) for j in range(5)]
+    step, ring = 216 / 7, np.exp(-2j * np.pi * np.arange(5) / 5) * 8
+    holes = [ring + step * (1 + i + 1j * (1 + j)) for i in range(6) for j in range(6)]
     corners = [np.array([0, 216, 216 + 216j, 216j]), *holes]
     panel = Workpiece.from_loops("panel", [[[z.real, z.imag, 0] for z in loop] for loop in corners])
     with pytest.raises(InputError, match=r"use a pitch of (\d+) mm or more") as told:

@@ -11,13 +11,14 @@ import numpy as np
 import pytest
 from attrs import evolve
 
-from workhold import Fence, Plate, Query, Vise, Workpiece, answer, design, load
+from workhold import Fence, InputError, Plate, Query, Result, Vise, Workpiece, answer, design, load
 from workhold.model.requirements import Restrictions, circle_zone
 from workhold.model.search_report import Explanation, asked_note, no_fixture_notes
 from workhold.search import explaining
 from workhold.search.explaining import explain
 from workhold.search.toolkit_search import count_contacts
 from workhold.units import MILLIMETRE
+from workhold.verification.verify import verify
 
 PLAIN = Vise(pitch=8, columns=1, peg_radius=3)
 
@@ -227,8 +228,9 @@ def test_what_takes_the_last_fixture_together_is_left_out_together(
 
 
 def reasons(workpiece: Workpiece, toolkit: Any, margin: float = 0.0, **asked: Any) -> tuple[str, ...]:
-    """Why a search finds nothing."""
+    """Why a search finds nothing, which a verification takes as what follows."""
     result = answer(Query(workpiece, toolkit, None, margin, Restrictions(**asked)))
+    assert verify(result).faults == ()
     assert not any(result.found.values()) and result.complete
     return result.reasons
 
@@ -259,6 +261,19 @@ def test_a_part_is_called_round_only_if_it_is() -> None:
 def test_the_pitch_is_to_blame_only_if_it_is() -> None:
     """Two pegs of one jaw reach the part in more rows than the one asked for; on a wide pitch they do not anyway."""
     too_far = no_fixture_notes(WIDE.wording)[1]
-    (said, _) = reasons(PLAIN_PLATE, evolve(WIDE, rows=1))
+    (said,) = reasons(PLAIN_PLATE, evolve(WIDE, rows=1))
     assert said != too_far and "rows of holes" in said and "pitch" not in said
     assert reasons(PLAIN_PLATE, evolve(WIDE, pitch=500, rows=1))[0] == too_far
+
+
+def test_zones_and_faces_to_avoid_are_both_named_where_they_leave_nothing() -> None:
+    """A zone over the one face that is not avoided; alone it is the zones."""
+    side = circle_zone(0.0, 20.0, 25.0)
+    for avoid, words in (
+        ((0, 1, 2), "stand on another face: make them smaller, or avoid fewer faces"),
+        ((), ""),
+    ):
+        zones = (side,) if avoid else (circle_zone(30.0, 20.0, 60.0),)
+        with pytest.raises(InputError, match=words or r"stand: make them smaller\.$"):
+            answer(Query(PLAIN_PLATE, WIDE, restrictions=Restrictions(avoid=avoid, zones=zones)))
+    assert isinstance(answer(Query(PLAIN_PLATE, WIDE, restrictions=Restrictions(zones=(side,)))), Result)

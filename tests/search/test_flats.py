@@ -204,6 +204,15 @@ def test_keeping_their_place() -> None:
                 made(value)
 
 
+@pytest.mark.parametrize("distance", [0.0, 1.0, 3.0, 3.9])
+def test_the_widest_flat_that_is_named_can_be_made(distance: float) -> None:
+    """Half its width is an irrational number most often, and is rounded down."""
+    with pytest.raises(InputError, match=r"give up to ([\d.]+)\.$") as told:
+        Vise(9, 2, 4, flat=(distance, 4.5))
+    named = float(str(told.value).split("give up to ")[1][:-1])
+    assert Vise(9, 2, 4, flat=(distance, named)).flat == Flat(distance, named)
+
+
 def test_a_toolkit_file_and_a_table(tmp_path: Path) -> None:
     """In inches; in a spreadsheet each peg's angle stands behind all else."""
     path = tmp_path / "flat.toml"

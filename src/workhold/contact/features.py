@@ -139,8 +139,8 @@ def allowed_features(
     if not left:
         other, avoid = (" on another face", ", or avoid fewer faces") if avoided else ("", "")
         raise InputError(
-            f"the keep-out zones cover every place along {workpiece.name} where a peg could stand{other}: make "
-            f"them smaller{avoid}."
+            f"the keep-out zones cover every place along {workpiece.name} where a peg could stand{other}: "
+            f"make them smaller{avoid}."
         )
     clear = left
     for pieces, beyond in swept:

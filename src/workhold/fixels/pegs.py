@@ -9,7 +9,7 @@ must be clear of all else.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from math import acos, cos, isfinite, nan, pi, radians, sin, sqrt
+from math import acos, cos, floor, isfinite, nan, pi, radians, sin, sqrt
 from typing import Any
 
 from attrs import evolve, field, frozen
@@ -83,9 +83,11 @@ def resolved_flat(flat: Flat | None, peg_radius: float) -> Flat | None:
     widest = sqrt(peg_radius**2 - flat.distance**2)
     half_width = widest if flat.half_width != flat.half_width else flat.half_width
     if not 0 <= half_width <= widest + ROUNDED * peg_radius:
+        # Rounded down, so that it can be given.
+        most = floor(widest * 1e3) / 1e3
         raise InputError(
             f"half a width of {half_width:g} mm is none of a flat {flat.distance:g} mm from the centre of a "
-            f"peg of radius {peg_radius:g}: give up to {widest:.4g}."
+            f"peg of radius {peg_radius:g}: give up to {most:.10g}."
         )
     return evolve(flat, half_width=half_width)
 

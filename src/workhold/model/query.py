@@ -197,25 +197,27 @@ class Query:
     @property
     def asked(self) -> tuple[str, ...]:
         """What was asked for that rules fixtures out, in words, as an explanation calls it."""
-        others = {
+        return (*self.restricted_by, *(limit.rule for limit in self.toolkit.limits))
+
+    @property
+    def restricted_by(self) -> tuple[str, ...]:
+        """What of :attr:`asked` the query itself asks for, whatever the toolkit."""
+        rules = {
+            "faces to avoid": bool(self.restrictions.avoid),
+            "keep-out zones": bool(self.restrictions.zones),
+            "tools of the program": self.program is not None,
             "angles of the part": bool(self.restrictions.angles),
             "contact margin": self.contact_margin > 0.0,
             "types sought": len(self.arrangements) < len(self.toolkit.types),
         }
-        limits = (limit.rule for limit in self.toolkit.limits)
-        rules = (*self.asked_of_places, *limits, *(name for name, is_asked in others.items() if is_asked))
-        return tuple(dict.fromkeys(rules))
+        return tuple(name for name, is_asked in rules.items() if is_asked)
 
     @property
     def asked_of_places(self) -> tuple[str, ...]:
         """What of :attr:`asked` leaves fewer places for pegs along the part, or fewer holes for them."""
-        places = {
-            "faces to avoid": bool(self.restrictions.avoid),
-            "keep-out zones": bool(self.restrictions.zones),
-            "tools of the program": self.program is not None,
-        }
+        places = ("faces to avoid", "keep-out zones", "tools of the program")
         holes = (limit.rule for limit in self.toolkit.limits if limit.bounds != "travel")
-        return (*(name for name, is_asked in places.items() if is_asked), *holes)
+        return (*(name for name in self.restricted_by if name in places), *holes)
 
     @property
     def without_program(self) -> Query:

@@ -61,7 +61,7 @@ class Result:
     seating: tuple[Seating, ...] = field(default=(), hash=False)
 
     def __attrs_post_init__(self) -> None:
-        notes, asked = self.reasons, asked_note(self.query.asked)
+        notes, asked = self.reasons, asked_note(self.query.restricted_by)
         if asked and self.complete and notes and not any(self.found.values()):
             notes = (*(note for note in notes if note != asked), asked)
         if self.workpiece.departure > 0:

@@ -178,7 +178,7 @@ class Explanation:
     def taken_by(self) -> tuple[str, ...]:
         """What was asked for that takes the last fixtures, each alone or, where one alone does not, together.
 
-        There are fixtures without it, so the part and the lattice are not to blame, whichever rule is the last.
+        There are fixtures without it, so the part is not to blame, whichever rule is the last.
         """
         return tuple(dict.fromkeys(rule for help in self.helps for rule in help.rules))
 
@@ -248,23 +248,23 @@ def no_pair_note(seats: int, contacts: int) -> str:
 
 
 def asked_note(asked: Sequence[str]) -> str:
-    """The remark on a search without a fixture of what was asked for besides holding the part, if anything was.
+    """The remark on a search without a fixture that names what was asked for, if anything was.
 
     Parameters
     ----------
-    asked : see ``Query.asked``.
+    asked : see ``Query.restricted_by``; what limits the hardware is named by an explanation.
     """
     return f"So it is with what was asked for: {listed(asked)}." if asked else ""
 
 
 def left_notes(wording: Wording, asked: Sequence[str]) -> tuple[str, str]:
-    """Why what was asked for leaves no fixture of a part that has other faces, and of a lattice with other steps.
+    """Why what was asked for leaves no fixture of a part with other faces, and of a lattice with other steps.
 
     They stand for the first two of :func:`no_fixture_notes`, which are about the part and the pitch alone.
     """
     return (
-        f"With what was asked for ({listed(asked)}) every place that is left for a peg lies along arcs about one "
-        "centre, so the forces of all pegs meet in that point and nothing keeps the part from turning.",
+        f"With what was asked for ({listed(asked)}) every place that is left for a peg lies along arcs about "
+        "one centre, so the forces of all pegs meet in that point and nothing keeps the part from turning.",
         f"With what was asked for ({listed(asked)}) no {wording.two} can touch the part together.",
     )
 

@@ -230,7 +230,6 @@ def helps_data(explanation: Explanation, key: str) -> list[dict[str, Any]]:
             "change": help.change,
             "fixtures": help.fixtures,
             "complete": help.complete,
-            "rules": list(help.rules),
             key: None
             if help.fields is None
             else {name: written(value) for name, value in help.fields.items()},

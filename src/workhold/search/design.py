@@ -248,7 +248,7 @@ def why_none(search: ToolkitSearch, contacts: int, proven: int, threads: int, ca
 
 
 def of_what_is_left(reason: str, problem: Problem, threads: int) -> str:
-    """A reason that is about the part and the pitch, as one about what was asked for where that is the cause."""
+    """A reason that blames part or pitch, or one that blames what was asked for where that is the cause."""
     query, toolkit = problem.query, problem.toolkit
     concentric, too_far, *_ = no_fixture_notes(toolkit.wording)
     if reason not in (concentric, too_far) or not query.asked_of_places:

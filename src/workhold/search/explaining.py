@@ -9,10 +9,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from operator import attrgetter
 from threading import Event, Timer
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
-from attrs import evolve, frozen
+from attrs import evolve
 
 from workhold.contact.problem import Problem
 from workhold.errors import InputError, listed
@@ -173,7 +173,7 @@ def helps(query: Query, threads: int | None, unit: Unit) -> tuple[Help, ...]:
     """Single changes of what was asked for with which there are fixtures, the most first."""
     out, lifts = [], list[Lift]()
     for change in changes(query, unit):
-        result = answer_of(change.changed, query, threads)
+        result = answer_of(change.change, query, threads)
         if result is not None and any(result.found.values()):
             words = change.words + nearest_turn(query, result)
             found = sum(result.found.values())
@@ -205,7 +205,7 @@ def together(query: Query, lifts: Sequence[Lift], threads: int | None) -> Iterat
     def found_without(some: Sequence[Lift]) -> Result | None:
         def changed(asked: Query) -> Query:
             for lift in some:
-                asked = lift.changed(asked)
+                asked = lift.change(asked)
             return asked
 
         result = answer_of(changed, query, threads)
@@ -242,54 +242,65 @@ def nearest_turn(query: Query, result: Result) -> str:
     return f", the nearest {beyond[nearest]:.1f} degrees farther, at {found[nearest] % 360.0:.2f}"
 
 
-@frozen
-class Lift:
+class Lift(NamedTuple):
     """A change of a query to try.
 
     Parameters
     ----------
     words : what it does.
     changed : makes the changed query, or finds that there is none such.
-    rules : what was asked for that it leaves out, see ``Query.asked``.
     fields : those of the toolkit that it changes, if it does.
-    is_whole : whether nothing is left of the rules, so that it can be made together with others.
+    rules : what was asked for that it leaves out, see ``Query.asked``.
+    change : the same for any query, so that it can be made together with others.
+    is_whole : whether nothing is left of the rules.
     """
 
     words: str
-    changed: Callable[[Query], Query]
-    rules: tuple[str, ...] = ()
-    fields: Mapping[str, Any] | None = None
-    is_whole: bool = True
+    changed: Callable[[], Query]
+    fields: Mapping[str, Any] | None
+    rules: tuple[str, ...]
+    change: Callable[[Query], Query]
+    is_whole: bool
 
 
 def changes(query: Query, unit: Unit) -> Iterator[Lift]:
     """Changes of a query to try, one at a time."""
     asked, toolkit = query.restrictions, query.toolkit
+
+    def lift(
+        words: str,
+        change: Callable[[Query], Query],
+        rules: tuple[str, ...],
+        fields: Mapping[str, Any] | None = None,
+        is_whole: bool = True,
+    ) -> Lift:
+        return Lift(words, partial(change, query), fields, rules, change, is_whole)
+
     if asked.avoid:
         faces = ("faces " if len(asked.avoid) > 1 else "face ") + ", ".join(map(str, asked.avoid))
-        yield Lift(f"touching {faces} too", partial(restricted, avoid=()), ("faces to avoid",))
+        yield lift(f"touching {faces} too", partial(restricted, avoid=()), ("faces to avoid",))
         for face in asked.avoid[: MOST_FACES if len(asked.avoid) > 1 else 0]:
             rest = tuple(number for number in asked.avoid if number != face)
-            lift = partial(restricted, avoid=rest)
-            yield Lift(f"touching face {face} too", lift, ("faces to avoid",), is_whole=False)
+            touching = partial(restricted, avoid=rest)
+            yield lift(f"touching face {face} too", touching, ("faces to avoid",), is_whole=False)
     if asked.zones:
-        yield Lift("without the keep-out zones", partial(restricted, zones=()), ("keep-out zones",))
+        yield lift("without the keep-out zones", partial(restricted, zones=()), ("keep-out zones",))
     if query.program is not None:
         line = line_in_the_way(query)
         first = "" if line is None else f", of which line {line} is most in the way"
         without = attrgetter("without_program")
-        yield Lift(f"without the program{first}", without, ("tools of the program",))
+        yield lift(f"without the program{first}", without, ("tools of the program",))
     if asked.angles:
-        yield Lift("at any angle", partial(restricted, angles=()), ("angles of the part",))
+        yield lift("at any angle", partial(restricted, angles=()), ("angles of the part",))
     if query.contact_margin > 0:
-        yield Lift("without a contact margin", partial(evolve, contact_margin=0.0), ("contact margin",))
+        yield lift("without a contact margin", partial(evolve, contact_margin=0.0), ("contact margin",))
     if len(query.arrangements) < len(toolkit.types):
-        yield Lift("with all types", partial(evolve, arrangements=None), ("types sought",))
+        yield lift("with all types", partial(evolve, arrangements=None), ("types sought",))
     for limit in toolkit.limits:
-        lift, fields = partial(held_in_another, change=limit.lifted), limit.lifted.fields
-        yield Lift(limit.lifted.words, lift, (limit.rule,), fields)
+        held, fields = partial(held_in_another, change=limit.lifted), limit.lifted.fields
+        yield lift(limit.lifted.words, held, (limit.rule,), fields)
     for change in toolkit.further_changes(unit):
-        yield Lift(change.words, partial(held_in_another, change=change), (), change.fields, is_whole=False)
+        yield lift(change.words, partial(held_in_another, change=change), (), change.fields, is_whole=False)
 
 
 def restricted(query: Query, **changed: Any) -> Query:

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem, Progress
 from workhold.conventions import SAME_POSE
+from workhold.fixels.fields import PITCH
 from workhold.kernels.curves.block_work import CANDIDATES
 from workhold.limits import refuse_much_work
 from workhold.listing.bounds import square_angles
@@ -216,7 +217,7 @@ def blocks_of_search(search: ToolkitSearch) -> list[Block]:
 
 def ways_at_pitch(query: Query, threads: int, pitch: float) -> float:
     """The ways in which two pairs of contacts may go together with another pitch in mm."""
-    asked = evolve(query, toolkit=query.toolkit.changed({"pitch": (pitch, pitch)}))
+    asked = evolve(query, toolkit=query.toolkit.changed({PITCH.name: (pitch, pitch)}))
     return ways_in(map(blocks_of_search, searches_of(asked, threads, None)))
 
 

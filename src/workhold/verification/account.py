@@ -235,7 +235,7 @@ def may_be_said(note: str, listing: Listing) -> bool:
         return found >= best
     if listing.query.has_seating_rules and note in seated_notes(listing):
         return True
-    if note == asked_note(listing.query.asked):
+    if listing.query.restricted_by and note == asked_note(listing.query.restricted_by):
         return not found
     if note == kept_note(found, listed):
         return found > listed

@@ -334,5 +334,8 @@ def explanation_answer(explanation: Explanation, workpiece: Workpiece, toolkit: 
             "row": {"rank": None, **fixture_answer(nearest.fixture, workpiece, toolkit)},
             "words": nearest.words,
         },
-        "helps": helps_data(explanation, "toolkit"),
+        "helps": [
+            {**said, "rules": list(help.rules)}
+            for said, help in zip(helps_data(explanation, "toolkit"), explanation.helps, strict=True)
+        ],
     }

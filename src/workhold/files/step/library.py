@@ -46,7 +46,7 @@ class OpenCascade:
     """
 
     def __getattr__(self, name: str) -> Any:
-        # What looks for examples asks every object for ``__wrapped__``, also where the library is not installed.
+        # Doctest asks every object for ``__wrapped__``, also where the library is not installed.
         if name.startswith("_"):
             raise AttributeError(name)
         import OCP
