@@ -138,10 +138,11 @@ class Interpreter:
         once = codes.get("once")
         if values.keys() & OTHER_AXES:
             self.stay(codes, values)
-        if whole and once != "4" and not (codes.keys() and self.looks_ahead(codes)):
+        if whole and once != "4" and not (codes and self.looks_ahead(codes)):
             self.count_whole(whole, codes, values)
         count = len(self.path.rows)
-        used = self.set_up(codes, functions, values) | self.move(codes, values)
+        used = self.set_up(codes, functions, values)
+        used |= self.move(codes, values)
         if self.away and any(row[2] for row in self.path.rows[count:]):
             raise InputError(
                 f"the tool cuts while {min(self.away)} is at a place of the machine's own: write where it turns "
