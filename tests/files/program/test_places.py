@@ -246,6 +246,8 @@ def test_whole_numbers_may_be_thousandths(tmp_path: Path, unit: str) -> None:
 
 def test_zeros_need_no_decimal_point(tmp_path: Path) -> None:
     """0 is 0 in any unit; how whole numbers count is one of two ways."""
+    coarse = read_text(tmp_path, HEAD + "G64 P0.02 Q0.02\nG4 X1.5\nG0 X5 Y0 Z0\n")
+    assert "No length of the program has a decimal point" in "\n".join(coarse.notes)
     read = read_text(tmp_path, HEAD + "G0 X0 Y0 Z0\nG1 X5.5 F200\n")
     assert not any("decimal point" in note for note in read.notes)
     with pytest.raises(InputError, match="whole numbers of a program count units or thousandths"):

@@ -119,6 +119,7 @@ class Interpreter:
         functions: list[str] = []
         values: dict[str, float] = {}
         whole: list[str] = []
+        pointed = False
         for letter, text in block.words:
             if letter == "G":
                 self.add_code(codes, code_of(text))
@@ -132,16 +133,19 @@ class Interpreter:
                     raise InputError(f"the number of {letter} is too large: correct it.")
                 if letter in LENGTHS and values[letter]:
                     if "." in text:
-                        self.pointed = True
+                        pointed = True
                     else:
                         whole.append(letter)
         once = codes.get("once")
         if values.keys() & OTHER_AXES:
             self.stay(codes, values)
-        if whole and once != "4" and not (codes.keys() and self.looks_ahead(codes)):
-            self.count_whole(whole, codes, values)
+        if (whole or pointed) and once != "4" and not (codes and self.looks_ahead(codes)):
+            self.pointed = self.pointed or pointed
+            if whole:
+                self.count_whole(whole, codes, values)
         count = len(self.path.rows)
-        used = self.set_up(codes, functions, values) | self.move(codes, values)
+        used = self.set_up(codes, functions, values)
+        used |= self.move(codes, values)
         if self.away and any(row[2] for row in self.path.rows[count:]):
             raise InputError(
                 f"the tool cuts while {min(self.away)} is at a place of the machine's own: write where it turns "

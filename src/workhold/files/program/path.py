@@ -114,12 +114,13 @@ class PathWriter:
             For an increment from a place that is not known.
         """
         place = list(self.modes.place)
+        if self.offset_used is not None and values:
+            self.refuse_other_zero()
         for axis, letter in enumerate(AXES):
             if letter not in values:
                 continue
-            value = self.length(values[letter])
-            self.refuse_other_zero()
             self.modes.named = True
+            value = self.length(values[letter])
             if axis == 2 and self.modes.length == NOSE:
                 place[axis], self.modes.lost[axis] = None, NOSE
                 if rapid:
@@ -157,7 +158,7 @@ class PathWriter:
     def refuse_other_zero(self) -> None:
         """Refuses a place in a second zero."""
         modes = self.modes
-        if self.offset_used not in (None, modes.offset):
+        if self.offset_used != modes.offset:
             raise InputError(
                 f"G{modes.offset} comes after moves in G{self.offset_used}, and how the two zeros lie to "
                 "each other is not said by the program: give one program for each."
@@ -176,9 +177,12 @@ class PathWriter:
         before = self.modes.place
         x, y, z = place
         from_x, from_y, from_z = before
-        upright = x is not None and y is not None and z is not None and (x, y) == (from_x, from_y)
-        if cutting and (z is None or None in before) and not upright:
-            refuse_unknown(self, [None if None in ends else 0.0 for ends in zip(before, place, strict=True)])
+        if cutting and (z is None or None in before):
+            upright = x is not None and y is not None and z is not None and (x, y) == (from_x, from_y)
+            if not upright:
+                refuse_unknown(
+                    self, [None if None in ends else 0.0 for ends in zip(before, place, strict=True)]
+                )
         self.modes.place = place
         if x is None or y is None or z is None:
             self.adrift.append(self.line)
@@ -200,10 +204,9 @@ class PathWriter:
         Raises
         ------
         InputError
-            For a second zero, and one move too many.
+            For one move too many.
         """
         modes = self.modes
-        self.refuse_other_zero()
         self.offset_used = modes.offset
         feed = 0.0
         if cutting:
