@@ -121,9 +121,7 @@ def test_names_that_are_no_utf_8_are_rows_in_either_form(
         batch = run_in(tmp_path, tmp_path / "shop", queue=queue)
         measured, out = Measured(tmp_path / "measured.csv"), tmp_path / "out"
         summary = Summary("x", [], [])
-        write_results(
-            batch, FolderStore(tmp_path / "work"), measured, out, "r.html", summary, tmp_path / "sheets"
-        )
+        write_results(batch, FolderStore(tmp_path / "work"), measured, out, "r.html", summary, out / "sheets")
         assert {"Fl\\xe4gel.json", "Fl\\xfcgel.json"} <= set(
             re.findall(r"Fl[^<>]*json", read(out / "r.html"))
         )
@@ -131,7 +129,7 @@ def test_names_that_are_no_utf_8_are_rows_in_either_form(
             with (out / "results.csv").open(newline="") as stream:
                 named = [(row["part"], Path(row["file"]).name) for row in csv.DictReader(stream)]
             assert named == [("Fl\\xe4gel.json",) * 2, ("Fl\\xfcgel.json",) * 2]
-    assert len(list((tmp_path / "sheets").iterdir())) >= 1
+    assert len(list((out / "sheets").iterdir())) >= 1
 
 
 def read(path: Path) -> str:

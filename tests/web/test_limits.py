@@ -126,7 +126,7 @@ def test_what_is_wrong_in_very_many_places_is_found_out_by_a_worker(
         assert by_worker == ["check_body"]
     by_worker.clear()
     assert "extra inputs" in refused(
-        server.client.post("/api/parts/check", json={"name": "m", "loops": [], "k": 1})
+        server.client.post("/api/parts/check", json={"name": "m", "loops": [SQUARE], "k": 1})
     )
     assert by_worker == []
 
