@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from threading import Event
@@ -54,6 +55,7 @@ def test_a_task_without_an_end_is_given_up_and_the_others_go_on(
     scratch = tmp_path / "scratch"
     scratch.mkdir()
     monkeypatch.setenv("TMPDIR", str(scratch))
+    monkeypatch.setattr(tempfile, "tempdir", str(scratch))
     onlooker, given = Onlooker(), [Hanging("endless", "endless"), *tasks(tmp_path, 0, 0)]
     with LocalWorkers(1, onlooker, seconds=1.0) as queue:
         outcomes = {outcome.name: outcome for outcome in queue.run(iter(given), Event())}
