@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 from threading import Event
@@ -108,6 +109,20 @@ class Fatal(Task):
                 continue
             os.kill(os.getpid(), signal.SIGKILL)
         return refusal_record(f"{self.name} was done.")
+
+
+@frozen
+class Hanging(Task):
+    """Writes a file for a time, and never ends."""
+
+    def prepare(self) -> None:
+        pass
+
+    def record(self) -> bytes:
+        with tempfile.TemporaryDirectory(prefix="workhold-") as folder:
+            (Path(folder) / "scratch").write_bytes(b"much")
+            Event().wait()
+        return b""
 
 
 @frozen

@@ -15,7 +15,7 @@ from workhold.batch import report as module
 from workhold.batch.durations import Measured
 from workhold.batch.report import Report, Summary, write_results
 from workhold.batch.store import FolderStore
-from workhold.cli.outputs import is_own
+from workhold.files.replacing import is_own
 
 HOSTILE = '<script>alert(1)</script>\x1b[31m & ".json'
 

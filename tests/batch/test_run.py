@@ -102,6 +102,48 @@ def test_a_record_that_lost_its_end_is_made_again(shop: Path, tmp_path: Path) ->
     assert records_in(tmp_path) == before
 
 
+def damaged(record: bytes) -> bytes:
+    """A record with one figure changed, which ends as it should and is still JSON."""
+    place = next(k for k in range(len(record) // 2, len(record)) if record[k : k + 1].isdigit())
+    changed = record[:place] + str((record[place] - 47) % 10).encode() + record[place + 1 :]
+    json.loads(changed)
+    return changed
+
+
+@pytest.mark.parametrize(
+    "damage", ["figure", "cut", "empty", "swapped", "moved", "no checksum", "half a checksum"]
+)
+def test_a_record_that_is_not_what_was_written_is_made_again(shop: Path, tmp_path: Path, damage: str) -> None:
+    """Whatever it holds, and however right its ends are."""
+    run_in(tmp_path, shop, queue=InlineQueue())
+    before = records_in(tmp_path)
+    first, *_, last = before
+    for name, content in before.items():
+        path, beside = tmp_path / name, (tmp_path / name).with_suffix(".sha256")
+        match damage:
+            case "figure":
+                path.write_bytes(damaged(content) if b"loops" in content else content[:-4])
+            case "cut":
+                path.write_bytes(content[: len(content) // 2] + content[-4:])
+            case "empty":
+                path.write_bytes(b"")
+            case "no checksum":
+                beside.unlink()
+            case "half a checksum":
+                beside.write_bytes(beside.read_bytes()[:20])
+    if damage in ("swapped", "moved"):
+        # Each whole in itself; of those that were moved the checksums went along.
+        for ending in (".json", ".sha256")[: 1 + (damage == "moved")]:
+            one, other = ((tmp_path / name).with_suffix(ending) for name in (first, last))
+            content = one.read_bytes()
+            one.write_bytes(other.read_bytes())
+            other.write_bytes(content)
+    queue = InlineQueue()
+    run_in(tmp_path, shop, queue=queue)
+    assert records_in(tmp_path) == before
+    assert len(queue.titles) == (2 if damage in ("swapped", "moved") else len(before))
+
+
 def test_another_question_is_another_task(shop: Path, tmp_path: Path) -> None:
     run_in(tmp_path, shop, queue=InlineQueue())
     queue = InlineQueue()

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import csv
 import json
+import os
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -12,10 +14,11 @@ from batch_helpers import COARSE, IMPOSSIBLE, InlineQueue, run_in
 
 from workhold.batch import tables
 from workhold.batch.durations import Measured
+from workhold.batch.report import Summary, write_results
 from workhold.batch.run import ANY_PART, Batch, HeldIn
 from workhold.batch.store import FolderStore
 from workhold.batch.tables import BEST, RESULTS, JobRow, job_rows, table_names, write_tables
-from workhold.cli.outputs import is_own
+from workhold.files.replacing import is_own
 from workhold.files.result.reader import read_result
 from workhold.fixels.fence import Fence
 from workhold.fixels.plate import Plate
@@ -99,6 +102,39 @@ def test_both_forms_have_the_same_rows(
                 }
         for ending in ("csv", "parquet"):
             assert is_own(tmp_path / f"{name}.{ending}")
+
+
+@pytest.mark.parametrize("parquet", [False, True])
+def test_names_that_are_no_utf_8_are_rows_in_either_form(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, parquet: bool
+) -> None:
+    """Each can be told from the others, in a run that makes records and in one that finds them."""
+    if parquet:
+        pytest.importorskip("pyarrow", reason="needs pyarrow")
+    monkeypatch.setattr(tables, "has_parquet", lambda: parquet)
+    (tmp_path / "shop").mkdir()
+    loop = [[0, 0, 0], [70, 0, 0], [61, 44, 0], [4, 38, 0]]
+    for letter in (b"\xfc", b"\xe4"):
+        name = os.fsencode(tmp_path) + b"/shop/Fl" + letter + b"gel.json"
+        Path(os.fsdecode(name)).write_text(json.dumps({"units": "mm", "loops": [loop]}))
+    for queue in (InlineQueue(), InlineQueue(0)):
+        batch = run_in(tmp_path, tmp_path / "shop", queue=queue)
+        measured, out = Measured(tmp_path / "measured.csv"), tmp_path / "out"
+        summary = Summary("x", [], [])
+        write_results(batch, FolderStore(tmp_path / "work"), measured, out, "r.html", summary, out / "sheets")
+        assert {"Fl\\xe4gel.json", "Fl\\xfcgel.json"} <= set(
+            re.findall(r"Fl[^<>]*json", read(out / "r.html"))
+        )
+        if not parquet:
+            with (out / "results.csv").open(newline="") as stream:
+                named = [(row["part"], Path(row["file"]).name) for row in csv.DictReader(stream)]
+            assert named == [("Fl\\xe4gel.json",) * 2, ("Fl\\xfcgel.json",) * 2]
+    assert len(list((out / "sheets").iterdir())) >= 1
+
+
+def read(path: Path) -> str:
+    """The text of a file, which has to be UTF-8."""
+    return path.read_text(encoding="utf-8")
 
 
 def test_tables_appear_whole_or_not_at_all(rows: Iterator[JobRow], tmp_path: Path) -> None:

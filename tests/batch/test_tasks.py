@@ -11,7 +11,7 @@ from batch_helpers import COARSE, FINE, Failing, Unprepared
 
 from workhold import load
 from workhold.batch import tasks
-from workhold.batch.store import FolderStore, is_whole, plain_record, workpiece_of
+from workhold.batch.store import FolderStore, checksum, is_whole, plain_record, workpiece_of
 from workhold.batch.tables import BEST
 from workhold.batch.tasks import Answering, Reading, done, name_of, program
 from workhold.errors import InputError
@@ -164,6 +164,6 @@ def test_a_record_cut_short_anywhere_is_none(part: bytes, tmp_path: Path) -> Non
     assert store.has("abcd") and store.read("abcd") == part
     assert Path(store.place("abcd")) == tmp_path / "ab" / "abcd.json"
     for length in range(len(part)):
-        assert not is_whole(part[:length])
+        assert not is_whole("abcd", part[:length], checksum("abcd", part))
     Path(store.place("abcd")).write_bytes(part[:-1])
     assert store.read("abcd") is None and not store.has("abcd")

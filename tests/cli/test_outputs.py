@@ -97,6 +97,14 @@ def test_foreign_files_are_kept_and_own_ones_replaced(
     assert run(*COMMANDS[command], name).exit_code == 0
 
 
+def test_a_result_does_not_take_the_name_of_another_kind_of_file(run: Any, folder: Path) -> None:
+    """Which is said before anything is searched."""
+    for name, *form in (("o.svg",), ("o.stl",), ("o.json", "--format", "csv"), ("o.npz", "--format", "json")):
+        outcome = run(*COMMANDS["design"], name, *form)
+        assert outcome.exit_code == 2 and "is not the name of such a result file" in outcome.stderr
+        assert not (folder / name).exists()
+
+
 def test_an_empty_file_may_be_replaced(run: Any, folder: Path) -> None:
     """As a program makes it that reserves a name."""
     (folder / "o.svg").write_bytes(b"")

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import gc
+import json
 import socket
+import weakref
 from collections.abc import Iterator
 from math import cos, sin, tau
 
 import pytest
-from running_server import LONG, PATIENCE, RunningServer, arriving, request, running_server
+from running_server import LONG, PATIENCE, SQUARE, RunningServer, arriving, request, running_server
 from test_parts import refused
+
+from workhold.web import pool
 
 LIMITED = {
     "upload_bytes": 2_000,
@@ -89,6 +94,55 @@ def test_the_longest_unused_go_when_too_much_is_kept(small: RunningServer) -> No
     small.client.get(urls[0])
     urls += [small.done(request()) for _ in range(LIMITED["kept_bytes"] // size - 2)]
     assert [small.client.get(url).status_code for url in urls] == [200, 404, *[200] * (len(urls) - 2)]
+
+
+def test_what_is_wrong_in_very_many_places_is_found_out_by_a_worker(
+    server: RunningServer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The process that hears all clients never looks at it; small requests it does."""
+    by_worker: list[str] = []
+    whole = pool.Pool.run
+
+    async def run(self: pool.Pool, task: pool.PoolTask) -> object:
+        by_worker.append(task.name)
+        return await whole(self, task)
+
+    monkeypatch.setattr(pool.Pool, "run", run)
+    few = {"name": "m", "loops": [SQUARE], **{f"k{k}": 1 for k in range(5_000)}}
+    many = {"name": "m", "loops": [SQUARE], **{f"k{k}": 1 for k in range(250_000)}}
+    long_part = {"name": "m", "loops": [[[k, k * k, 0] for k in range(3_000)]]}
+    deep = b"[" * 1_900_000 + b"]" * 1_900_000
+    for content, words in (
+        (json.dumps(few).encode(), "at k0: extra inputs are not permitted"),
+        (json.dumps(many).encode(), "more than 20,000 keys"),
+        (json.dumps(long_part).encode(), "3000 segments, more than the 2000"),
+        (b'{"name":"m","loops":[' + b",".join([b'[["a"]]'] * 1_500) + b"]}" + b" " * 40_000, "at loops.0.0"),
+        (deep, "not valid JSON"),
+        (b'{"name":' * 300_000, "keys"),
+        (b"\xff" * 40_000, "not valid JSON"),
+    ):
+        by_worker.clear()
+        assert words in refused(server.client.post("/api/parts/check", content=content))
+        assert by_worker == ["check_body"]
+    by_worker.clear()
+    assert "extra inputs" in refused(
+        server.client.post("/api/parts/check", json={"name": "m", "loops": [SQUARE], "k": 1})
+    )
+    assert by_worker == []
+
+
+def test_what_a_search_found_is_freed_when_it_is_deleted(server: RunningServer) -> None:
+    """Nothing that waits for the next search holds what came of the last one, also if it was still running."""
+    url = server.done(request())
+    job = server.state.jobs.by_name[url.rpartition("/")[2]]
+    kept = [weakref.ref(job), weakref.ref(job.result), weakref.ref(job.result.table)]  # type: ignore[union-attr]
+    del job
+    server.client.delete(url)
+    running = server.submit(LONG)
+    server.state_when(running, lambda state: state["state"] == "running")
+    kept.append(weakref.ref(server.state.jobs.by_name[running.rpartition("/")[2]]))
+    server.client.delete(running)
+    server.wait_until(lambda: gc.collect() >= 0 and not any(one() for one in kept))
 
 
 def test_one_stream_too_many_is_refused(small: RunningServer) -> None:

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import httpx
 import pytest
-from running_server import PATIENCE
+from running_server import LONG, PATIENCE
 
 from workhold.cli.main import app
 from workhold.cli.serving_commands import FIRST_RUN
@@ -54,6 +54,31 @@ def test_it_serves_and_leaves_nothing_behind(ending: signal.Signals) -> None:
     while any(map(is_alive, children)):
         assert time.monotonic() < end, "workers stay"
         time.sleep(0.05)
+
+
+@pytest.mark.parametrize(("ending", "code"), [(signal.SIGTERM, 143), (signal.SIGINT, 0)])
+def test_it_ends_while_clients_listen_and_send(tmp_path: Path, ending: signal.Signals, code: int) -> None:
+    """Without a word, and without files of what was being done."""
+    environment = {**os.environ, "TMPDIR": str(tmp_path)}
+    process = subprocess.Popen(
+        [*COMMAND, "--port", "0"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment
+    )
+    assert process.stdout is not None and process.stderr is not None
+    line = process.stdout.readline()
+    found = re.search(r"http://127\.0\.0\.1:(\d+)/", line)
+    assert found, line + process.stderr.read()
+    job = httpx.post(f"{found[0]}api/v1/jobs", json=LONG, timeout=PATIENCE).json()["url"]
+    with (
+        socket.create_connection(("127.0.0.1", int(found[1])), timeout=PATIENCE) as listening,
+        socket.create_connection(("127.0.0.1", int(found[1])), timeout=PATIENCE) as sending,
+    ):
+        sending.sendall(b"POST /api/parts HTTP/1.1\r\nHost: localhost\r\nContent-Length: 1000\r\n\r\n<svg")
+        listening.sendall(f"GET {job}/events HTTP/1.1\r\nHost: localhost\r\n\r\n".encode())
+        assert b" 200 " in listening.recv(400)
+        process.send_signal(ending)
+        assert process.wait(PATIENCE) == code
+    assert process.stderr.read() in ("", f"{FIRST_RUN}\n")
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize(

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import os
 import signal
+import tempfile
 from collections.abc import Iterator
 from contextlib import suppress
+from pathlib import Path
 
 import pytest
 from running_server import LONG, RunningServer, request, running_server
@@ -79,6 +81,10 @@ def test_a_worker_that_does_not_hear_is_ended_and_replaced(pair: RunningServer) 
 
 def test_a_desk_that_dies_is_replaced(pair: RunningServer) -> None:
     (desk,) = pair.state.desks.workers.values()
+    # What it would have written for a time is in a folder of its own.
+    (folder,) = Path(tempfile.gettempdir()).glob(f"workhold-worker-{desk.process.pid}-*")
+    (folder / "upload").write_bytes(b"half a drawing")
     tell(desk.process.pid, signal.SIGKILL)
     assert pair.client.get("/api/parts/flange").status_code in (200, 503)
     assert pair.client.get("/api/parts/flange").status_code == 200
+    pair.wait_until(lambda: not folder.exists())

@@ -23,7 +23,7 @@ from attrs import define, evolve, field
 
 from workhold.batch.tasks import Outcome, Task, Watcher, done
 from workhold.errors import InputError
-from workhold.web.worker import discard_folder, worker_main
+from workhold.web.worker import discard_folders, worker_main
 
 __all__ = ["LocalWorkers"]
 
@@ -62,7 +62,6 @@ class Worker:
     connection: Connection
     is_ready: bool = False
     task: Task | None = None
-    folder: str | None = None
     seconds: float = ENDLESS
     ends_at: float = inf
 
@@ -72,7 +71,7 @@ class Worker:
         self.process.join()
         with suppress(OSError):
             self.connection.close()
-        discard_folder(self.folder)
+        discard_folders(self.process.pid)
 
 
 @define(eq=False)
@@ -185,7 +184,7 @@ class LocalWorkers:
                 self.refuse_failed_starts(one)
             return None
         if kind == "ready":
-            one.is_ready, one.folder, self.failed_starts = True, value, 0
+            one.is_ready, self.failed_starts = True, 0
             return None
         task, one.task = one.task, None
         self.watcher.ended(one.title)

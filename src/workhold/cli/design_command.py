@@ -23,8 +23,8 @@ from workhold.cli.outputs import (
     output_form,
     print_json,
     refuse_both,
-    refuse_output,
     refuse_output_folder,
+    refuse_result_file,
     write_found,
 )
 from workhold.cli.program_options import ProgramWords
@@ -127,7 +127,7 @@ def design(
     stream = sys.stderr if out == STANDARD_OUTPUT else sys.stdout
     given = (part, held_in.vise, words.loads, *machined.files)
     if out is not None and out != STANDARD_OUTPUT:
-        refuse_output(out, given, force)
+        refuse_result_file(out, form, given, force)
     if folder is not None:
         refuse_output_folder(folder, picture_names(), given, force)
     refuse_sheet(sheet, (*given, words.not_on_faces_cut_in), out, force)

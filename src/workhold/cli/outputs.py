@@ -36,6 +36,7 @@ __all__ = [
     "refuse_both",
     "refuse_output",
     "refuse_output_folder",
+    "refuse_result_file",
     "write_found",
     "write_output",
     "write_picture",
@@ -104,16 +105,25 @@ def output_form(out: str | None, asked: str | None) -> str:
     Raises
     ------
     InputError
-        For a form that is not known, one that no terminal can take, and a name of a file of another kind.
+        For a form that is not known, and one that no terminal can take.
     """
     ending = "" if out is None else out.lower().rpartition(".")[2]
     form = (ending if ending in FORMS else "json") if asked is None else choice("--format", asked, FORMS)
-    if out is not None:
-        own = [f".{one}" for one in FORMS] if asked is None else [f".{form}"]
-        replacing.refuse_other_ending(out, own, "such a result file")
     if form == "npz" and out == STANDARD_OUTPUT:
         raise InputError("--format npz needs a file: name one with --out.")
     return form
+
+
+def refuse_result_file(out: str, form: str, inputs: Iterable[str | Path | None], force: bool) -> None:
+    """Refuses a result file before anything is read or searched.
+
+    Raises
+    ------
+    InputError
+        See :func:`refuse_output`, and for a name of a file of another kind.
+    """
+    refuse_output(out, inputs, force)
+    replacing.refuse_other_ending(out, [f".{form}"], "such a result file")
 
 
 def write_output(result: Result, out: str, form: str) -> None:

@@ -22,7 +22,7 @@ from workhold.cli.outputs import (
     print_json,
     print_written,
     refuse_both,
-    refuse_output,
+    refuse_result_file,
     write_output,
 )
 from workhold.cli.progress import progress_bar, search_progress
@@ -54,7 +54,7 @@ def convert(
     form = output_form(out, format_)
     refuse_both(json_, out)
     if out != STANDARD_OUTPUT:
-        refuse_output(out, (result_file,), force)
+        refuse_result_file(out, form, (result_file,), force)
 
     from workhold.files.result.reader import read_result
 

@@ -340,8 +340,9 @@ class Fixture:
         Raises
         ------
         InputError
-            For a fixture that is not one of a result, supports of another or a set that is not there, a file
-            of another part, a name of another kind of file, and when the file cannot be written or replaced.
+            For a fixture that is not one of a result, supports of another or a set that is not there, and a
+            file of another part. Also for a name of another kind of file, and when the file cannot be written
+            or replaced.
         """
         asked = {"thickness": thickness, "supports": supports, "best": best, "part": part}
         asked["overwrite"] = overwrite

@@ -86,8 +86,8 @@ def simulate_closing(
     Raises
     ------
     InputError
-        As ``Pattern.of``; for a fixture of another part or toolkit, for jaws that meet their stop or are
-        opened beyond their end, and a part that a peg stands in.
+        As ``Pattern.of``, and for a fixture of another part or toolkit. Also for jaws that meet their stop or
+        are opened beyond their end, and a part that a peg stands in.
     """
     fixture.refuse_others(solver.workpiece, solver.toolkit)
     pattern = Pattern.of(fixture, solver.toolkit)

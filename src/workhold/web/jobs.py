@@ -25,11 +25,11 @@ from workhold.seating.clamping import ByHand
 from workhold.web.answers import arrangements_answer, proof_answer
 from workhold.web.families import FamilyFound
 from workhold.web.guard import ServerLimits
-from workhold.web.memory import return_memory
 from workhold.web.part_tasks import shape_size
 from workhold.web.pool import BusyError, FailedError, Pool, PoolTask, StoppedError
 from workhold.web.selection import Selection
 from workhold.web.tasks import Found, NamedQuery
+from workhold.web.worker import return_memory
 
 if TYPE_CHECKING:
     from workhold.files.step.part_shape import PartShape

@@ -24,7 +24,7 @@ from attrs import define, field
 
 from workhold.errors import InputError, WorkholdError
 from workhold.web.tasks import work
-from workhold.web.worker import CANCEL, discard_folder
+from workhold.web.worker import CANCEL, discard_folders
 
 __all__ = ["BusyError", "FailedError", "Pool", "PoolTask", "StoppedError"]
 
@@ -99,7 +99,6 @@ class PoolWorker:
     connection: Connection
     inbox: asyncio.Queue[Message] = field(factory=asyncio.Queue)
     gone: asyncio.Event = field(factory=asyncio.Event)
-    folder: str | None = None
 
     @classmethod
     def started(cls, kind: str, memory_bytes: int) -> PoolWorker:
@@ -139,7 +138,7 @@ class PoolWorker:
         await asyncio.to_thread(self.process.join, 5.0)
         with suppress(OSError):
             self.connection.close()
-        await asyncio.to_thread(discard_folder, self.folder)
+        await asyncio.to_thread(discard_folders, self.process.pid)
 
 
 @contextmanager
@@ -280,15 +279,14 @@ class Pool:
         failed = 0
         while True:
             worker = self.workers[slot] = PoolWorker.started(self.kind, self.memory_bytes)
-            ready = await first(worker.inbox.get(), worker.gone.wait())
-            if ready is None:
+            if await first(worker.inbox.get(), worker.gone.wait()) is None:
                 await worker.end()
                 failed += 1
                 if failed >= MOST_FAILED_STARTS:
                     self.give_up("The server cannot start its worker processes: give them more memory.")
                 await asyncio.sleep(START_PAUSE)
                 continue
-            failed, worker.folder = 0, ready[2]
+            failed = 0
             self.ready.set()
             try:
                 await self.serve(worker)

@@ -107,7 +107,7 @@ class Server(uvicorn.Server):
         self.stopped_by = sig
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        """Ends streams and workers first, and soon lets go of clients who still send, so that none is awaited."""
+        """Ends streams and workers first, and soon lets go of clients who still send."""
         state: ServerState | None = getattr(self.config.app.state, "server", None)  # type: ignore[union-attr]
         if state is not None:
             await state.close()

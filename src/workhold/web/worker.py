@@ -3,12 +3,14 @@
 It is started anew, not forked, so that it shares nothing with the server. Its kernels are loaded before it
 reports that it is ready. When the server ends, the pipe ends and so does the worker.
 
-What tasks write for a time stands in a folder of the worker's own. Who ends a worker removes it; a worker that
-ends because nobody is there any more does so itself.
+What tasks write for a time stands in a folder of the worker's own. Who ends a worker removes it; a worker
+that ends because nobody is there any more does so itself.
 """
 
 from __future__ import annotations
 
+import ctypes
+import gc
 import os
 import shutil
 import signal
@@ -17,7 +19,9 @@ import tempfile
 import traceback
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from functools import cache
 from multiprocessing.connection import Connection
+from pathlib import Path
 from queue import SimpleQueue
 from threading import Event, Thread
 from typing import Any
@@ -26,9 +30,8 @@ from attrs import frozen
 
 from workhold.errors import InputError, lacks_memory
 from workhold.files.apart import limit_memory, limit_processor
-from workhold.web.memory import return_memory
 
-__all__ = ["CANCEL", "Order", "Tasks", "discard_folder", "worker_main"]
+__all__ = ["CANCEL", "Order", "Tasks", "discard_folders", "return_memory", "worker_main"]
 
 # The name of a message that asks a task to stop.
 CANCEL = "cancel"
@@ -63,9 +66,8 @@ def worker_main(
     Parameters
     ----------
     connection : messages in are (number, name of the task, seconds, payload). The first message out is
-        ("ready", 0, folder), where tasks write for a time, or None. Each task sends ("report", number, value)
-        any number of times, then one of ("done", number, value), ("refused", number, sentence) and
-        ("failed", number, sentence).
+        ("ready", 0, None). Each task sends ("report", number, value) any number of times, then one of
+        ("done", number, value), ("refused", number, sentence) and ("failed", number, sentence).
     memory_bytes : the most address space the process may take.
     tasks : what it can do, by name.
     warm_up : called first, within the limits.
@@ -76,8 +78,8 @@ def worker_main(
     orders: SimpleQueue[tuple[int, str, float, Any, Event]] = SimpleQueue()
     Thread(target=listen, args=(connection, orders), daemon=True).start()
     warm_up()
-    folder = own_folder()
-    connection.send(("ready", 0, folder))
+    own_folder()
+    connection.send(("ready", 0, None))
     while True:
         number, name, seconds, payload, cancel = orders.get()
         # Far more than the wall time allows means that the task is deaf.
@@ -103,19 +105,42 @@ def worker_main(
 folders: list[str] = []
 
 
-def own_folder() -> str | None:
-    """Makes a folder for what tasks of this process write for a time; None where none can be made."""
+def own_folder() -> None:
+    """Makes a folder for what tasks of this process write for a time, if one can be made."""
     with suppress(OSError):
-        folders.append(tempfile.mkdtemp(prefix="workhold-"))
+        folders.append(tempfile.mkdtemp(prefix=folder_prefix(os.getpid())))
         tempfile.tempdir = folders[0]
-        return folders[0]
+
+
+def folder_prefix(process: int) -> str:
+    """What the name of a worker's folder begins with, by the number of its process."""
+    return f"workhold-worker-{process}-"
+
+
+def discard_folders(process: int | None) -> None:
+    """Removes the folder of a worker that has ended, with all that its tasks have left there."""
+    for path in Path(tempfile.gettempdir()).glob(f"{folder_prefix(process or 0)}*"):
+        shutil.rmtree(path, ignore_errors=True)
+
+
+@cache
+def trimming() -> Any:
+    """The function of the C library that gives freed memory back; None where it has none."""
+    with suppress(OSError, AttributeError, TypeError):
+        return ctypes.CDLL(None).malloc_trim
     return None
 
 
-def discard_folder(folder: str | None) -> None:
-    """Removes the folder of a worker, with all that its tasks have left there."""
-    if folder is not None:
-        shutil.rmtree(folder, ignore_errors=True)
+def return_memory() -> None:
+    """Gives freed memory back to the system, which takes milliseconds.
+
+    The C library keeps most of what large results took: small pieces in between keep whole blocks from going
+    back by themselves.
+    """
+    gc.collect()
+    trim = trimming()
+    if trim is not None:
+        trim(ctypes.c_size_t(0))
 
 
 def said_of(error: Exception, memory_bytes: int) -> str:
@@ -137,7 +162,7 @@ def listen(connection: Connection, orders: SimpleQueue[tuple[int, str, float, An
             message = connection.recv()
         except (EOFError, OSError):
             if folders:
-                discard_folder(folders[0])
+                shutil.rmtree(folders[0], ignore_errors=True)
             os._exit(0)
         if message[1] == CANCEL:
             if message[0] == newest:

@@ -89,8 +89,8 @@ def write_setup_step(
     Raises
     ------
     InputError
-        For a fixture of another part or toolkit, pegs without a radius, a length that is not positive, a file
-        that cannot be written or replaced, and when the extra ``step`` is not installed.
+        For a fixture of another part or toolkit, pegs without a radius, and a length that is not positive.
+        Also for a file that cannot be written or replaced, and when the extra ``step`` is not installed.
     """
     fixture.refuse_others(workpiece, toolkit)
     refuse_other_ending(path, (".step", ".stp"), "a STEP file")
