@@ -22,12 +22,13 @@ __all__ = ["json_value", "read_limited", "read_text", "toml_table"]
 MOST_DIGITS = 308
 
 
-def read_text(path: Path, limits: FileLimits) -> str:
+def read_text(path: Path, limits: FileLimits, saved: str = "save it as UTF-8") -> str:
     """The text of a UTF-8 file, with or without a byte order mark.
 
     Parameters
     ----------
     limits : of this kind of file.
+    saved : what helps where it is written otherwise.
 
     Raises
     ------
@@ -38,7 +39,8 @@ def read_text(path: Path, limits: FileLimits) -> str:
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise InputError(f"the file is not UTF-8 text (byte {error.start}): save it as UTF-8.") from error
+        line = content.count(b"\n", 0, error.start) + 1
+        raise InputError(f"the file is not UTF-8 text (byte {error.start}, line {line}): {saved}.") from error
 
 
 def read_limited(path: Path, limits: FileLimits) -> bytes:
