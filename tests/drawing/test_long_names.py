@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -48,7 +49,7 @@ def test_a_word_is_broken_where_it_no_longer_fits() -> None:
         width = chance.uniform(0, 120)
         lines = wrapped(word, 10.0, width)
         assert "".join(lines) == word
-        for line, after in zip(lines, lines[1:], strict=False):
+        for line, after in pairwise(lines):
             assert len(line) == 1 or text_width(line, 10.0) <= width
             assert text_width(line + after[0], 10.0) > width or after == lines[-1][:1] == after
 

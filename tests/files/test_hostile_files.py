@@ -42,9 +42,7 @@ def chunks(name: str) -> list[tuple[str, int, int]]:
 
 
 @pytest.mark.prove
-@pytest.mark.parametrize(
-    ("name", "first", "last"), [chunk for name in ALL_MAKERS for chunk in chunks(name)]
-)
+@pytest.mark.parametrize(("name", "first", "last"), [chunk for name in ALL_MAKERS for chunk in chunks(name)])
 def test_ten_thousand_hostile_files_are_read_right_or_refused(name: str, first: int, last: int) -> None:
     """As above."""
     check(name, first, last)

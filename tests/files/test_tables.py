@@ -127,7 +127,7 @@ def test_flutes_that_are_none_hold_nothing_up(tmp_path: Path, flutes: str) -> No
     path.write_text(f"tool,diameter,flutes\n1,10,{flutes}\n")
     assert read_tools(path, MILLIMETRE)[0][1].cutting.teeth is None
     path.write_text(f"tool,diameter,flutes,power\n1,10,{flutes},2\n")
-    with pytest.raises(InputError, match="teeth .* cannot be used: give a whole number from 1"):
+    with pytest.raises(InputError, match=r"teeth .* cannot be used: give a whole number from 1"):
         read_tools(path, MILLIMETRE)
 
 

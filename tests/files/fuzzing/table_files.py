@@ -73,7 +73,20 @@ def make_tools_toml(chance: random.Random) -> bytes:
 
 def make_tools_linuxcnc(chance: random.Random) -> bytes:
     """LinuxCNC's table, some of its words replaced."""
-    words = "T1 P1 D10 Z50 ;end mill\nT2 P2 D5.5 Z+0.5 ;drill\n;remark\nT12 P3 D.25".split(" ")
+    words = [
+        "T1",
+        "P1",
+        "D10",
+        "Z50",
+        ";end",
+        "mill\nT2",
+        "P2",
+        "D5.5",
+        "Z+0.5",
+        ";drill\n;remark\nT12",
+        "P3",
+        "D.25",
+    ]
     for _ in range(chance.randrange(4)):
         words[chance.randrange(len(words))] = chance.choice(
             ("T1", "T-1", "D1e5", "D-3", "D" + "9" * 400, "P", ";", "T1T1", "\x00", "D.", "hello", "T9999999")
