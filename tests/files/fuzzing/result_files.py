@@ -13,7 +13,7 @@ from hostile_files import as_json, upset
 __all__ = ["FILES"]
 
 DATA = Path(__file__).parents[2] / "data" / "hostile"
-NAMES = ("seat_without_depth", "result_clamp", "result_fence", "result_program", "longname")
+NAMES = ("result_seating", "result_clamp", "result_fence", "result_program", "longname")
 RESULTS = [json.loads((DATA / f"{name}.json").read_text(encoding="utf-8")) for name in NAMES]
 SUPPORTS = json.loads((DATA / "supports.json").read_text(encoding="utf-8"))
 
