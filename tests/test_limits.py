@@ -223,3 +223,12 @@ def load_cases_of(**asked: float) -> object:
     """Load cases of a fixture."""
     result = answer(Query(load("widget"), Vise(pitch=8, columns=1, peg_radius=3), best=1))
     return load_cases(result[0], result.workpiece, result.toolkit, [Load(moment=1.0)], **asked)  # type: ignore[arg-type]
+
+
+def test_the_page_of_limits_says_what_the_code_enforces() -> None:
+    """Its tables are written from the code; ``python building/limits_page.py`` writes them anew."""
+    import limits_page
+
+    page = limits_page.PAGE.read_text(encoding="utf-8")
+    assert limits_page.PLACE.findall(page)
+    assert limits_page.filled(page) == page

@@ -28,24 +28,30 @@ import numpy as np
 from ezdxf import DXFError, recover
 from ezdxf.disassemble import recursive_decompose, to_primitives
 from ezdxf.entities import LWPolyline
-from hostile_files import MAKERS
+from fuzzed import ALL_MAKERS
 from pytest import approx, raises
 
 from workhold.archive import mapped_archive
+from workhold.benchmark.matching import read_entry
+from workhold.cli.jobs import read_jobs
 from workhold.cli.main import app
 from workhold.errors import InputError
 from workhold.files.apart import limit_memory, limit_processor
 from workhold.files.loads_file import read_loads
 from workhold.files.part.load import read_workpiece
+from workhold.files.program.reader import read_program
+from workhold.files.program.tool_tables import read_tools
 from workhold.files.result.parts import HEAD, columns_said
 from workhold.files.result.reader import read_result
+from workhold.files.supports_file import read_supports
 from workhold.files.toolkit_file import read_toolkit_file
 from workhold.kernels.base.distance import outline_distances
+from workhold.units import MILLIMETRE
 
 __all__ = ["check_one", "run_batch"]
 
 # Processor seconds for one file, wall seconds, and bytes of address space beyond what the libraries take.
-SECONDS, WALL_SECONDS, MEMORY = 20, 200, 2 << 30
+SECONDS, WALL_SECONDS, MEMORY = 20, 200, 1 << 30
 # Sizes of the part: what lies further from the origin is not of the part.
 FAR = 1e6
 # Columns that are held against what NumPy reads.
@@ -191,6 +197,27 @@ CHECKS: dict[str, Callable[[Path], None]] = {
     "result.npz": check_columns,
 }
 
+
+def check_fixtures(path: Path) -> None:
+    """Every fixture of a result is there to be looked at."""
+    read = read_result(path)
+    assert len(list(read)) == len(read) == sum(read.counts.values())
+
+
+# Of these only that they are read, or refused, is held against what the file says.
+READERS: dict[str, Callable[[Path], Any]] = {
+    "toolkit.toml": read_toolkit_file,
+    **dict.fromkeys(("tools.csv", "tools.toml", "tools.tbl"), lambda path: read_tools(path, MILLIMETRE)),
+    **dict.fromkeys(("jobs.csv", "jobs.toml"), read_jobs),
+    **dict.fromkeys(("list.csv", "list.json"), read_entry),
+    **dict.fromkeys(("lines.json", "whole.json"), check_fixtures),
+    "supports.json": read_supports,
+    "program.nc": lambda path: read_program(path, thickness=20.0, z_zero="top"),
+    "part.step": read_workpiece,
+    **dict.fromkeys(("made.svg", "made.dxf", "made.json"), read_workpiece),
+}
+CHECKS |= READERS
+
 # What is done on the command line with a file that is read: with every tenth, for it takes longer than the reading.
 EVERY = 10
 RESULT_COMMANDS = (
@@ -203,6 +230,16 @@ COMMANDS: dict[str, tuple[tuple[str, ...], ...]] = {
     "drawing.dxf": (("features", "{file}", "--peg-radius", "2", "--drawing-unit", "mm"),),
     "result.json": RESULT_COMMANDS,
     "result.npz": RESULT_COMMANDS,
+    **dict.fromkeys(
+        ("lines.json", "whole.json"),
+        (
+            *RESULT_COMMANDS,
+            ("sheet", "{file}", "1", "-o", "{picture}", "--force"),
+            ("seat", "{file}", "1"),
+        ),
+    ),
+    "supports.json": (("verify", "{file}"),),
+    "program.nc": (("program", "{file}", "--thickness", "20"),),
 }
 
 
@@ -237,7 +274,7 @@ def address_space() -> int:
 def warm_up(name: str, path: Path) -> None:
     """Read some files without limits: what is loaded and compiled once does not count."""
     for seed in range(20):
-        path.write_bytes(MAKERS[name](random.Random(seed)))
+        path.write_bytes(ALL_MAKERS[name](random.Random(seed)))
         with suppress(Exception):
             check_one(path, with_commands=True)
 
@@ -261,7 +298,7 @@ def run_batch(name: str, first: int, last: int) -> None:
         warm_up(name, path)
         limit_memory(address_space() + MEMORY)
         for seed in range(first, last):
-            path.write_bytes(MAKERS[name](random.Random(seed)))
+            path.write_bytes(ALL_MAKERS[name](random.Random(seed)))
             sys.stdout.write(f"{name} of seed {seed}\n")
             sys.stdout.flush()
             limit_processor(SECONDS)

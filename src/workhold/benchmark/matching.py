@@ -18,10 +18,9 @@ place : of a fixture, (P, 6): of each peg x and y on the part in mm, the directi
 
 from __future__ import annotations
 
-import csv
-import json
+import re
 from collections.abc import Mapping, Sequence
-from math import isfinite
+from math import isfinite, nan
 from pathlib import Path
 from typing import Any
 
@@ -30,9 +29,11 @@ from attrs import define, field, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
-from workhold.files.budget import LIMITS
-from workhold.files.text import read_text
+from workhold.files.budget import LIMITS, Budget
+from workhold.files.tables import SAVED, Row, table_of
+from workhold.files.text import json_value, read_text
 from workhold.geometry.symmetry import centroid_of_joints, rotated, rotations_onto_itself
+from workhold.limits import real, refuse_long
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -105,7 +106,7 @@ def read_entry(path: Path, set_name: str | None = None) -> Entry:
         For a file that cannot be read, naming the fixture and what is wrong with it.
     """
     try:
-        text = read_text(path, LIMITS["list"])
+        text = read_text(path, LIMITS["list"], SAVED if path.suffix.lower() == ".csv" else "save it as UTF-8")
         if path.suffix.lower() == ".csv":
             return Entry(set_name or path.stem, rows_of(text))
         return entry_of(text, set_name or path.stem)
@@ -116,9 +117,9 @@ def read_entry(path: Path, set_name: str | None = None) -> Entry:
 def entry_of(text: str, usual: str) -> Entry:
     """The list of a text in JSON; ``usual`` is the set it is for where it does not say."""
     try:
-        content = json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"this is no JSON ({error}): see docs/benchmark.md for the form.") from error
+        content = json_value(text)
+    except InputError as error:
+        raise InputError(f"this is no JSON of the form in docs/benchmark.md: {error}") from error
     if not isinstance(content, dict) or not isinstance(content.get("fixtures"), list):
         raise InputError("there is no list of fixtures in it: give an object with the key fixtures.")
     name = content.get("set", usual)
@@ -165,27 +166,38 @@ def role_of(peg: Mapping[str, Any], direction: str | None) -> str:
 
 def finite(value: Any) -> float:
     """A finite number."""
-    if isinstance(value, bool) or not isfinite(float(value)):
-        raise ValueError(f"{value!r} is no number")
-    return float(value)
+    number = nan if isinstance(value, bool) else real(value)
+    if not isfinite(number):
+        raise ValueError(f"{str(value)[:40]!r} is no number")
+    refuse_long("the number", number)
+    return number
 
 
 def rows_of(text: str) -> tuple[Entered, ...]:
     """The fixtures of a text in CSV."""
-    rows = csv.DictReader(text.splitlines())
-    names = rows.fieldnames or []
-    count = sum(name.startswith("peg") and name[3:].isdigit() for name in names)
-    if not {"theta_deg", "x", "y"} <= set(names) or count == 0:
+    table = table_of(text, Budget(LIMITS["list"], len(text))) if text.strip() else None
+    names = {*table.names} if table is not None else set[str]()
+    pegs = sorted(
+        (name for name in names if re.fullmatch(r"peg[1-9]\d?", name)), key=lambda name: int(name[3:])
+    )
+    if table is None or not {"theta_deg", "x", "y"} <= names or not pegs:
         raise InputError("the columns are not theta_deg, x, y, peg1, peg1_x, peg1_y and so on: name them so.")
-    return tuple(numbered(n, as_object(row, count)) for n, row in enumerate(rows, 1))
+    for name in (f"{peg}_{axis}" for peg in pegs for axis in "xy"):
+        if name not in names:
+            raise InputError(f"the column {name} is missing: name a column for each place of a peg so.")
+    return tuple(numbered(row.row, as_object(row, pegs)) for row in table.rows())
 
 
-def as_object(row: Mapping[str, Any], count: int) -> dict[str, Any]:
-    """A row of CSV as an object of JSON."""
-    pegs = [
-        {"role": row[f"peg{k}"], "x": row[f"peg{k}_x"], "y": row[f"peg{k}_y"]} for k in range(1, count + 1)
-    ]
-    return {"pegs": pegs, "pose": {key: row[key] for key in ("theta_deg", "x", "y")}}
+def as_object(row: Row, pegs: Sequence[str]) -> dict[str, Any]:
+    """A row of CSV as an object of JSON; pegs without any cell are none, for not all toolkits have as many."""
+    given = [peg for peg in pegs if not row.cells.keys().isdisjoint((peg, f"{peg}_x", f"{peg}_y"))]
+    return {
+        "pegs": [
+            {"role": row.cells.get(peg, ""), "x": row.number(f"{peg}_x"), "y": row.number(f"{peg}_y")}
+            for peg in given
+        ],
+        "pose": {key: row.number(key) for key in ("theta_deg", "x", "y")},
+    }
 
 
 @define(frozen=True, eq=False)

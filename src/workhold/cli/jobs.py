@@ -17,10 +17,8 @@ files of jobs with rules for each part.
 
 from __future__ import annotations
 
-import csv
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -90,11 +88,14 @@ def read_jobs(path: Path) -> list[JobWords]:
         When it cannot be read, holds no jobs, or a word that is not known.
     """
     from workhold.files.budget import LIMITS
+    from workhold.files.tables import SAVED
     from workhold.files.text import read_text
 
     try:
-        text = read_text(path, LIMITS["jobs"])
-        entries = list(toml_entries(text) if path.suffix.lower() == ".toml" else csv_entries(text))
+        if path.suffix.lower() == ".toml":
+            entries = list(toml_entries(read_text(path, LIMITS["jobs"])))
+        else:
+            entries = list(csv_entries(read_text(path, LIMITS["jobs"], SAVED)))
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
     if not entries:
@@ -123,23 +124,19 @@ def toml_entries(text: str) -> Iterator[dict[str, Any]]:
 
 
 def csv_entries(text: str) -> Iterator[dict[str, Any]]:
-    """Yields the cells of each row of a CSV file, without the empty ones.
+    """Yields the cells of each row of a CSV file, without those in which nothing is given.
 
     Raises
     ------
     InputError
-        For a row with more cells than there are columns.
+        For what is no such table.
     """
-    first = text.partition("\n")[0]
-    delimiter = ";" if first.count(";") > first.count(",") else ","
-    for number, row in enumerate(csv.DictReader(StringIO(text), delimiter=delimiter), 1):
-        if None in row:
-            raise InputError(
-                f"row {number} has more cells than there are columns: put cells with commas in quotes."
-            )
-        entry = {key.strip().lower(): cell.strip() for key, cell in row.items() if cell and cell.strip()}
-        if entry:
-            yield {key: cell.split("|") if named(key) in LISTS else cell for key, cell in entry.items()}
+    from workhold.files.budget import LIMITS, Budget
+    from workhold.files.tables import NOT_GIVEN, table_of
+
+    for row in table_of(text, Budget(LIMITS["jobs"], len(text))).rows():
+        cells = {key: cell for key, cell in row.cells.items() if key == PART or cell.lower() not in NOT_GIVEN}
+        yield {key: cell.split("|") if named(key) in LISTS else cell for key, cell in cells.items()}
 
 
 def named(key: str) -> str:

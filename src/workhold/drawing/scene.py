@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import json
 import xml.etree.ElementTree as ET
+from bisect import bisect_right
 from collections.abc import Sequence
 from functools import cache, lru_cache
 from math import atan2, cos, hypot, log10, sin
@@ -92,9 +93,22 @@ def shortened(content: str, size: float, width: float, bold: bool = False) -> st
     """
     if text_width(content, size, bold) <= width:
         return content
-    while content and text_width(content + "…", size, bold) > width:
-        content = content[:-1]
-    return content.rstrip() + "…"
+    return content[: fitting(content, size, width, bold, "…")].rstrip() + "…"
+
+
+def fitting(content: str, size: float, width: float, bold: bool, behind: str = "") -> int:
+    """How many letters of a text, with those behind, are no wider than ``width`` page units.
+
+    It looks at few more letters than fit, however long the text is.
+    """
+    most = 1
+    while most < len(content) and text_width(content[:most] + behind, size, bold) <= width:
+        most *= 2
+    return bisect_right(
+        range(1, min(most, len(content)) + 1),
+        width,
+        key=lambda count: text_width(content[:count] + behind, size, bold),
+    )
 
 
 def wrapped(content: str, size: float, width: float, bold: bool = False) -> list[str]:
@@ -109,9 +123,7 @@ def wrapped(content: str, size: float, width: float, bold: bool = False) -> list
             lines[-1] += f" {word}"
             continue
         while len(word) > 1 and text_width(word, size, bold) > width:
-            cut = next(
-                k for k in range(len(word) - 1, 0, -1) if k == 1 or text_width(word[:k], size, bold) <= width
-            )
+            cut = max(1, min(len(word) - 1, fitting(word, size, width, bold)))
             lines.append(word[:cut])
             word = word[cut:]
         lines.append(word)

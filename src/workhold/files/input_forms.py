@@ -32,8 +32,19 @@ from workhold.fixels.kinds import TABLES, USUAL, kind_of, table_of
 from workhold.fixels.support_hardware import HARDWARE
 from workhold.fixels.table import Form, ToolkitField
 
-__all__ = ["TAGS", "LoadsFile", "checked_toolkit", "checked_workpiece", "forms_by_noun", "one_of", "optional"]
+__all__ = [
+    "LONGEST_NAME",
+    "TAGS",
+    "LoadsFile",
+    "checked_toolkit",
+    "checked_workpiece",
+    "forms_by_noun",
+    "one_of",
+    "optional",
+]
 
+# Letters of the name of a part or a load: more than any sheet has room for.
+LONGEST_NAME = 10_000
 # Figures of supports and of a clamp on top, whose names are checked where they are made.
 HARDWARE_KEYS: Mapping[str, Any] = dict.fromkeys(
     HARDWARE, (dict[str, FiniteFloat | list[list[FiniteFloat]]] | None, None)
@@ -214,7 +225,7 @@ class WorkpieceFile(BaseModel):
 
     model_config = ConfigDict(strict=True)
 
-    name: str | None = None
+    name: str | None = Field(default=None, max_length=LONGEST_NAME)
     units: str
     departure: FiniteFloat | None = Field(default=None, ge=0)
     loops: list[list[Annotated[list[FiniteFloat], Field(min_length=3, max_length=3)]]] = Field(min_length=1)
@@ -245,7 +256,7 @@ def workpiece_fault(error: ValidationError) -> str:
     if place == ["departure"]:
         return 'The workpiece\'s "departure" must be a length, 0 or more.'
     if place == ["name"]:
-        return 'The workpiece\'s "name" must be text.'
+        return f'The workpiece\'s "name" must be text of {LONGEST_NAME:,} letters at most.'
     # Numbers in messages are those of the file: loops and vertices count from 0.
     words = f"Loop {place[1]}" if len(place) > 1 else "The workpiece"
     if len(place) > 2:
@@ -266,7 +277,7 @@ class LoadTable(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    name: str = ""
+    name: str = Field(default="", max_length=LONGEST_NAME)
     force: float | str = Field(default=0.0, description="in N, or with a unit: 0.2 kN, 45 lbf")
     at: Point | None = Field(default=None, description="where the force acts; or path")
     path: Annotated[list[Point], Field(min_length=2)] | str | None = Field(

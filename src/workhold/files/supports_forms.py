@@ -9,6 +9,7 @@ from pydantic import Field, ValidationError
 
 from workhold.errors import InputError
 from workhold.files.budget import LIMITS
+from workhold.files.input_forms import LONGEST_NAME
 from workhold.files.result.forms import FormPart
 from workhold.files.text import json_value, read_text
 from workhold.model.requirements import ANY_DIRECTION, Zone, circle_zone, polygon_zone, zone_of
@@ -71,7 +72,7 @@ class TipPart(FormPart):
 class SpatialLoadPart(FormPart):
     """A load in space."""
 
-    name: str = ""
+    name: str = Field("", max_length=LONGEST_NAME)
     points: list[Two] = Field(default_factory=list)
     force: float = 0.0
     directions: Two = Field(default_factory=lambda: list(ANY_DIRECTION))

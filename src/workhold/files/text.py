@@ -20,14 +20,17 @@ __all__ = ["json_value", "read_limited", "read_text", "toml_table"]
 
 # Floats end at 1.8e308.
 MOST_DIGITS = 308
+# Lists and objects of JSON, and values of them, in millions: as many of the smallest take half a gigabyte and more.
+MOST_BRACKETS, MOST_COMMAS = 10_000_000, 30_000_000
 
 
-def read_text(path: Path, limits: FileLimits) -> str:
+def read_text(path: Path, limits: FileLimits, saved: str = "save it as UTF-8") -> str:
     """The text of a UTF-8 file, with or without a byte order mark.
 
     Parameters
     ----------
     limits : of this kind of file.
+    saved : what helps where it is written otherwise.
 
     Raises
     ------
@@ -38,7 +41,8 @@ def read_text(path: Path, limits: FileLimits) -> str:
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise InputError(f"the file is not UTF-8 text (byte {error.start}): save it as UTF-8.") from error
+        line = content.count(b"\n", 0, error.start) + 1
+        raise InputError(f"the file is not UTF-8 text (byte {error.start}, line {line}): {saved}.") from error
 
 
 def read_limited(path: Path, limits: FileLimits) -> bytes:
@@ -66,7 +70,10 @@ def read_limited(path: Path, limits: FileLimits) -> bytes:
                 f"{limits.remedy}."
             )
         with path.open("rb") as stream:
-            return stream.read(-1 if most is None else most)
+            content = stream.read(-1 if most is None else most + 1)
+        if most is not None and len(content) > most:
+            raise InputError(f"the file grows while it is read: give {limits.what} that is finished.")
+        return content
     except (OSError, ValueError) as error:
         if isinstance(error, InputError):
             raise
@@ -87,6 +94,13 @@ def json_value(text: str, hook: Callable[[dict[str, Any]], Any] | None = None) -
     InputError
         A sentence without the file's name, that gives line and column where the form is broken.
     """
+    if len(text) > MOST_BRACKETS:
+        for most, what in ((MOST_BRACKETS, "[{"), (MOST_COMMAS, ",")):
+            if sum(map(text.count, what)) > most:
+                raise InputError(
+                    f"the file holds more than {most / 1e6:g} million "
+                    f"{'values' if what == ',' else 'lists and objects'}: save less in it."
+                )
     try:
         return decoder(hook).decode(text)
     except json.JSONDecodeError as error:

@@ -201,8 +201,8 @@ class CuttingData:
             if value is None:
                 continue
             least = value >= low if name in ("cutting_force", "teeth", "helix_angle") else value > low
-            whole = name != "teeth" or value == int(value)
-            if not (isfinite(value) and least and (high is None or value <= high) and whole):
+            in_range = isfinite(value) and least and (high is None or value <= high)
+            if not in_range or (name == "teeth" and value != int(value)):
                 raise InputError(f"{name} {value:g} cannot be used: give {remedy}.")
         refuse_strong("cutting_force", self.cutting_force or 0.0)
         for name in ("cut_depth", "cut_width"):

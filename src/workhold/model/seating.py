@@ -73,10 +73,10 @@ class SeatContact:
         return {"peg": self.peg, "corner" if self.corner else "face": self.face}
 
     @classmethod
-    def of_fields(cls, fields: Mapping[str, int]) -> SeatContact:
+    def of_fields(cls, fields: Mapping[str, Any]) -> SeatContact:
         """The contact that a file has."""
-        corner = "corner" in fields
-        return cls(fields["peg"], fields["corner" if corner else "face"], corner)
+        corner = fields.get("corner")
+        return cls(fields["peg"], fields["face"] if corner is None else corner, corner is not None)
 
 
 @frozen

@@ -56,8 +56,11 @@ GRID = 12
 
 def is_supports_file(path: str | Path) -> bool:
     """Whether a file says at its beginning that it is one of supports."""
+    path = Path(path)
+    if not path.is_file():
+        return False
     try:
-        with Path(path).open("rb") as stream:
+        with path.open("rb") as stream:
             return FORMAT.encode() in stream.read(200)
     except OSError:
         return False

@@ -18,16 +18,15 @@ A CSV file has the same names at its head, with ``tool`` before them. A line of 
 
 from __future__ import annotations
 
-import csv
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from io import StringIO
 from math import isfinite
 from pathlib import Path
 from typing import Any
 
 from workhold.errors import InputError
 from workhold.files.budget import LIMITS, Budget
+from workhold.files.tables import SAVED, table_of
 from workhold.files.text import read_text, toml_table
 from workhold.limits import real
 from workhold.model.cutting_tool import CuttingData, Cylinder, Tool
@@ -199,7 +198,7 @@ def read_tools(path: str | Path, unit: Unit) -> tuple[dict[int, Tool], bool]:
     """
     path = Path(path)
     try:
-        text = read_text(path, LIMITS["tools"])
+        text = read_text(path, LIMITS["tools"], SAVED)
         ending = path.suffix.lower()
         if ending == ".toml":
             return of_toml(toml_table(text), unit)
@@ -268,29 +267,21 @@ def of_toml(content: Mapping[str, Any], unit: Unit) -> tuple[dict[int, Tool], bo
 
 def of_csv(text: str, unit: Unit) -> tuple[dict[int, Tool], bool]:
     """Tools of a table with a head, separated by commas, semicolons or tabs; refuses another form."""
-    lines = [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")]
-    head = lines[0] if lines else ""
-    mark = next((one for one in (";", "\t") if one in head), ",")
-    names = [name.strip().lower().replace(" ", "_") for name in head.split(mark)]
     known = ("tool", *FIELDS)
-    if "tool" not in names or not set(names) <= set(known) or len(set(names)) < len(names):
-        raise InputError(
-            f"its first line names no columns: write tool,diameter and others of {', '.join(known)}."
-        )
+    wanted = f"write tool,diameter and others of {', '.join(known)}"
+    if not text.strip():
+        raise InputError(f"its first line names no columns: {wanted}.")
+    table = table_of(text, Budget(LIMITS["tools"], len(text)), remarks="#")
+    table.names = tuple(name.replace(" ", "_") for name in table.names)
+    if "tool" not in table.names or not {*table.names} <= {"", *known}:
+        raise InputError(f"its first line names no columns: {wanted}.")
     rows = []
-    for place, cells in enumerate(csv.reader(StringIO("\n".join(lines[1:])), delimiter=mark), 1):
-        if len(cells) > len(names):
-            raise InputError(f"row {place} has {len(cells)} cells under {len(names)} names: correct it.")
-        fields: dict[str, Any] = {
-            name: cell.strip() for name, cell in zip(names, cells, strict=False) if cell.strip()
-        }
-        if mark == ";":
-            fields = {
-                key: fields[key] if key in ("name", "unit") else fields[key].replace(",", ".")
-                for key in fields
-            }
-        number = checked_number(fields.pop("tool", ""), f"row {place}:")
-        rows.append((number, fields, f"T{number}"))
+    for row in table.rows():
+        # A cell in which nothing is given is none; of a name only an empty one.
+        cells = {name: cell if name == "name" else row.value(name) for name, cell in row.cells.items()}
+        fields = {name: cell for name, cell in cells.items() if cell is not None}
+        number = checked_number(fields.pop("tool", ""), f"{row}:")
+        rows.append((number, fields, f"{row}, T{number}"))
     return collected(rows, unit), all("unit" in fields for _, fields, _ in rows)
 
 

@@ -132,12 +132,13 @@ def checked_seating(data: Any, pose: Pose, path: Path, number: int) -> Seating:
         Naming the first key that is missing or cannot be used.
     """
     try:
-        SeatingPart.model_validate(data)
+        part = SeatingPart.model_validate(data)
     except ValidationError as error:
         key, reason = first_fault(error)
         key = ".".join(filter(None, ("seating", key)))
         raise InputError(f"{path}: fixture {number} cannot be used: {key}: {reason}.") from error
-    return Seating.of_fields(data, pose)
+    # What the form lets be left out has its default there.
+    return Seating.of_fields(part.model_dump(by_alias=True), pose)
 
 
 def with_seating(result: Result, seating: Sequence[Seating], path: Path) -> Result:

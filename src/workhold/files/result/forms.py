@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from workhold.errors import InputError
-from workhold.files.input_forms import TAGS, forms_by_noun, one_of, optional
+from workhold.files.input_forms import LONGEST_NAME, TAGS, forms_by_noun, one_of, optional
 from workhold.fixels.kinds import USUAL, table_of, toolkit_of
 from workhold.fixels.table import Form, ToolkitField
 from workhold.fixels.toolkit import Toolkit
@@ -57,7 +57,7 @@ class FormPart(BaseModel):
 class WorkpiecePart(FormPart):
     """The workpiece's keys."""
 
-    name: str
+    name: str = Field(max_length=LONGEST_NAME)
     units: Literal["mm"]
     loops: list[list[list[float]]]
     departure: float = 0.0
@@ -189,7 +189,7 @@ class TolerancePart(FormPart):
 class LoadPart(FormPart):
     """A load."""
 
-    name: str = ""
+    name: str = Field("", max_length=LONGEST_NAME)
     points: list[Pair] = []
     force: float = 0.0
     directions: Pair = list(ANY_DIRECTION)

@@ -15,11 +15,14 @@ swept piece : a cylinder of a tool on one move of a program. A program has many,
 from __future__ import annotations
 
 import json
+import re
 import struct
+from codecs import BOM_UTF8
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
+from itertools import count
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, BinaryIO, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,7 +32,7 @@ from workhold.archive import Column, Columns
 from workhold.errors import InputError
 from workhold.files.budget import LIMITS
 from workhold.files.result.forms import MISSING, Head, ProofPart, first_fault
-from workhold.files.text import json_value, read_text
+from workhold.files.text import json_value, read_limited
 from workhold.fixels.fields import CLAMPS
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture_table import FixtureTable
@@ -61,6 +64,12 @@ NOT_FINITE = "cannot be used: a length, an angle or a force is not a finite numb
 
 
 HEAD = "result.json"
+# Bytes of the line of a fixture, and of all that stands before and after the fixtures, as of the text of an
+# archive. What is looked through for the first fixture is read in such pieces.
+MOST_LINE, MOST_AROUND, CHUNK = 20_000_000, 200_000_000, 1 << 20
+# What stands alone on the line before the first fixture, and how long that line may be.
+FIRST_LINE = re.compile(rb'"fixtures": \[[ \t\r]{0,99}\n')
+LONGEST_FIRST_LINE = 250
 
 
 def columns_of(travels: int, has_program: bool = False) -> Columns:
@@ -312,6 +321,8 @@ def read_parts(path: Path, take: Take[Taken]) -> tuple[Head, Taken]:
         When the file cannot be read, or is no result file, and what ``take`` raises.
     """
     try:
+        if path.exists() and not path.is_file():
+            raise InputError(f"{path} is not a file: give a result file.")
         try:
             data, taken = read_lines(path, take)
         except OtherLayoutError:
@@ -332,49 +343,74 @@ def read_lines(path: Path, take: Take[Taken]) -> tuple[Any, Taken]:
     ------
     OtherLayoutError
         When the lines are not of that form.
+    InputError
+        When a line or what stands around the fixtures is longer than any may be.
     """
-    with path.open(encoding="utf-8-sig") as stream:
-        before: list[str] = []
-        for line in stream:
-            before.append(line)
-            if line.strip() == '"fixtures": [':
-                break
-        else:
-            raise OtherLayoutError
-        after: list[str] = []
-        taken = take(fixture_lines(stream, after), path)
+    with path.open("rb") as stream:
+        before = stream.read(start_of_fixtures(stream))
+        after: list[bytes] = []
+        taken = take(fixture_lines(stream, after, path), path)
+        rest = stream.read(MOST_AROUND - len(before) + 1)
+        if len(before) + len(rest) > MOST_AROUND:
+            raise InputError(
+                f"{path}: what stands around the fixtures has more than the {MOST_AROUND / 1e6:g} MB that a "
+                f"result file may have there: {LIMITS['result'].remedy}."
+            )
+        text = b"".join((before.removeprefix(BOM_UTF8), *after, rest)).decode()
+        del before, rest
         try:
-            before += [*after, stream.read()]
-            text = "".join(before)
-            before.clear()
             data = head_value(text)
         except ValueError as error:
             raise OtherLayoutError from error
     return data, taken
 
 
-def fixture_lines(stream: Iterable[str], after: list[str]) -> Iterator[Any]:
+def start_of_fixtures(stream: BinaryIO) -> int:
+    """How many bytes stand before the first fixture; the stream is at its start before and after.
+
+    Nothing is kept of what is read: a file of any size may be none.
+    """
+    at, kept = 0, b"\n"
+    while at <= MOST_AROUND and (read := stream.read(CHUNK)):
+        # Of the piece before, as much as such a line may have is looked at again.
+        text = kept + read
+        for found in FIRST_LINE.finditer(text):
+            if not text[text.rfind(b"\n", 0, found.start()) + 1 : found.start()].strip():
+                stream.seek(0)
+                return at + found.end() - len(kept)
+        at, kept = at + len(read), text[-LONGEST_FIRST_LINE:]
+    raise OtherLayoutError
+
+
+def fixture_lines(stream: BinaryIO, after: list[bytes], path: Path) -> Iterator[Any]:
     """The fixtures on their lines; the line that ends the list goes to ``after``."""
     last = False
-    for line in stream:
+    for number in count(1):
+        line = stream.readline(MOST_LINE + 1)
+        if len(line) > MOST_LINE:
+            raise InputError(
+                f"{path}: fixture {number} takes more than the {MOST_LINE / 1e6:g} MB that the line of a "
+                f"fixture may have: {LIMITS['result'].remedy}."
+            )
         text = line.strip()
-        if text.startswith("]"):
+        if text.startswith(b"]"):
             after.append(line)
             return
-        if last:
+        if last or not line:
             raise OtherLayoutError
-        last = not text.endswith(",")
+        last = not text.endswith(b",")
         try:
-            yield json_value(text.removesuffix(","))
+            yield json_value(text.removesuffix(b",").decode())
+        except UnicodeDecodeError:
+            raise
         except ValueError as error:
             raise OtherLayoutError from error
-    raise OtherLayoutError
 
 
 def read_whole(path: Path, take: Take[Taken]) -> tuple[Any, Taken]:
     """Head and fixtures of a file of any layout."""
     try:
-        text = read_text(path, LIMITS["result"])
+        text = read_limited(path, LIMITS["result"]).decode("utf-8-sig")
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
     if not text.strip():
