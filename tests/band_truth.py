@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import islice, pairwise
+from math import ceil, pi
 from typing import Any
 
 import numpy as np
@@ -23,7 +24,7 @@ from OCP.TopAbs import TopAbs_State
 
 from workhold.files.step.heights import HeightOutline
 from workhold.geometry.loop import faces_of_loop, loop_segments
-from workhold.geometry.segment import Segment
+from workhold.geometry.segment import Arc, Segment
 from workhold.model.solid import Band
 
 __all__ = ["band_faults", "listed", "mirrored", "placed", "runs_beside", "unlike"]
@@ -63,7 +64,11 @@ def listed(outline: HeightOutline) -> list[tuple[float, ...]]:
     for loop in outline.vertices:
         own = list(islice(bands, len(loop)))
         for face in faces_of_loop(loop_segments(loop), 0, own):
-            found.append((face.segment.length, *(own[face.segments[0]] or (-1.0, -1.0))))
+            band = own[face.segments[0]] or (-1.0, -1.0)
+            # Half a circle is one face or two, by rounding.
+            sweep = face.segment.half_extent if isinstance(face.segment, Arc) else 0.0
+            parts = max(ceil(sweep / (pi / 4) - 0.01), 1)
+            found += [(face.segment.length / parts, *band)] * parts
     return sorted(found, key=lambda one: [round(value, 3) for value in one])
 
 

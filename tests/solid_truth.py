@@ -155,10 +155,10 @@ def fixture_faults(shape: Any, part: Workpiece, fixture: Fixture, toolkit: Any) 
             yield f"{peg.hole} is {away:.3g} mm off the solid"
         if (away := distance(smaller, shape)) < LEFT:
             yield f"{peg.hole} enters the solid below {top + room:g} ({away:.3g})"
-        for z, end in zip(band, (low, min(top, part.solid.height)), strict=True):
-            # A wall with an opening in it is touched below and above that: its band holds the opening too.
-            if (away := distance(upright_line(px, py, z, end), shape)) > NEAR:
-                yield f"{peg.hole} is {away:.3g} mm off from {z:g} on, an end of its band"
+        for z in np.linspace(*band, 7).tolist():
+            touched = BRepBuilderAPI_MakeVertex(gp_Pnt(px, py, z)).Vertex()
+            if (away := distance(touched, shape)) > NEAR:
+                yield f"{peg.hole} is {away:.3g} mm off at {z:g}, within its band"
             inside = BRepBuilderAPI_MakeVertex(gp_Pnt(px + 1e-3 * nx, py + 1e-3 * ny, z)).Vertex()
             if distance(inside, shape) == 0.0:
                 yield f"{peg.hole} has material before its face at {z:g}"

@@ -106,7 +106,7 @@ def outline_at(shape: Any, height: float) -> HeightOutline | str:
     try:
         return standing(shape).outline(height)
     except InputError as error:
-        return str(error)[:40]
+        return str(error)
 
 
 @pytest.mark.parametrize(("name", "axis", "share"), CASES)
@@ -145,7 +145,8 @@ def test_a_rim_that_rises_far_is_halved_alike_from_its_lowest_point() -> None:
         for strip in loop
         if strip.bulge
     ]
-    assert sorted(strip.band or () for strip in strips) == pytest.approx([(0, 14), (0, 14), (0, 26)])
+    assert all(strip.band and strip.band[0] == 0.0 for strip in strips)
+    assert sorted(strip.band[1] for strip in strips if strip.band) == pytest.approx([14, 14, 26])
     # The lowest point of the rim, and the wall there, is that at (20, 20).
     assert any(strip.start == pytest.approx((20.0, 20.0), abs=1e-6) for strip in strips)
 

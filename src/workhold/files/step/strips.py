@@ -306,14 +306,16 @@ def cut_at(stretch: Stretch, size: float) -> tuple[Stretch, Stretch]:
     size : how far the place is from its start, in mm on a line and radians on a circle.
     """
     left = size
+    slack = stretch[0].piece.carrier.slack
     for k, one in enumerate(stretch):
-        if left < one.size:
+        if k and left <= slack:
+            return list(stretch[:k]), list(stretch[k:])
+        if left < one.size - slack:
             place = one.low + left if one.piece.forward else one.high - left
             first, second = one.parts([place])
-            before = [*stretch[:k], first] if left > 0.0 else list(stretch[:k])
-            return before, [second, *stretch[k + 1 :]]
+            return [*stretch[:k], first], [second, *stretch[k + 1 :]]
         left -= one.size
-    return stretch, []
+    return stretch[:-1], stretch[-1:]
 
 
 def joined(strips: Sequence[Strip]) -> list[Strip]:
