@@ -254,7 +254,7 @@ def cut_each_other(a: CutCarrier, b: CutCarrier) -> None:
     middle between them: the piece between would be closed like a gap, and move the ends of those beside it.
     """
     points = list(carrier_intersections(a.segment, b.segment))
-    if len(points) == 2 and dist(*points) <= REACH:
+    if len(points) == 2 and SHORT < dist(*points) <= REACH:
         (x0, y0), (x1, y1) = points
         points = [((x0 + x1) / 2, (y0 + y1) / 2)]
     for one, other in ((a, b), (b, a)):

@@ -118,7 +118,7 @@ def with_own_outlines(
     for role, (low, high) in heights.items():
         if role in entries:
             bands, faces = entries[role]["bands"], entries[role].get("solid_faces") or ()
-            changed = {"bands": bands, "faces": faces, "bottom": (), "top": (), "top_heights": ()}
+            changed = {"bands": bands, "faces": faces, "bottom": None, "top": None, "top_heights": ()}
             solid = evolve(workpiece.solid, low=low, peg_height=high, **changed)
             outline = workpiece.from_loops(own_name((low, high)), entries[role]["loops"], solid=solid)
             own.append((role, outline))

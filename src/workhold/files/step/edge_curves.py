@@ -34,6 +34,7 @@ __all__ = [
     "curve_point",
     "edge_curves",
     "extremes",
+    "flattened",
     "height",
 ]
 

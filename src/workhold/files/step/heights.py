@@ -366,5 +366,5 @@ def own_drawings(
                 f"heights of the {role}."
             )
         own = evolve(found, low=low, peg_height=high, bands=outline.bands, faces=outline.faces)
-        own = evolve(own, bottom=(), top=(), top_heights=())
+        own = evolve(own, bottom=None, top=None, top_heights=())
         yield OwnDrawing(role, outline.vertices, own)
