@@ -54,7 +54,7 @@ def bored_aslant(x: float, degrees: float, radius: float = 6.0) -> Any:
 
 def spline_pocket(deep: float) -> Any:
     """A plate of 80 x 50 x 16 mm with a pocket that has a wavy spline on one side, with bends both ways."""
-    wave = [(20 + 4 * k, 20 + 5 * sin(1.3 * k)) for k in range(11)]
+    wave = [(20 + 4 * k, 20 + 1.5 * sin(0.8 * k)) for k in range(11)]
     points = Array1_gp_Pnt(1, len(wave))
     for k, (x, y) in enumerate(wave, 1):
         points.SetValue(k, gp_Pnt(x, y, 16 - deep))
