@@ -175,8 +175,8 @@ class TouchableFace:
 
     @property
     def box(self) -> tuple[Array, Array]:
-        """The least and the greatest x and y that the faces may have."""
-        points = []
+        """The least and the greatest x and y that the faces may have; a point where there is no face."""
+        points = [] if self.faces else [(0.0, 0.0)]
         for one in (one for number in self.faces for one in self.borders.loops[number]):
             points.append(one.start)
             if isinstance(one, Arc):
