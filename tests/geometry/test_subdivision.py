@@ -120,3 +120,43 @@ def test_cuts_beside_a_corner_leave_one_loop(side: int, apart: float) -> None:
         loops = border_loops([*pieces[first:], *pieces[:first]])
         assert len(loops) == 1
         assert area(loops) == pytest.approx(16, abs=1e-3)
+
+
+GAPS = [0.0, *(sign * 3.3 * 10.0**-power for power in range(3, 13) for sign in (1.0, -1.0))]
+
+
+@pytest.mark.parametrize("gap", GAPS)
+@pytest.mark.parametrize("corners", [4, 6])
+def test_a_circle_that_nearly_touches_a_polygon(corners: int, gap: float) -> None:
+    """A circle inside, on, or just over the sides of a polygon, which are cut where it touches.
+
+    Held against the circle less the caps beyond the sides (Weisstein, "Circular Segment").
+    """
+    apothem = 20.0
+    radius, size = apothem + gap, apothem / np.cos(pi / corners)
+    angles = [0.3 + 2 * pi * k / corners for k in range(corners)]
+    points = [(7.0 + float(size * np.cos(a)), -3.0 + float(size * np.sin(a))) for a in angles]
+    polygon: list[Segment] = [Line(points[k - 1], points[k]) for k in range(corners)]
+    circle = Arc((7.0, -3.0), radius, 0.2, pi, 1.0)
+    normals = [segment.normal() for segment in polygon]
+
+    def in_polygon(at: Point) -> bool:
+        return all((at[0] - 7) * nx + (at[1] + 3) * ny < apothem for nx, ny in normals)
+
+    def in_circle(at: Point) -> bool:
+        return hypot(at[0] - 7, at[1] + 3) < radius
+
+    half = acos(min(1.0, apothem / radius))
+    caps = corners * radius**2 * (half - np.sin(half) * np.cos(half))
+    of_polygon, of_circle = corners * apothem**2 * np.tan(pi / corners), pi * radius**2
+    both = of_circle - caps
+    carriers = subdivide([*polygon, circle], [(side, side.middle) for side in polygon])
+    for inside, expected in (
+        (in_polygon, of_polygon),
+        (in_circle, of_circle),
+        (lambda at: in_polygon(at) and in_circle(at), both),
+        (lambda at: in_polygon(at) or in_circle(at), of_polygon + of_circle - both),
+    ):
+        loops = border_loops(border_pieces(carriers, inside))
+        assert len(loops) == 1
+        assert area(loops) == pytest.approx(float(expected), abs=2e-4)

@@ -165,7 +165,9 @@ def side_view(
     placed = [SidePad(pad.hole, way.across(pose.apply(pad.x, pad.y))) for pad in pads]
     solid = workpiece.solid
     tops, feet = (
-        ([], []) if solid is None else (spans_of(loops, bench, way) for loops in (solid.top, solid.bottom))
+        ([], [])
+        if solid is None
+        else (spans_of(loops or (), bench, way) for loops in (solid.top, solid.bottom))
     )
     return SideView(
         way=way,

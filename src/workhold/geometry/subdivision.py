@@ -2,7 +2,9 @@
 
 Segments of one carrier are put together first, so a piece that many segments share is there once. A region is
 known by asking beside every piece whether its points belong to it; pieces with the region on one side only
-are its border.
+are its border. It is asked where no other carrier runs between the piece and the points. Two pieces that run
+nowhere farther apart than carriers that are one, as beside the place where a circle touches a line, have such
+points on their outer sides only, and one of them is the border.
 
 Glossary
 --------
@@ -10,16 +12,18 @@ subdivision : the pieces of some curves between all points in which these meet (
     "Computational Geometry", chapter 2).
 position : place along a carrier: millimetres on a line, radians on a circle.
 span : a range of positions that some segment covers.
+clearance : how far a point of a piece is from all other carriers, as far as they are covered, in mm.
+twins : pieces of several carriers between the same two ends that run nowhere farther apart than ``THIN``.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise, product
-from math import atan2, cos, dist, pi, sin, tau
+from math import atan2, cos, dist, inf, pi, sin, tau
 
 import numpy as np
-from attrs import Factory, define, field, frozen
+from attrs import Factory, define, evolve, field, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
@@ -32,8 +36,16 @@ __all__ = ["BorderPiece", "CutCarrier", "border_loops", "border_pieces", "distin
 ONE = 1e-6
 # Pieces shorter than this in mm come of rounding and are left out.
 SHORT = 1e-5
+# mm. Largest gap between the ends of neighbouring pieces of a border.
+REACH = 1e-4
 # How far beside a piece its two sides are looked at, in mm, and as a share of the piece.
 BESIDE, BESIDE_SHARE = 4e-4, 0.1
+# Where along a piece that may be, as shares of it: the first where nothing is near, or where it is farthest.
+SHARES = (0.5, 0.25, 0.75, 0.375, 0.625, 0.125, 0.875, 0.03, 0.97)
+# mm. Pieces that run no farther apart are twins, if their ends are no farther from each other than the second.
+THIN, SAME_END = 2 * ONE, 10 * ONE
+# Points times carriers that are looked at together.
+AT_ONCE = 1 << 20
 
 
 @define
@@ -122,6 +134,11 @@ class CutCarrier:
             low - slack <= position + turn <= high + slack for low, high in self.spans for turn in turns
         )
 
+    def apart(self, one: float, other: float) -> float:
+        """How far two positions are apart, on a circle the shorter way round."""
+        away = abs(one - other)
+        return away if isinstance(self.segment, Line) else abs((away + pi) % tau - pi)
+
     def pieces(self) -> list[tuple[float, float]]:
         """Pieces between neighbouring cuts that are covered."""
         slack = self.slack
@@ -135,8 +152,11 @@ class CutCarrier:
             if len(distinct) > 1 and distinct[0] + tau - distinct[-1] <= slack:
                 distinct.pop()
             distinct.append(distinct[0] + tau)
-            if len(distinct) == 2:
-                distinct.insert(1, distinct[0] + pi)
+            for before, after in pairwise(distinct):
+                # All of a circle, or almost, would end where it begins.
+                if tau - (after - before) <= REACH / self.segment.radius:
+                    distinct.append(before + pi)
+            distinct.sort()
         least = SHORT / ONE * slack
         return [
             (low, high)
@@ -178,9 +198,11 @@ def subdivide(
         carrier = carrier_of(segment, carriers, found, comparisons)
         carrier.add(segment)
         carrier.owners.append(number)
+    further = []
     for segment, point in cuts:
         carrier = carrier_of(segment, carriers, found)
         carrier.cuts.append(carrier.position(point))
+        further.append((carrier, point))
     carriers = [carrier for carrier in carriers if carrier.spans]
     if comparisons is not None:
         # Every piece is asked for all spans.
@@ -192,7 +214,19 @@ def subdivide(
             comparisons.spend(10)
         if a < b:
             cut_each_other(carriers[a], carriers[b])
+    cut_twins(Carriers.of(carriers), further)
     return carriers
+
+
+def cut_twins(carriers: Carriers, cuts: Sequence[tuple[CutCarrier, Point]]) -> None:
+    """Cuts what runs beside a carrier where that is cut besides, so that twins have the same ends."""
+    for number, other in carriers.near(np.array([point for _, point in cuts]).reshape(-1, 2), THIN):
+        own, point = cuts[number]
+        if other is own or carriers.distance(other, point) > THIN:
+            continue
+        position = other.position(point)
+        if all(other.apart(position, cut) > other.slack for cut in other.cuts):
+            other.cuts.append(position)
 
 
 def carrier_of(
@@ -239,8 +273,15 @@ def covered_box(carrier: CutCarrier) -> tuple[float, float, float, float]:
 
 
 def cut_each_other(a: CutCarrier, b: CutCarrier) -> None:
-    """Cuts two carriers where both are covered and meet, or where a span of one ends on the other."""
+    """Cuts two carriers where both are covered and meet, or where a span of one ends on the other.
+
+    A circle that passes another or a line by so little that the two points are one gap touches it in the
+    middle between them: the piece between would be closed like a gap, and move the ends of those beside it.
+    """
     points = list(carrier_intersections(a.segment, b.segment))
+    if len(points) == 2 and SHORT < dist(*points) <= REACH:
+        (x0, y0), (x1, y1) = points
+        points = [((x0 + x1) / 2, (y0 + y1) / 2)]
     for one, other in ((a, b), (b, a)):
         for point in one.ends_near(other.segment):
             if dist(point, other.at(other.position(point))) <= ONE:
@@ -250,6 +291,74 @@ def cut_each_other(a: CutCarrier, b: CutCarrier) -> None:
         if a.covers(first) and b.covers(second):
             a.cuts.append(first)
             b.cuts.append(second)
+
+
+@frozen(eq=False)
+class Carriers:
+    """Some carriers, asked together which of them run near points.
+
+    Parameters
+    ----------
+    every : the carriers.
+    lines, circles : the numbers of those that are lines, and of the others.
+    across : (3, L) of each line the numbers that give the distance of (x, y, 1) from it.
+    powers : (4, C) of each circle those that give of (x² + y², x, y, 1) the square of the distance from its
+        centre, less that of its radius.
+    radii : (C,) of the circles, in mm.
+    """
+
+    every: Sequence[CutCarrier]
+    lines: NDArray[np.int64]
+    circles: NDArray[np.int64]
+    across: NDArray[np.float64]
+    powers: NDArray[np.float64]
+    radii: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, carriers: Sequence[CutCarrier]) -> Carriers:
+        """Carriers as arrays."""
+        is_line = np.array([isinstance(one.segment, Line) for one in carriers], dtype=bool)
+        across, powers, radii = [], [], []
+        for carrier in carriers:
+            own = carrier.segment
+            if isinstance(own, Line):
+                (x, y), (tx, ty) = own.middle, own.tangent
+                across.append((ty, -tx, y * tx - x * ty))
+            else:
+                x, y = own.center
+                powers.append((1.0, -2 * x, -2 * y, x * x + y * y - own.radius**2))
+                radii.append(own.radius)
+        return cls(
+            carriers,
+            np.flatnonzero(is_line),
+            np.flatnonzero(~is_line),
+            np.array(across).reshape(-1, 3).T,
+            np.array(powers).reshape(-1, 4).T,
+            np.array(radii),
+        )
+
+    def near(self, points: NDArray[np.float64], reach: float) -> Iterator[tuple[int, CutCarrier]]:
+        """Numbers of points (N, 2), each with a carrier that may be no farther than a reach in mm from it."""
+        step = max(1, AT_ONCE // max(1, len(self.every)))
+        for first in range(0, len(points), step):
+            x, y = points[first : first + step].T
+            one = np.ones_like(x)
+            off_line = np.abs(np.column_stack([x, y, one]) @ self.across) <= reach + ONE
+            power = np.abs(np.column_stack([x * x + y * y, x, y, one]) @ self.powers)
+            off_circle = power <= (2 * self.radii + reach + ONE) * (reach + ONE)
+            for numbers, is_near in ((self.lines, off_line), (self.circles, off_circle)):
+                for row, column in zip(*np.nonzero(is_near), strict=True):
+                    yield first + int(row), self.every[numbers[column]]
+
+    def distance(self, carrier: CutCarrier, point: Point) -> float:
+        """How far a point is from what is covered of a carrier, in mm; endless where its foot is not."""
+        position = carrier.position(point)
+        return dist(point, carrier.at(position)) if carrier.covers(position) else inf
+
+    def clearance(self, own: CutCarrier, point: Point, reach: float) -> float:
+        """The clearance of a point of a carrier; at most a reach in mm."""
+        near = self.near(np.array([point]), reach)
+        return min((self.distance(one, point) for _, one in near if one is not own), default=reach)
 
 
 @frozen
@@ -279,6 +388,11 @@ class BorderPiece:
         return self.carrier.at(self.high if self.forward else self.low)
 
     @property
+    def middle(self) -> Point:
+        """The point halfway."""
+        return self.carrier.at((self.low + self.high) / 2)
+
+    @property
     def length(self) -> float:
         """Length of the run in mm."""
         own = self.carrier.segment
@@ -306,47 +420,87 @@ def border_pieces(carriers: Sequence[CutCarrier], inside: Callable[[Point], bool
     carriers : see :func:`subdivide`; they hold the region's whole border.
     inside : whether a point (x, y) that lies on no carrier belongs to the region.
     """
-    found = []
-    pieces = [(carrier, low, high) for carrier in carriers for low, high in carrier.pieces()]
-    middles = [carrier.at((low + high) / 2) for carrier, low, high in pieces]
-    free = clearances([carrier for carrier, _, _ in pieces], middles, carriers)
-    for (carrier, low, high), (x, y), room in zip(pieces, middles, free, strict=True):
-        unit = 1.0 if isinstance(carrier.segment, Line) else carrier.segment.radius
-        nx, ny = carrier.left((low + high) / 2)
-        beside = min(BESIDE, BESIDE_SHARE * (high - low) * unit, room / 2)
-        left = inside((x + beside * nx, y + beside * ny))
-        right = inside((x - beside * nx, y - beside * ny))
+    known = Carriers.of(carriers)
+    spans = [(carrier, low, high) for carrier in carriers for low, high in carrier.pieces()]
+    middles = np.array([carrier.at((low + high) / 2) for carrier, low, high in spans]).reshape(-1, 2)
+    crowded = {
+        number
+        for number, other in known.near(middles, 2 * BESIDE)
+        if other is not spans[number][0]
+        and known.distance(other, (float(middles[number, 0]), float(middles[number, 1]))) <= 2 * BESIDE
+    }
+    found, thin = list[BorderPiece | None](), dict[int, BorderPiece]()
+    for number, (carrier, low, high) in enumerate(spans):
+        piece = BorderPiece(carrier, low, high, True)
+        position, beside = (low + high) / 2, min(BESIDE, BESIDE_SHARE * piece.length)
+        if number in crowded:
+            position, clearance = clearest(piece, known, 2 * beside)
+            if clearance <= THIN:
+                thin[len(found)] = piece
+            beside = min(beside, clearance / 2)
+        left, right = sides(carrier, position, beside, inside)
+        found.append(evolve(piece, forward=left) if left != right else None)
+    for group in twins(thin):
+        first = thin[group[0]]
+        beside = min(BESIDE, BESIDE_SHARE * first.length)
+        left, right = sides(first.carrier, (first.low + first.high) / 2, beside, inside)
+        for number in group:
+            found[number] = None
         if left != right:
-            found.append(BorderPiece(carrier, low, high, left))
-    return found
-
-
-def clearances(
-    own: Sequence[CutCarrier], points: Sequence[Point], carriers: Sequence[CutCarrier]
-) -> list[float]:
-    """How far in mm points of carriers are from what is covered of the others, where that is very near.
-
-    Other carriers do not meet these points, which lie between cuts; one that nearly touches there lies between
-    a point and a place that is looked at beside it.
-    """
-    places = np.array(points).reshape(-1, 2)
-    free = [2 * BESIDE] * len(points)
-    for carrier in carriers:
-        segment = carrier.segment
-        if isinstance(segment, Arc):
-            away = np.abs(
-                np.hypot(places[:, 0] - segment.center[0], places[:, 1] - segment.center[1]) - segment.radius
+            outer = evolve(first, forward=left)
+            (x, y), (nx, ny) = outer.middle, outer.carrier.left((first.low + first.high) / 2)
+            away = (-nx, -ny) if left else (nx, ny)
+            number = max(
+                group,
+                key=lambda k: (thin[k].middle[0] - x) * away[0] + (thin[k].middle[1] - y) * away[1],
             )
+            chosen = thin[number]
+            runs_along = dist(chosen.start, first.start) <= dist(chosen.start, first.end)
+            found[number] = evolve(chosen, forward=left == runs_along)
+    return [piece for piece in found if piece is not None]
+
+
+def sides(
+    carrier: CutCarrier, position: float, beside: float, inside: Callable[[Point], bool]
+) -> tuple[bool, bool]:
+    """Whether points so far beside a position of a carrier, on its left and its right, are inside."""
+    (x, y), (nx, ny) = carrier.at(position), carrier.left(position)
+    left = inside((x + beside * nx, y + beside * ny))
+    return left, inside((x - beside * nx, y - beside * ny))
+
+
+def clearest(piece: BorderPiece, carriers: Carriers, enough: float) -> tuple[float, float]:
+    """The first position of a piece with enough clearance in mm, else that with the most; with its clearance."""
+    best = piece.low, -1.0
+    for share in SHARES:
+        position = piece.low + share * (piece.high - piece.low)
+        clearance = carriers.clearance(piece.carrier, piece.carrier.at(position), enough)
+        if clearance > best[1]:
+            best = position, clearance
+        if clearance >= enough:
+            break
+    return best
+
+
+def twins(pieces: Mapping[int, BorderPiece]) -> list[list[int]]:
+    """The numbers of pieces that are twins, all of the same ends together; none of a piece without one."""
+    groups: list[list[int]] = []
+    for number, piece in pieces.items():
+        for group in groups:
+            other = pieces[group[0]]
+            ends = (other.start, other.end), (other.end, other.start)
+            if piece.carrier is not other.carrier and any(
+                dist(piece.start, start) <= SAME_END and dist(piece.end, end) <= SAME_END
+                for start, end in ends
+            ):
+                group.append(number)
+                break
         else:
-            (x, y), (tx, ty) = segment.middle, segment.tangent
-            away = np.abs((places[:, 0] - x) * ty - (places[:, 1] - y) * tx)
-        for k in np.flatnonzero((away < 2 * BESIDE) & (away > ONE)).tolist():
-            if own[k] is not carrier and carrier.covers(carrier.position(points[k])):
-                free[k] = min(free[k], float(away[k]))
-    return free
+            groups.append([number])
+    return [group for group in groups if len(group) > 1]
 
 
-def border_loops(pieces: Sequence[BorderPiece], reach: float = 1e-4) -> list[list[BorderPiece]]:
+def border_loops(pieces: Sequence[BorderPiece], reach: float = REACH) -> list[list[BorderPiece]]:
     """Pieces of a border joined to closed loops, each run with the region on the left.
 
     Where several runs leave a point, the one that turns farthest to the left is taken. So two corners of a
@@ -373,8 +527,11 @@ def border_loops(pieces: Sequence[BorderPiece], reach: float = 1e-4) -> list[lis
         loop = [first]
         while True:
             x, y = pieces[loop[-1]].end
-            near = np.flatnonzero(np.hypot(starts[:, 0] - x, starts[:, 1] - y) <= reach)
-            free = [int(k) for k in near if k in left or k == first]
+            away = np.hypot(starts[:, 0] - x, starts[:, 1] - y)
+            free = [int(k) for k in np.flatnonzero(away <= reach) if k in left or k == first]
+            # A short piece that begins here is not passed over for the next one.
+            least = min((away[k] for k in free), default=0.0)
+            free = [k for k in free if away[k] <= least + SHORT]
             if not free:
                 raise InputError(f"the outline does not close at ({x:.6g}, {y:.6g})")
             heading = pieces[loop[-1]].heading(at_end=True)

@@ -123,8 +123,8 @@ def with_own_outlines(
                 "bands": bands,
                 "runs": runs,
                 "faces": faces,
-                "bottom": (),
-                "top": (),
+                "bottom": None,
+                "top": None,
                 "top_heights": (),
             }
             solid = evolve(workpiece.solid, low=low, peg_height=high, **changed)

@@ -8,6 +8,7 @@ from math import isfinite
 from typing import Any
 
 from attrs import evolve, field, frozen
+from attrs.converters import optional
 
 from workhold.errors import InputError
 from workhold.limits import real
@@ -131,7 +132,8 @@ class SolidOutline:
     faces : for every segment the numbers of these faces, as the file lists them; empty where a file does not
         say.
     bottom, top : loops of the level faces on which the part lies, and of those with nothing above them. Outer
-        ones run counter-clockwise, openings clockwise; none stand where a file does not say.
+        ones run counter-clockwise, openings clockwise. No loops are no such face; None where a file does not
+        say.
     top_heights : for every loop of ``top`` the height of its face in mm; none where a file does not say.
     low : from which pegs reach, in mm; 0 is from below.
     runs : for every segment the run of heights that holds its band, along it; empty where that is the band
@@ -150,8 +152,8 @@ class SolidOutline:
     least_band: float = field(converter=real)
     bands: tuple[Band | None, ...] = field(converter=bands_of)
     faces: tuple[tuple[int, ...], ...] = field(default=(), converter=numbers_of)
-    bottom: Loops = field(default=(), converter=loops_of)
-    top: Loops = field(default=(), converter=loops_of)
+    bottom: Loops | None = field(default=None, converter=optional(loops_of))
+    top: Loops | None = field(default=None, converter=optional(loops_of))
     top_heights: tuple[float, ...] = field(default=(), converter=reals_of)
     low: float = field(default=0.0, converter=real)
     runs: tuple[RunRows, ...] = field(default=(), converter=runs_of)
@@ -167,9 +169,9 @@ class SolidOutline:
         ):
             if not (isfinite(value) and value > least):
                 raise InputError(f"the {name} {value:g} is not a length: give one in mm.")
-        if len(self.top_heights) not in (0, len(self.top)):
+        if len(self.top_heights) not in (0, len(self.top or ())):
             raise InputError(
-                f"there are {len(self.top)} loops of upper faces and {len(self.top_heights)} heights: "
+                f"there are {len(self.top or ())} loops of upper faces and {len(self.top_heights)} heights: "
                 "give one for each."
             )
         for band in self.bands:
@@ -189,8 +191,8 @@ class SolidOutline:
             **{key: solid[key] for key in STANDING},
             bands=workpiece["bands"],
             faces=workpiece.get("solid_faces") or (),
-            bottom=workpiece.get("bottom") or (),
-            top=workpiece.get("top") or (),
+            bottom=workpiece.get("bottom"),
+            top=workpiece.get("top"),
             top_heights=workpiece.get("top_heights") or (),
             runs=workpiece.get("runs") or (),
         )
@@ -198,7 +200,12 @@ class SolidOutline:
     @property
     def lies_on_no_face(self) -> bool:
         """Whether its level faces are known, and none of them is one on which it lies."""
-        return bool(self.top) and not self.bottom
+        return self.bottom is not None and not self.bottom
+
+    @property
+    def has_no_top(self) -> bool:
+        """Whether its level faces are known, and none of them has nothing of the part above it."""
+        return self.top is not None and not self.top
 
     def for_segments(self, count: int) -> SolidOutline:
         """Checks that there is a band for each of so many segments, and returns itself.

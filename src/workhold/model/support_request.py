@@ -35,7 +35,6 @@ from workhold.model.requirements import (
     all_zones,
     direction_range,
     point_pairs,
-    polygon_zone,
 )
 from workhold.model.solid import SolidOutline, reals_of
 from workhold.model.workpiece import Workpiece
@@ -72,13 +71,10 @@ def loops_of(loops: Iterable[Any]) -> Loops:
     InputError
         For a loop that is none.
     """
-    checked = tuple(
+    return tuple(
         checked_vertices(loop, f"face: loop {number}", partial("face: loop {}, side {}".format, number))
         for number, loop in enumerate(loops, 1)
     )
-    if not checked:
-        raise InputError("a face without loops is nowhere: give its outer loop first.")
-    return checked
 
 
 def rings_of(reach: Iterable[Iterable[float]]) -> tuple[tuple[float, float, float, float], ...]:
@@ -178,7 +174,7 @@ class SupportRequest:
     bands : the same for each peg of the fixture, in its order, None for those that have no band of their own.
     pad_margin : smallest distance from a pad to the border of the face it supports.
     bottom, top : faces that supports and the clamp may touch, as loops of (x, y, bulge), the outer one first;
-        None is the outline with its holes.
+        no loops are no face, and None is the outline with its holes.
     top_heights : height in mm of the face of every loop of ``top``; None where all lie at the thickness.
     bottom_zones, top_zones : keep-outs from below and from above.
     inside : smallest distance from the clamp to each side of the supports' triangle; the tip's radius if not
@@ -287,10 +283,9 @@ class SupportRequest:
             thickness=solid.height if thickness is None and solid is not None else thickness,
             pad_radius=pad_radius,
             tip_radius=tip_radius,
-            bottom=None if solid is None else solid.bottom or None,
-            top=None if solid is None else solid.top or None,
+            bottom=None if solid is None else solid.bottom,
+            top=None if solid is None else solid.top,
             top_heights=None if solid is None else solid.top_heights or None,
-            bottom_zones=() if solid is None or not solid.lies_on_no_face else (all_of(workpiece),),
             pad_margin=0.0 if pads.pad_margin is None else pads.pad_margin,
             inside=tip_radius if clamp.inside is None else clamp.inside,
             reach=clamp.reach,
@@ -365,12 +360,6 @@ class SupportRequest:
                 f"pads of radius {self.pad_radius:g} would overlap {apart:g} mm apart: give a smaller "
                 "pad radius."
             )
-
-
-def all_of(workpiece: Workpiece) -> Zone:
-    """A zone over all of a part, under which no support may stand."""
-    x0, y0, x1, y1 = workpiece.bounds
-    return polygon_zone([(x0 - 1, y0 - 1), (x1 + 1, y0 - 1), (x1 + 1, y1 + 1), (x0 - 1, y1 + 1)])
 
 
 def least_apart(toolkit: Toolkit) -> float:

@@ -61,10 +61,6 @@ def asked_request(query: Query, thickness: float | None, asked: Mapping[str, Any
     sizes = {name: asked.get(name) for name in USUAL[1:]}
     usual = SupportRequest.of(query.workpiece, thickness, toolkit=query.toolkit, **sizes)
     further = {name: value for name, value in asked.items() if name in FURTHER}
-    if "bottom_zones" in further and "bottom" not in further:
-        further["bottom_zones"] = (*usual.bottom_zones, *further["bottom_zones"])
-    if "bottom" in further:
-        further.setdefault("bottom_zones", ())
     if "top" in further:
         further.setdefault("top_heights", None)
     return evolve(usual, **further)

@@ -102,7 +102,7 @@ class FaceBorders:
 
     def inside(self, points: Array) -> Array:
         """Distances (N, B) of points (N, 2) from the loops, negative outside them."""
-        step = max(1, AT_ONCE // len(self.starts))
+        step = max(1, AT_ONCE // max(1, len(self.starts)))
         blocks = (points[k : k + step] for k in range(0, len(points), step))
         signed = [np.where(self.contains(some), 1.0, -1.0) * self.distance(some) for some in blocks]
         return np.concatenate([np.empty((0, len(self.loops))), *signed])
@@ -121,7 +121,9 @@ def grouped(loops: Sequence[Loop]) -> list[list[int]]:
     remain are borders, such as that of the top of a boss within the opening that it leaves.
     """
     areas = [signed_area(loop) for loop in loops]
-    within = FaceBorders(tuple(map(tuple, loops))).contains(np.array([beside(loop) for loop in loops]))
+    within = FaceBorders(tuple(map(tuple, loops))).contains(
+        np.array([beside(loop) for loop in loops]).reshape(-1, 2)
+    )
     faces: list[list[int]] = []
     # From the largest; of two alike the opening before the face that lies in it.
     for number in sorted(range(len(loops)), key=lambda k: (-abs(areas[k]), areas[k])):
@@ -152,7 +154,10 @@ class TouchableFace:
 
     @classmethod
     def of(cls, loops: Sequence[Array], zones: Iterable[Array] = ()) -> TouchableFace:
-        """Faces from loops of (x, y, bulge) vertices, the outer one first, and zones as loops."""
+        """Faces from loops of (x, y, bulge) vertices, the outer one first, and zones as loops.
+
+        Without loops there is no face, and no room anywhere.
+        """
         rows = [tuple(loop_segments(np.asarray(loop))) for loop in loops]
         kept_out = [tuple(loop_segments(np.asarray(zone))) for zone in zones]
         faces = grouped(rows)
@@ -165,13 +170,13 @@ class TouchableFace:
         signed = -self.borders.inside(points)
         signed[:, list(self.faces)] *= -1.0
         count = signed.shape[1] - self.zones
-        on: Array = np.minimum.reduceat(signed[:, :count], self.faces, axis=1).max(axis=1)
+        on: Array = np.minimum.reduceat(signed[:, :count], self.faces, axis=1).max(axis=1, initial=-np.inf)
         return np.asarray(np.minimum(on, signed[:, count:].min(axis=1, initial=np.inf)))
 
     @property
     def box(self) -> tuple[Array, Array]:
-        """The least and the greatest x and y that the faces may have."""
-        points = []
+        """The least and the greatest x and y that the faces may have; a point where there is no face."""
+        points = [] if self.faces else [(0.0, 0.0)]
         for one in (one for number in self.faces for one in self.borders.loops[number]):
             points.append(one.start)
             if isinstance(one, Arc):

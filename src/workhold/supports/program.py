@@ -206,7 +206,7 @@ def zones_of(
     disc : radius of the discs.
     most : zones; where there are more, they are made wider and fewer.
     """
-    if not len(swept):
+    if not len(swept) or not face.faces:
         return ()
     finest, chosen, boxes = FINEST[0], np.zeros(0, np.int64), np.zeros(0, np.int64)
     for finest in FINEST:

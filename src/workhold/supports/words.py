@@ -36,9 +36,15 @@ def why_no_set(found: Supports, unit: Unit) -> str:
 
 def reason(found: Supports, unit: Unit) -> str:
     """What is in the way, and what would help."""
-    request, toolkit, solid = found.request, found.query.toolkit, found.query.workpiece.solid
-    if solid is not None and solid.lies_on_no_face and request.bottom is None:
-        return "the part lies on no level face under which a pad could stand; another side up would help."
+    request, toolkit = found.request, found.query.toolkit
+    turned = "" if found.query.workpiece.solid is None else "; another side up would help"
+    if request.bottom is not None and not request.bottom:
+        return f"the part lies on no level face under which a pad could stand{turned}."
+    if request.top is not None and not request.top:
+        return (
+            "there is no top clamp, as no level face of the part has nothing of it above; crowns, fillets and "
+            f"slopes are not taken for flat{turned}."
+        )
     bottom = SupportSearch(found.query, request, ()).bottom
     holes = holes_under(found.fixture, toolkit, bottom, request)
     if found.positions < 3:
@@ -138,7 +144,7 @@ def listing_notes(
 
 
 def flat_faces_notes(workpiece: Workpiece, keep_off: Sequence[str]) -> list[str]:
-    """Says that a solid is taken to be flat below or on top, where no level face of it is known.
+    """Says that a solid has no level face below or on top, or is taken to be flat where none is known.
 
     Parameters
     ----------
@@ -147,14 +153,23 @@ def flat_faces_notes(workpiece: Workpiece, keep_off: Sequence[str]) -> list[str]
     solid = workpiece.solid
     if solid is None:
         return []
+    notes = []
     if solid.lies_on_no_face:
-        return ["The part lies on no level face, so no support can stand under it: turn another side up."]
+        notes.append(
+            "The part lies on no level face, so no support can stand under it: turn another side up."
+        )
+    if solid.has_no_top:
+        notes.append(
+            "No level face of the part has nothing of it above, so no clamp can press on it from above: turn "
+            "another side up, or hold it down by other means."
+        )
     levels = (("bottom", solid.bottom, keep_off[0]), ("top", solid.top, keep_off[1]))
-    lacking = [(name, off) for name, loops, off in levels if not loops]
+    lacking = [(name, off) for name, loops, off in levels if loops is None]
     if not lacking:
-        return []
+        return notes
     sides, off = (" and ".join(words) for words in zip(*lacking, strict=True))
     return [
+        *notes,
         f"No level face of the part is known at its {sides}, which is taken to be flat as far as the outline "
-        f"goes: keep pads and tip off the rest with {off}."
+        f"goes: keep pads and tip off the rest with {off}.",
     ]

@@ -160,6 +160,8 @@ def holes_near(rules: SupportPlaces) -> Iterator[Hole]:
     """All holes of the plates under the box of the face that supports may touch."""
     loops = rules.query.workpiece.loops if rules.request.bottom is None else rules.request.bottom
     boxes = np.array([bounding_box(one) for loop in loops for one in loop_segments(np.asarray(loop))])
+    if not len(boxes):
+        return
     (x0, y0), (x1, y1) = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
     corners = np.array([rules.fixture.pose.apply(x, y) for x, y in product((x0, x1), (y0, y1))])
     for plate in rules.query.toolkit.plates:
@@ -343,7 +345,7 @@ def turns_about(segments: Loop, point: tuple[float, float]) -> int:
 def room_on(loops: Sequence[Array], zones: Sequence[Array], point: tuple[float, float]) -> float:
     """How large a disc about a point lies on a face and over no zone, in mm; negative off it."""
     faces = faces_by_size([tuple(loop_segments(np.asarray(loop))) for loop in loops])
-    room = max(min(side * reach(one, point) for one, side in face) for face in faces)
+    room = max((min(side * reach(one, point) for one, side in face) for face in faces), default=-inf)
     off = (reach(tuple(loop_segments(np.asarray(zone))), point) for zone in zones)
     return min(room, *(-one for one in off), inf)
 

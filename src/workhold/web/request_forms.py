@@ -163,8 +163,8 @@ class SolidForm(Form):
     least_band: Annotated[float, Field(ge=0, le=LARGEST)]
     bands: Annotated[list[BandForm | None], Field(max_length=MOST_VERTICES)]
     faces: Annotated[list[FacesForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
-    bottom: Annotated[list[LoopForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
-    top: Annotated[list[LoopForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
+    bottom: Annotated[list[LoopForm], Field(max_length=MOST_VERTICES)] | None = None
+    top: Annotated[list[LoopForm], Field(max_length=MOST_VERTICES)] | None = None
     top_heights: Annotated[list[Number], Field(max_length=MOST_VERTICES)] = Field(default=[])
     runs: Annotated[list[RunForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
 

@@ -68,8 +68,12 @@ class WorkpiecePart(FormPart):
         None, description="heights that a peg can press on along each segment; empty where they are the band"
     )
     solid_faces: list[list[int]] | None = Field(None, description="faces of the solid over each segment")
-    bottom: list[list[list[float]]] | None = Field(None, description="loops on which the solid lies")
-    top: list[list[list[float]]] | None = Field(None, description="loops of its faces with nothing above")
+    bottom: list[list[list[float]]] | None = Field(
+        None, description="loops on which the solid lies; empty where on none"
+    )
+    top: list[list[list[float]]] | None = Field(
+        None, description="loops of its faces with nothing above; empty of none"
+    )
     top_heights: list[float] | None = Field(None, description="height in mm of the face of each of these")
 
 

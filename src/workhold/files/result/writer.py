@@ -195,7 +195,8 @@ def bands_entry(solid: SolidOutline | None) -> dict[str, Any]:
     if solid is None:
         return {}
     faces = {"solid_faces": [list(faces) for faces in solid.faces]} if solid.faces else {}
-    level: dict[str, Any] = {"bottom": solid.bottom, "top": solid.top} if solid.bottom or solid.top else {}
+    faces_known = {"bottom": solid.bottom, "top": solid.top}
+    level: dict[str, Any] = {name: loops for name, loops in faces_known.items() if loops is not None}
     if solid.top_heights:
         level["top_heights"] = list(solid.top_heights)
     runs = {"runs": [list(map(list, rows)) for rows in solid.runs]} if any(solid.runs) else {}

@@ -15,7 +15,7 @@ from math import atan2, hypot, pi, sqrt
 from typing import Any
 
 import numpy as np
-from attrs import evolve, frozen
+from attrs import evolve, field, frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import ALIGNED, DISGUISE, SHORTEST
@@ -34,6 +34,7 @@ __all__ = [
     "curve_point",
     "edge_curves",
     "extremes",
+    "flattened",
     "height",
 ]
 
@@ -78,6 +79,8 @@ class EdgeCurve:
     points: NDArray[np.float64]
     is_other: bool
     curve: Any
+    # What :meth:`point_at` found, by its arguments: outlines of all heights ask for the same points.
+    known: dict[tuple[int, float, bool], Point3] = field(init=False, factory=dict, eq=False, repr=False)
 
     @property
     def low(self) -> float:
@@ -90,7 +93,19 @@ class EdgeCurve:
         return float(self.points[:, 2].max())
 
     def point_at(self, k: int, value: Callable[[Point3], float], wanted: float) -> Point3:
-        """The point between the points k and k + 1 at which a value that runs monotonically is as wanted."""
+        """The point between the points k and k + 1 at which a value that runs monotonically is as wanted.
+
+        Parameters
+        ----------
+        value : the height, or the place along the edge's own segment.
+        """
+        key = k, wanted, value is height
+        if key not in self.known:
+            self.known[key] = self.found_at(k, value, wanted)
+        return self.known[key]
+
+    def found_at(self, k: int, value: Callable[[Point3], float], wanted: float) -> Point3:
+        """Finds what :meth:`point_at` returns."""
         a, b = float(self.parameters[k]), float(self.parameters[k + 1])
         first, last = value(point3(self.points[k])), value(point3(self.points[k + 1]))
         if len(self.points) == 2:

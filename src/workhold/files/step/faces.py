@@ -63,7 +63,8 @@ class SolidFace:
     fold : z at which a leaning face turns over, where it may reach farthest out; None without one.
     upward : whether a level face looks up.
     box : (x0, y0, x1, y1) around it, seen from above, in mm.
-    is_spline : whether its surface is written as a spline, also where that is a plane or a quadric.
+    is_free : whether its surface is written as a spline, also where that is a plane or a quadric, or as a curve
+        that is extruded or turned. The library finds the volume of what has such walls roughly.
     """
 
     shape: Any
@@ -74,7 +75,7 @@ class SolidFace:
     fold: float | None = None
     upward: bool = False
     box: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
-    is_spline: bool = False
+    is_free: bool = False
 
 
 @frozen
@@ -118,7 +119,14 @@ def solid_face(face: Any) -> SolidFace:
         fold,
         upward,
         (low[0], low[1], high[0], high[1]),
-        written.GetType() in (occ.GeomAbs_BSplineSurface, occ.GeomAbs_BezierSurface),
+        written.GetType()
+        not in (
+            occ.GeomAbs_Plane,
+            occ.GeomAbs_Cylinder,
+            occ.GeomAbs_Cone,
+            occ.GeomAbs_Sphere,
+            occ.GeomAbs_Torus,
+        ),
     )
 
 
@@ -131,7 +139,11 @@ def surface_of(face: Any) -> Any:
     surface = occ.BRepAdaptor_Surface(face)
     if surface.GetType() not in (occ.GeomAbs_BSplineSurface, occ.GeomAbs_BezierSurface):
         return surface
-    converter = occ.GeomConvert_SurfToAnaSurf(occ.BRep_Tool.Surface_s(face))
+    whole = occ.BRep_Tool.Surface_s(face)
+    if isinstance(whole, occ.Geom_RectangularTrimmedSurface):
+        # The converter fails over a closed surface that the library has cut open at a seam.
+        whole = whole.BasisSurface()
+    converter = occ.GeomConvert_SurfToAnaSurf(whole)
     found = converter.ConvertToAnalytical(AS_QUADRIC)
     if found is None or converter.Gap() > AS_QUADRIC:
         return surface

@@ -447,5 +447,5 @@ def own_drawings(
             )
         own = evolve(found, low=low, peg_height=high, bands=outline.bands)
         own = evolve(own, faces=outline.faces, runs=outline.runs)
-        own = evolve(own, bottom=(), top=(), top_heights=())
+        own = evolve(own, bottom=None, top=None, top_heights=())
         yield OwnDrawing(role, outline.vertices, own)

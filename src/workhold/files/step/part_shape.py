@@ -114,9 +114,10 @@ def levels_of(solid: SolidOutline) -> Levels:
     """The heights of bands, and those of level faces with the areas of their loops."""
     bands = [[*band] for band in solid.bands if band is not None]
     # Files of an older program do not say how high upper faces are.
-    if len(solid.top_heights) < len(solid.top):
+    top = solid.top or ()
+    if len(solid.top_heights) < len(top):
         return {"bands": bands, "faces": []}
-    faces = [*((0.0, loop) for loop in solid.bottom), *zip(solid.top_heights, solid.top, strict=True)]
+    faces = [*((0.0, loop) for loop in solid.bottom or ()), *zip(solid.top_heights, top, strict=True)]
     sizes = [[float(height), float(signed_area(loop_segments(np.array(loop))))] for height, loop in faces]
     return {"bands": bands, "faces": sizes}
 

@@ -16,7 +16,7 @@ turned surface : a curve turned about an axis, as of a part from the lathe.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from math import acos, atan2, cos, hypot, pi, sin, sqrt
+from math import acos, atan2, cos, hypot, pi, sin, sqrt, tau
 from typing import Any
 
 import numpy as np
@@ -33,6 +33,7 @@ from workhold.files.step.edge_curves import (
     curve_of,
     curve_point,
     extremes,
+    flattened,
     height,
 )
 from workhold.files.step.faces import SLOPING, SolidFace, is_level, is_upright, surface_of
@@ -59,8 +60,8 @@ Other = tuple[int, NDArray[np.float64]]
 BESIDE = (4e-4, 4e-5, 4e-6)
 # Of how many points along a curve one is looked at first.
 FEW = 10
-# Points along the curve that is turned.
-SAMPLES = 65
+# Points along the curve that is turned, and along a cut of a lying ring.
+SAMPLES, CUT_SAMPLES = 65, 33
 # What flat faces are called.
 FLAT = ("level plane", "wall", SLOPING)
 
@@ -140,6 +141,8 @@ def level_cuts(face: SolidFace, z: float) -> list[Found]:
         reach = sqrt(max(square, 0.0))
         radii = {ring.MajorRadius() + reach, ring.MajorRadius() - reach} if square >= 0 else ()
         return circles(ring.Location(), *radii)
+    if kind == occ.GeomAbs_Torus and is_level(surface.Torus().Axis()) and is_open(surface.Torus()):
+        return lying_ring_cuts(surface, z)
     if kind == occ.GeomAbs_SurfaceOfRevolution and is_upright(surface.AxeOfRevolution()):
         return turned_cuts(surface, z)
     return cut_edges(face.shape, z)
@@ -191,6 +194,42 @@ def lying_cut(surface: Any, cylinder: Any, z: float) -> list[Found]:
     for turn in {acos(share), -acos(share)}:
         a, b = surface.Value(top + turn, low), surface.Value(top + turn, high)
         found.append(Line((a.X(), a.Y()), (b.X(), b.Y())))
+    return found
+
+
+def is_open(ring: Any) -> bool:
+    """Whether a ring has a hole, so that its tube does not run through itself."""
+    return bool(ring.MajorRadius() > ring.MinorRadius())
+
+
+def lying_ring_cuts(surface: Any, z: float) -> list[Found]:
+    """The curves in which a ring with a level axis passes a height, over as much of its tube as a face has.
+
+    With the axis d, the upward direction e, and b across both, a point of the ring is
+    c + (R + r cos v) (cos u b + sin u e) + r sin v d, so at a height h above c it is sin u = h / (R + r cos v).
+    """
+    ring = surface.Torus()
+    major, minor = ring.MajorRadius(), ring.MinorRadius()
+    center, axis = ring.Location(), ring.Axis().Direction()
+    up = z - center.Z()
+    first, last = surface.FirstVParameter(), surface.LastVParameter()
+    # Where the tube no longer reaches the height both curves end in one point.
+    share = (abs(up) - major) / minor
+    ends = [turn * acos(share) + k * tau for turn in (1, -1) for k in (-1, 0, 1)] if abs(share) <= 1 else []
+    v = np.unique([*np.linspace(first, last, CUT_SAMPLES), *(end for end in ends if first < end < last)])
+    square = (major + minor * np.cos(v)) ** 2 - up * up
+    is_there = square >= -SHORTEST * major
+    away, along = np.sqrt(np.maximum(square, 0.0)), minor * np.sin(v)
+    found: list[Found] = []
+    for across in (away, -away):
+        x = center.X() + along * axis.X() - across * axis.Y()
+        y = center.Y() + along * axis.Y() + across * axis.X()
+        runs = np.split(np.arange(len(v)), np.flatnonzero(np.diff(is_there)) + 1)
+        for run in (run for run in runs if len(run) > 2 and is_there[run[0]]):
+            points = np.column_stack([x[run], y[run]])
+            segment = flattened(points)
+            if segment is not None or np.ptp(points, axis=0).max() > SHORTEST:
+                found.append(points if segment is None else segment)
     return found
 
 
@@ -412,5 +451,5 @@ def other_curve(face: SolidFace) -> OtherCurveError:
     """The refusal of a face whose border in the outline is neither line nor arc."""
     return OtherCurveError(
         f"the outline has a curve that is neither line nor arc: a {face.kind} at heights "
-        f"{max(round(face.low, 6), 0):.6g} to {face.high:.6g} mm"
+        f"{max(round(face.low, 6), 0.0) + 0.0:.6g} to {face.high:.6g} mm"
     )

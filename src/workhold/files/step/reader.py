@@ -194,7 +194,7 @@ def silhouette(shape: Any, volume: float, faces: Sequence[SolidFace], layers: Se
         swept = sum(
             area_of(region) * (layer.high - layer.low) for region, layer in zip(regions, layers, strict=True)
         )
-        free = any(face.is_spline for face in faces)
+        free = any(face.is_free for face in faces)
         refuse_missing_volume(swept, volume, FREE_VOLUME if free else SAME_VOLUME)
     for face in faces:
         if face.lie == "level" and not has_layer(layers, face.low, below=face.upward):

@@ -1,0 +1,195 @@
+"""Level faces: where supports and a clamp on top may touch a solid, and how safe lines stand for curves of their borders."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from math import cos, pi, sin, sqrt
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("OCP", reason="the extra 'step' is not installed")
+
+from OCP.BRepAdaptor import BRepAdaptor_Curve
+from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
+from OCP.BRepTools import BRepTools_WireExplorer
+from OCP.collections import Array1_gp_Pnt
+from OCP.GC import GC_MakeSegment
+from OCP.GeomAPI import GeomAPI_PointsToBSpline
+from OCP.gp import gp_Pnt
+from OCP.TopAbs import TopAbs_Orientation
+from step_shapes import box, cut, cylinder, prism
+
+import workhold
+from workhold import Plate, load
+from workhold.files.step.heights import standing
+from workhold.files.step.level_faces import bottom_loops, top_loops
+from workhold.files.step.library import along, sub_shapes
+from workhold.files.supports_file import read_supports, write_supports
+from workhold.geometry.loop import loop_segments, signed_area
+from workhold.supports.faces import TouchableFace
+from workhold.supports.words import flat_faces_notes, why_no_set
+from workhold.units import unit_named
+from workhold.verification.supports import verify_supports_file
+from workhold.web.request_forms import WorkpieceForm
+
+BELOW = 0.02
+
+
+def area(loops: Sequence[Any]) -> float:
+    """The area within loops, openings taken off."""
+    return sum(signed_area(loop_segments(np.asarray(loop))) for loop in loops)
+
+
+def bored_aslant(x: float, degrees: float, radius: float = 6.0) -> Any:
+    """A plate of 80 x 50 x 16 mm with a bore aslant, whose axis passes (x, 25) halfway up."""
+    lean = degrees * pi / 180
+    along = (sin(lean), 0.0, cos(lean))
+    at = [x - 60 * along[0], 25.0, 8 - 60 * along[2]]
+    return cut(box(80, 50, 16), cylinder(radius, 120, at, along))
+
+
+def spline_pocket(deep: float) -> Any:
+    """A plate of 80 x 50 x 16 mm with a pocket that has a wavy spline on one side, with bends both ways."""
+    wave = [(20 + 4 * k, 20 + 1.5 * sin(0.8 * k)) for k in range(11)]
+    points = Array1_gp_Pnt(1, len(wave))
+    for k, (x, y) in enumerate(wave, 1):
+        points.SetValue(k, gp_Pnt(x, y, 16 - deep))
+    ends = [
+        gp_Pnt(*wave[0], 16 - deep),
+        gp_Pnt(20, 42, 16 - deep),
+        gp_Pnt(60, 42, 16 - deep),
+        gp_Pnt(*wave[-1], 16 - deep),
+    ]
+    sides = [GC_MakeSegment(ends[k + 1], ends[k]).Value() for k in (2, 1, 0)]
+    return cut(box(80, 50, 16), prism([GeomAPI_PointsToBSpline(points).Curve(), *sides], 30))
+
+
+@pytest.mark.parametrize(
+    ("shape", "openings"),
+    [
+        (bored_aslant(40, 35), 1),
+        (bored_aslant(40, 12), 1),
+        (bored_aslant(4, 30), 0),  # the mouth breaks through a side
+        (bored_aslant(75, -40), 0),
+        (spline_pocket(5), 1),
+        (spline_pocket(16), 1),
+    ],
+)
+@pytest.mark.parametrize("axis", [False, True])
+def test_a_face_with_a_free_border_is_kept_and_none_of_it_is_over_air(
+    shape: Any, openings: int, axis: bool
+) -> None:
+    """Beside the border of a face there is material under it; what is lost is no wider than a hair."""
+    solid = standing(along(shape, "-z" if axis else "z"))
+    for loops, z, below in (
+        (bottom_loops(solid), 0.0, BELOW),
+        ([loop for loop, height in top_loops(solid) if height == 16.0], 16.0, -BELOW),
+    ):
+        assert loops
+        exact = sum(
+            area_of_face(face.shape)
+            for face in solid.faces
+            if face.lie == "level" and face.low == z and face.upward == (z > 0)
+        )
+        border = sum(segment.length for loop in loops for segment in loop_segments(loop))
+        assert exact - 0.02 * border <= area(loops) <= exact + 1e-4
+        for loop in loops:
+            for segment in loop_segments(loop):
+                for share in (-0.9, -0.4, 0.0, 0.5, 0.95):
+                    (x, y), (nx, ny) = segment.at(share * segment.half_extent), segment.normal()
+                    # As far below the face as beside its border, where that is: the bore leans by 45 degrees.
+                    inner = x - abs(below) / 10 * nx, y - abs(below) / 10 * ny
+                    deep = solid.material.intervals(inner)
+                    assert any(low <= z + below / 20 <= high for low, high in deep), (z, inner, deep)
+
+
+def area_of_face(face: Any) -> float:
+    """The area of a face by many points along each of its edges; the library finds it roughly with splines."""
+    sizes = []
+    for wire in sub_shapes(face, "WIRE"):
+        points = []
+        edges = BRepTools_WireExplorer(wire)
+        while edges.More():
+            edge = edges.Current()
+            curve = BRepAdaptor_Curve(edge)
+            at = np.linspace(curve.FirstParameter(), curve.LastParameter(), 8001)[:-1]
+            if edge.Orientation() == TopAbs_Orientation.TopAbs_REVERSED:
+                at = np.linspace(curve.LastParameter(), curve.FirstParameter(), 8001)[:-1]
+            points += [(value.X(), value.Y()) for value in (curve.Value(float(t)) for t in at)]
+            edges.Next()
+        x, y = np.array(points).T
+        sizes.append(abs(float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))) / 2)
+    return 2 * max(sizes) - sum(sizes)
+
+
+def crown() -> Any:
+    """A block of 60 x 40 mm under a crown of R 80."""
+    return BRepAlgoAPI_Common(box(60, 40, 60), cylinder(80, 60, (30, -10, -40), (0, 1, 0))).Shape()
+
+
+def lying() -> Any:
+    """A cylinder that lies, with its flat below."""
+    return cut(cylinder(20, 70, (0, 20, 12), (1, 0, 0)), box(200, 200, 100, (-50, -50, -100)))
+
+
+@pytest.mark.parametrize("shape", [crown(), lying()])
+def test_crowns_are_not_taken_for_flat(shape: Any) -> None:
+    """There is no level face on top, and it is known that there is none."""
+    part = load(shape, name="round", peg_height=11)
+    assert part.solid is not None and part.solid.has_no_top and part.solid.bottom
+
+
+def test_no_level_face_on_top_is_no_top_clamp(tmp_path: Path) -> None:
+    """In Python, files and requests alike: none, not all of the outline; and a sentence says so."""
+    part = load(crown(), name="crown", peg_height=9)
+    assert part.solid is not None and part.solid.top == () and part.solid.bottom and part.solid.has_no_top
+    result = workhold.design(part, Plate(pitch=10, peg_radius=3), best=1)
+    found = result[0].supports(best=3, pad_radius=2, tip_radius=2)
+    assert found.request.top == () and found.triples == () and found.positions > 2
+    why = why_no_set(found, unit_named("mm"))
+    assert "there is no top clamp" in why and "another side up would help" in why
+    (note,) = flat_faces_notes(part, ("a", "b"))
+    assert "no clamp can press on it from above" in note
+    write_supports(found, tmp_path / "s.json")
+    again = read_supports(tmp_path / "s.json")
+    assert again.request.top == () and again.query.workpiece.solid == part.solid
+    judged = verify_supports_file(tmp_path / "s.json")
+    assert judged.faults == () and judged.proven == 0
+    workhold.save(result, tmp_path / "r.json")
+    kept = workhold.open(tmp_path / "r.json").workpiece.solid
+    assert kept is not None and kept.top == () and kept.bottom == part.solid.bottom
+    form = WorkpieceForm.model_validate(workpiece_request(part))
+    asked = form.workpiece(1000).solid
+    assert asked is not None and asked.top == ()
+
+
+def workpiece_request(part: Any) -> dict[str, Any]:
+    """A part as the page sends it."""
+    from workhold.presenting.data import solid_data
+
+    sent = {"name": part.name, "loops": [loop.tolist() for loop in part.loops], **solid_data(part.solid)}
+    asked: dict[str, Any] = json.loads(json.dumps(sent))
+    return asked
+
+
+def test_without_a_face_there_is_room_nowhere() -> None:
+    """Nor with keep-out zones beside."""
+    zone = np.array([(0.0, 0.0, 1.0), (4.0, 0.0, 1.0)])
+    points = np.array([(0.0, 0.0), (2.0, 0.5)])
+    for zones in ((), (zone,)):
+        assert (TouchableFace.of((), zones).room(points) == -np.inf).all()
+
+
+def test_a_tangent_polygon_holds_its_ellipse() -> None:
+    """No vertex of an opening lies within the ellipse that it stands for, and none far from it."""
+    lean = 35 * pi / 180
+    solid = standing(bored_aslant(40, 35))
+    ((opening, _),) = [one for one in top_loops(solid) if signed_area(loop_segments(one[0])) < 0]
+    middle = 40 + 8 * sin(lean) / cos(lean)
+    for x, y, bulge in opening.tolist():
+        size = sqrt(((x - middle) * cos(lean) / 6) ** 2 + ((y - 25) / 6) ** 2)
+        assert bulge == 0.0 and 1 - 1e-9 <= size < 1.005

@@ -1,0 +1,90 @@
+"""STEP files as programs write them: walls as extruded splines, holes without a seam, rings that lie, nuts."""
+
+from __future__ import annotations
+
+from math import pi, sqrt, tan
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("OCP", reason="the extra 'step' is not installed")
+
+from OCP.BRepAdaptor import BRepAdaptor_Surface
+from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeCone
+from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
+from step_shapes import cut, cylinder
+
+from solid_examples import polygon
+from workhold import Workpiece, load
+from workhold.errors import InputError
+from workhold.files.step.heights import measures, standing
+from workhold.files.step.projected import cut_edges, lying_ring_cuts
+from workhold.files.step.solids import read_solids
+from workhold.geometry.loop import loop_segments, signed_area
+
+DATA = Path(__file__).parents[2] / "data" / "step"
+
+
+def area_of(part: Workpiece) -> float:
+    """The area within the loops of a part, in mm²."""
+    return sum(signed_area(loop_segments(loop)) for loop in part.loops)
+
+
+def test_a_wall_that_is_an_extruded_spline_is_read_by_fit() -> None:
+    """The library's volume of it is rough; without a fit one is proposed."""
+    path = DATA / "extruded_oval_hole.step"
+    with pytest.raises(InputError, match=r"are true curves.*give fit 0\.01"):
+        load(path)
+    part = load(path, fit=0.01)
+    assert len(part.loops) == 2 and part.bounds == pytest.approx((0, 0, 60, 40))
+    assert area_of(part) * 8 == pytest.approx(18068.71, rel=1e-4)
+
+
+def test_a_closed_spline_without_a_seam_is_read() -> None:
+    """The library cuts it open itself, and fails over that when asked what it is."""
+    part = load(DATA / "seamless_spline_hole.step", fit=0.01)
+    assert len(part.loops) == 2 and part.bounds == pytest.approx((0, 0, 60, 40))
+    assert 2400 - area_of(part) == pytest.approx(36 * pi, rel=1e-3)
+
+
+def test_cuts_of_a_lying_ring_are_those_of_the_library() -> None:
+    """At many heights, over the fillets of a shaft."""
+    (solid,) = read_solids((DATA / "lying_shaft_fillets.step").read_bytes())
+    rings = [face for face in standing(solid.shape).faces if face.kind == "rounded rim"]
+    assert len(rings) > 8
+    for face in rings[:6]:
+        for share in (0.1, 0.4, 0.7, 0.93):
+            z = face.low + share * (face.high - face.low)
+            own = lying_ring_cuts(BRepAdaptor_Surface(face.shape), z)
+            known = cut_edges(face.shape, z)
+            assert len(own) >= 1 and len(known) >= 1
+            ours = np.concatenate([one for one in own if isinstance(one, np.ndarray)])
+            theirs = np.concatenate([one for one in known if isinstance(one, np.ndarray)])
+            off = np.hypot(*np.moveaxis(theirs[:, None] - ours[None], -1, 0)).min(axis=1)
+            step = np.hypot(*np.diff(ours, axis=0).T)
+            assert off.max() <= float(np.sort(step)[-3])
+
+
+def nut(across: float = 40.0, high: float = 18.0) -> object:
+    """A hexagon with a bore and a chamfer cone at 30 degrees above that ends a mm within its flats."""
+    size = across / sqrt(3)
+    corners = [(size * np.cos(k * pi / 3), size * np.sin(k * pi / 3)) for k in range(6)]
+    body = polygon([(float(x), float(y)) for x, y in corners], high)
+    slope = tan(pi / 6)
+    low = across / 2 - 1.0 + high / slope
+    cone = BRepPrimAPI_MakeCone(gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1)), low, across / 2 - 1.0, high).Shape()
+    return cut(BRepAlgoAPI_Common(body, cone).Shape(), cylinder(9, 60, (0, 0, -1)))
+
+
+@pytest.mark.parametrize("gap", [0.0, *(s * 5 * 10.0**-p for p in range(3, 10) for s in (1, -1))])
+def test_a_nut_is_its_hexagon_at_every_height(gap: float) -> None:
+    """The cut of the chamfer at the pegs' end touches the flats from within: it is no border."""
+    across, high = 40.0, 18.0
+    tangent = high - tan(pi / 6)
+    outline = standing(nut(across, high)).outline(tangent + gap - 0.5)
+    area, border, _, _ = measures(outline)
+    assert area == pytest.approx(across**2 * sqrt(3) / 2 - 81 * pi, abs=1e-6)
+    assert border == pytest.approx(6 * across / sqrt(3) + 18 * pi, abs=1e-6)
+    assert len(outline.loops) == 2
