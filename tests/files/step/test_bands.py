@@ -125,7 +125,7 @@ def test_bands_are_covered_and_no_longer_run_is_passed_over(name: str, axis: str
 
 
 @pytest.mark.parametrize("height", [24.5, 26.0, 27.9])
-@pytest.mark.parametrize("degrees", [0.0, 90.0, 180.0, 233.0])
+@pytest.mark.parametrize("degrees", [0.0, 176.0, 180.0, 184.0, 233.0])
 def test_a_closed_edge_may_be_lowest_where_it_begins(height: float, degrees: float) -> None:
     """Of a bore through a sloping top pegs touch up to the lowest point of the rim, wherever the rim begins."""
     start = gp_Dir(cos(radians(degrees)), sin(radians(degrees)), 0)
@@ -170,6 +170,14 @@ def test_no_band_bridges_a_bore() -> None:
         if strip.band and strip.start[1] == 30.0
     )
     assert touched == pytest.approx(2 * sqrt(15**2 - 0.5**2), abs=1e-3)
+
+
+def test_walls_beside_an_arch_that_is_higher_than_the_pegs_are_touched() -> None:
+    """Over an arch of 18 mm pegs of 12 mm touch its sides up to where the arch has risen to 11 mm."""
+    outline = standing(SOLIDS["tunnel"]()).outline(12.0, 8.0)
+    side = [strip for strip in outline.loops[0] if strip.start[1] == strip.end[1] == 0.0 and strip.band]
+    size = sum(abs(strip.end[0] - strip.start[0]) for strip in side)
+    assert size == pytest.approx(70 - 2 * sqrt(18**2 - 11**2), abs=1e-3)
 
 
 def test_both_sides_of_a_tunnel_are_cut_alike() -> None:
@@ -248,11 +256,20 @@ def lid_on_a_leaning_post() -> Any:
     return fused(box(60, 60, 6), cut(post, box(300, 300, 6, (-50, -50, -1))), box(80, 60, 10, (0, 0, 25)))
 
 
-@pytest.mark.parametrize("name", ["post", "flange", "chamfer", "eye", "sloping boss"])
+def aslant_post() -> Any:
+    """A post that leans out over its foot, and a head over it whose slanted underside hides it from above."""
+    post = cut(cylinder(8, 80, (48, 30, 0), (0.5, 0, 1)), box(300, 300, 100, (-50, -50, 35)))
+    post = cut(post, box(300, 300, 13, (-50, -50, -10)))
+    head = cut(box(100, 60, 20, (0, 0, 20)), tilted((0, 0, 30), (-0.1, 0, -1), (1, 0, -0.1)))
+    return fused(fused(box(60, 60, 6), post), head)
+
+
+@pytest.mark.parametrize("name", ["post", "aslant post", "flange", "chamfer", "eye", "sloping boss"])
 def test_a_row_of_heights_holds_all_through(name: str) -> None:
     """Within a row no height is refused, and where touchability jumps there is another row."""
     made = {
         "post": lid_on_a_leaning_post,
+        "aslant post": aslant_post,
         "flange": lambda: fused(box(60, 40, 20), box(80, 60, 5, (-10, -10, 20))),
         "chamfer": lambda: cut(fused(box(60, 40, 12), cone(14, 10, 4, (30, 20, 12))), across(20, 0, 3)),
         **SOLIDS,
