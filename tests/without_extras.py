@@ -41,12 +41,11 @@ def hidden_packages() -> set[str]:
     }
 
 
-HIDDEN = hidden_packages()
+def pytest_load_initial_conftests() -> None:
+    """Hides them, before the first conftest asks what is there; only where this is loaded as a plugin."""
+    hidden = hidden_packages()
 
+    def find_spec(name: str, path: Any = None, target: Any = None) -> Any:
+        return None if name.partition(".")[0] in hidden else find_any(name, path, target)
 
-def find_spec(name: str, path: Any = None, target: Any = None) -> Any:
-    """Find a module, but for the hidden ones."""
-    return None if name.partition(".")[0] in HIDDEN else find_any(name, path, target)
-
-
-PathFinder.find_spec = staticmethod(find_spec)  # type: ignore[method-assign, assignment]
+    PathFinder.find_spec = staticmethod(find_spec)  # type: ignore[method-assign, assignment]
