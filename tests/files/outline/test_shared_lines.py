@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from functools import partial
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import pytest
 from reading_helpers import area, read_dxf, rectangle
 
 from workhold.errors import InputError
-from workhold.files.outline.shared_lines import lie_on_each_other
+from workhold.files.budget import UNLIMITED, Budget
+from workhold.files.outline.chain import Chain, Drawing
+from workhold.files.outline.shared_lines import lie_on_each_other, outlines_of
 from workhold.files.part.load import read_workpiece
 from workhold.geometry.segment import Line, segment_from_bulge
 
@@ -255,3 +259,23 @@ def test_a_bend_line_of_an_svg_drawing_is_no_cut(tmp_path: Path, look: str) -> N
     path.write_text(text.replace('d="M30 0V60"', f'd="M30 0V60" {look}'))
     with pytest.raises(InputError, match="3 ends meet"):
         read_workpiece(path)
+
+
+def test_many_ends_at_one_place_are_told_once() -> None:
+    """Every junction is looked at once, however many pieces end there."""
+    looked = list[str]()
+
+    class Layers(dict[str, str]):
+        def get(self, label: str, other: Any = None) -> Any:
+            looked.append(label)
+            return super().get(label, other)
+
+    size = 40.0
+    corners = [(0.0, 0.0), (size, 0.0), (size, size), (0.0, size), (0.0, 0.0)]
+    chains = [Chain((p, q), (0.0,), (f"side {k}",)) for k, (p, q) in enumerate(pairwise(corners))]
+    rays = [Chain(((0.0, 0.0), (-1.0 - k, 7.0)), (0.0,), (f"ray {k}",)) for k in range(60)]
+    # What stands for the limit of the map of the plane: more than it looks at.
+    with patch("workhold.files.outline.plane_map.MOST_SEGMENTS", 10):
+        found = outlines_of([*chains, *rays], 1e-3, Drawing((), layers=Layers()), Budget(UNLIMITED))
+    assert len(found.spots) == 1 and found.spots[0].junction.point == (0.0, 0.0)
+    assert len(looked) == 62

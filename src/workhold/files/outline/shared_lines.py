@@ -10,7 +10,7 @@ frame : a nest with whole parts inside one of its outlines, as a sheet's border 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from math import pi
 
 import numpy as np
@@ -128,7 +128,7 @@ def untangled(
     joined: Joined, tolerance: float, drawing: Drawing, budget: Budget, remarks: list[str]
 ) -> Outlines:
     """The outlines of a drawing with points where one could go on in more than one way."""
-    layers = drawing.layers
+    junctions = JunctionsAt.of(joined.junctions, drawing.layers)
     tangled = list(joined.tangled)
     around = box_around([segment for chain in tangled for segment in chain.segments])
     near = [loop for loop in joined.loops if meets(box_of(loop), around)]
@@ -163,11 +163,11 @@ def untangled(
             strays += [stray_of(chain) for chain in one.open]
         else:
             labels = {label for k in one.chains if k < len(tangled) for label in tangled[k].labels}
-            spots += spot_of(joined.junctions, labels, one.box, bool(one.faces), layers)
+            spots += junctions.spot(labels, one.box, bool(one.faces))
     for k, chain in enumerate(tangled):
         if k not in known:
             # There is too much of it to look at.
-            spots += spot_of(joined.junctions, set(chain.labels), box_around(chain.segments), True, layers)
+            spots += junctions.spot(chain.labels, box_around(chain.segments), True)
     parts = nest(loops, budget)
     frames = {number for number in range(1, len(nests) + 1) if is_frame(number, parts)}
     if frames:
@@ -228,19 +228,41 @@ def is_frame(number: int, parts: Sequence[DrawnPart]) -> bool:
     return False
 
 
-def spot_of(
-    junctions: Sequence[Junction],
-    labels: set[str],
-    box: tuple[float, float, float, float],
-    bounds_something: bool,
-    layers: Mapping[str, str],
-) -> list[BadSpot]:
-    """The bad spot of lines that hang together, by the first junction among them."""
-    for junction in junctions:
-        if not labels.isdisjoint(junction.labels):
+@frozen
+class JunctionsAt:
+    """The junctions of a drawing, by the labels of what ends there.
+
+    Parameters
+    ----------
+    junctions : in their order.
+    first : number of the first one of each label.
+    layers : of each, where it is one, or nothing.
+    """
+
+    junctions: tuple[Junction, ...]
+    first: Mapping[str, int]
+    layers: tuple[str, ...]
+
+    @classmethod
+    def of(cls, junctions: Sequence[Junction], layers: Mapping[str, str]) -> JunctionsAt:
+        """Those of a drawing whose segments are on some layers."""
+        first = dict[str, int]()
+        alone = list[str]()
+        for number, junction in enumerate(junctions):
             used = {layers.get(label, "") for label in junction.labels}
-            return [BadSpot(junction, box, bounds_something, used.pop() if len(used) == 1 else "")]
-    return []
+            alone.append(used.pop() if len(used) == 1 else "")
+            for label in junction.labels:
+                first.setdefault(label, number)
+        return cls(tuple(junctions), first, tuple(alone))
+
+    def spot(
+        self, labels: Iterable[str], box: tuple[float, float, float, float], bounds_something: bool
+    ) -> list[BadSpot]:
+        """The bad spot of lines that hang together, by the first junction among them."""
+        number = min((self.first[label] for label in labels if label in self.first), default=None)
+        if number is None:
+            return []
+        return [BadSpot(self.junctions[number], box, bounds_something, self.layers[number])]
 
 
 def spots_once(spots: Sequence[BadSpot]) -> list[BadSpot]:
