@@ -216,6 +216,9 @@ def merged_chords(
 
 # mm. Vertices this near to a circle are drawn on it, with the digits of a file that gives few.
 CHORDS_ON = 0.01
+# mm and a share of the radius: chords farther inside their circle than both are sides of a polygon; the share is
+# that of 20 sides to the circle.
+COARSE, COARSE_SHARE = 0.5, 0.0123
 # Steps of the fits that are proposed.
 FITS = (1.0, 2.0, 5.0, 10.0, 20.0)
 
@@ -245,7 +248,8 @@ def chorded_arcs(
 
     Four chords and more are an arc where they meet at less than ``CORNER_OF_CHORDS`` and all their ends lie on
     one circle. So a polygon of 15 equal sides and fewer is a polygon, and one of 16 may be a circle: a quarter
-    turn of four chords is the coarsest that programs write.
+    turn of four chords is the coarsest that programs write. Where they are farther than ``COARSE`` inside the
+    circle besides, they are a polygon too.
 
     Parameters
     ----------
@@ -263,7 +267,7 @@ def chorded_arcs(
     arcs = [
         (piece, after)
         for piece, after in zip(found, found[1:] + found[:1], strict=True)
-        if piece.bulge and piece.departure > DISGUISE
+        if piece.bulge and piece.departure > DISGUISE and not is_coarse(piece, after)
     ]
     if not arcs:
         return None
@@ -281,6 +285,12 @@ def chorded_arcs(
         if isinstance(arc, Arc) and not any(abs(arc.radius - radius) < CHORDS_ON for radius in radii):
             radii.append(arc.radius)
     return ChordedArcs(chords + len(arcs), tuple(radii), away, fit)
+
+
+def is_coarse(piece: Piece, after: Piece) -> bool:
+    """Whether the chords of an arc are the sides of a polygon that somebody meant."""
+    arc = segment_from_bulge(piece.start, after.start, piece.bulge)
+    return isinstance(arc, Arc) and piece.departure > max(COARSE, COARSE_SHARE * arc.radius)
 
 
 def chords_remark(found: Sequence[ChordedArcs], fit: str) -> list[str]:

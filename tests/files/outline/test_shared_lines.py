@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from functools import partial
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import pytest
 from reading_helpers import area, read_dxf, rectangle
 
 from workhold.errors import InputError
-from workhold.files.outline.shared_lines import lie_on_each_other
+from workhold.files.budget import UNLIMITED, Budget
+from workhold.files.outline.chain import Chain, Drawing
+from workhold.files.outline.shared_lines import lie_on_each_other, outlines_of
+from workhold.files.part.load import read_workpiece
 from workhold.geometry.segment import Line, segment_from_bulge
 
 
@@ -184,7 +190,7 @@ def test_a_larger_part_with_a_bad_spot_is_passed_over(tmp_path: Path) -> None:
         rectangle(space, 100, 0, 90, 70)
         add_bad_spot(space, 120, 10)
 
-    with pytest.raises(InputError, match=r"To read part 2 .* give part_number 2"):
+    with pytest.raises(InputError, match=r"give part_number 2: part 2 is 8 x 8 mm"):
         read_dxf(tmp_path, detail)
 
 
@@ -214,3 +220,62 @@ def test_ends_of_dimensions_share_a_side_of_the_part(tmp_path: Path) -> None:
         space.add_line((0, -10), (80, -10))
 
     assert read_dxf(tmp_path, draw).workpiece.bounds == pytest.approx((0, 0, 80, 50))
+
+
+def test_a_bend_line_that_looks_like_one_is_no_cut(tmp_path: Path) -> None:
+    """A line in another colour or another kind of line between corners of the outline divides nothing; a cut that
+    looks like the outline does, also where each part has its own colour."""
+
+    def draw(space: Any, **look: Any) -> None:
+        corners = [(0, 0), (30, 0), (100, 0), (100, 60), (30, 60), (0, 60)]
+        for start, end in zip(corners, corners[1:] + corners[:1], strict=True):
+            space.add_line(start, end)
+        space.add_line((30, 0), (30, 60), dxfattribs=look)
+
+    for look in ({"color": 3}, {"linetype": "CENTER"}, {"color": 1, "linetype": "CONTINUOUS"}):
+        with pytest.raises(InputError, match=r"3 ends meet at \(30, 0\)"):
+            read_dxf(tmp_path, partial(draw, **look))
+    loaded = read_dxf(tmp_path, draw)
+    assert sizes(loaded) == [(70, 60, 0), (30, 60, 0)] and "a bend or a marking" in loaded.remarks[0]
+
+    def coloured(space: Any) -> None:
+        rectangle(space, 0, 0, 80, 50, color=1)
+        for start, end in (((80, 0), (140, 0)), ((140, 0), (140, 50)), ((140, 50), (80, 50))):
+            space.add_line(start, end, dxfattribs={"color": 5})
+
+    assert sizes(read_dxf(tmp_path, coloured)) == [(80, 50, 0), (60, 50, 0)]
+
+
+@pytest.mark.parametrize("look", ['stroke="red"', 'style="stroke-dasharray:3 1"', 'stroke="#000"'])
+def test_a_bend_line_of_an_svg_drawing_is_no_cut(tmp_path: Path, look: str) -> None:
+    """Nor there; the same colour written in another way asks rather than guesses."""
+    path = tmp_path / "bend.svg"
+    text = (
+        '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60">'
+        '<g fill="none" stroke="black"><path d="M0 0H30M30 0H100V60H30M30 60H0V0"/><path d="M30 0V60"/></g></svg>'
+    )
+    path.write_text(text)
+    assert sizes(read_workpiece(path)) == [(70, 60, 0), (30, 60, 0)]
+    path.write_text(text.replace('d="M30 0V60"', f'd="M30 0V60" {look}'))
+    with pytest.raises(InputError, match="3 ends meet"):
+        read_workpiece(path)
+
+
+def test_many_ends_at_one_place_are_told_once() -> None:
+    """Every junction is looked at once, however many pieces end there."""
+    looked = list[str]()
+
+    class Layers(dict[str, str]):
+        def get(self, label: str, other: Any = None) -> Any:
+            looked.append(label)
+            return super().get(label, other)
+
+    size = 40.0
+    corners = [(0.0, 0.0), (size, 0.0), (size, size), (0.0, size), (0.0, 0.0)]
+    chains = [Chain((p, q), (0.0,), (f"side {k}",)) for k, (p, q) in enumerate(pairwise(corners))]
+    rays = [Chain(((0.0, 0.0), (-1.0 - k, 7.0)), (0.0,), (f"ray {k}",)) for k in range(60)]
+    # What stands for the limit of the map of the plane: more than it looks at.
+    with patch("workhold.files.outline.plane_map.MOST_SEGMENTS", 10):
+        found = outlines_of([*chains, *rays], 1e-3, Drawing((), layers=Layers()), Budget(UNLIMITED))
+    assert len(found.spots) == 1 and found.spots[0].junction.point == (0.0, 0.0)
+    assert len(looked) == 62

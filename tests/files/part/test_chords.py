@@ -71,6 +71,12 @@ def test_polygons_are_polygons(sides: int) -> None:
     assert len(part.faces) == sides and part.remarks == ()
 
 
+def test_a_large_polygon_of_few_sides_is_one(tmp_path: Path) -> None:
+    """Sixteen sides more than half a millimetre inside their circle; a large circle of many chords is a circle."""
+    assert Workpiece.from_points("table", polygon(16, 60)).remarks == ()
+    assert fit_named(Workpiece.from_points("ring", polygon(64, 900)).remarks) > 1
+
+
 def test_other_parts_of_a_geometry_are_told(tmp_path: Path) -> None:
     """In Python the workpiece says how many parts there are, and part_number takes another."""
 

@@ -391,3 +391,24 @@ def test_a_program_of_two_tools_is_that_of_places_written_out(tmp_path: Path) ->
     assert shapes(read.swept(0, 6)) == shapes(long.swept(0, 6))
     low = read.moves.cutting & (read.moves.end[:, 2] < 4)
     assert np.ptp(read.moves.end[low, 0]) == 90.0
+
+
+def test_what_sets_no_zero_takes_no_cut(tmp_path: Path) -> None:
+    """A place beside G92.1 is refused, and the motion of such a block stays in force."""
+    with pytest.raises(InputError, match=r"line 4: G92\.1 and a place"):
+        read_text(tmp_path, START + "G92.1 G1 X50.\n")
+    for zero in ("G92.1", "G52 X0 Y0"):
+        plain, read = (read_text(tmp_path, START + one + "X50. Z-3.\n") for one in ("G1\n", f"{zero} G1\n"))
+        assert shapes(read.pieces) == shapes(plain.pieces)
+
+
+def test_a_length_may_come_before_any_tool(tmp_path: Path) -> None:
+    """G43 without H takes the length of what is in the spindle."""
+    read = read_text(tmp_path, "G21 G90\nG0 G43 Z5.\nX0 Y0\nG1 X5. F100\n")
+    assert read.moves.line.tolist() == [3, 4]
+
+
+def test_the_second_place_of_the_machine_has_a_number(tmp_path: Path) -> None:
+    """G30 P2 goes there, and the height is not known."""
+    with pytest.raises(InputError, match=r"line 5: .*line 4 goes to a place of the machine's own"):
+        read_text(tmp_path, START + "G91 G30 P2 Z0\nG90 G1 X5. F100\n")

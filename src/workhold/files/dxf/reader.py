@@ -121,7 +121,8 @@ def read_document(
             f"is not one for parts ($INSUNITS {shortened(plain(str(code)), 40)})" if code else "is not said"
         )
         raise unit_asked(f"the drawing's unit {lacking}", walk.chains)
-    return Drawing(tuple(walk.chains), (*unit_remarks, *walk.remarks()), walk.curves.found, walk.layers)
+    remarks = (*unit_remarks, *walk.remarks())
+    return Drawing(tuple(walk.chains), remarks, walk.curves.found, walk.layers, looks=walk.looks)
 
 
 def refuse_other_formats(content: bytes) -> None:

@@ -28,6 +28,8 @@ T = TypeVar("T")
 # Blocks inside each other, and repetitions of one.
 DEEPEST = LIMITS["dxf"].deepest or 0
 MOST_REPEATED = LIMITS["dxf"].most_elements or 0
+# The colour of what has that of its layer.
+BY_LAYER = 256
 
 
 @frozen
@@ -63,6 +65,7 @@ class DxfWalk:
         self.chains: list[Chain] = []
         self.names: dict[str, str] = {}
         self.layers: dict[str, str] = {}
+        self.looks: dict[str, str] = {}
         # Splines of fit points alone.
         self.interpolated = 0
         self.hidden: Counter[str] = Counter()
@@ -98,7 +101,10 @@ class DxfWalk:
             elif kind in SHAPES or kind in REFUSED:
                 if self.is_used(entity, layer, nest):
                     self.add(entity, kind, nest.placement, label)
-                    self.layers.update(dict.fromkeys(self.chains[-1].labels, layer))
+                    labels = self.chains[-1].labels
+                    self.layers.update(dict.fromkeys(labels, layer))
+                    if look := look_of(entity):
+                        self.looks.update(dict.fromkeys(labels, look))
             elif self.wanted is None or layer.casefold() in self.wanted:
                 self.ignored[kind] += 1
         except InputError:
@@ -273,6 +279,13 @@ def enumerated(words: Sequence[str]) -> str:
 def name_of(entity: Any) -> str:
     """The handle of an entity, in few letters: labels repeat it for every segment."""
     return shortened(str(entity.dxf.handle), 20)
+
+
+def look_of(entity: Any) -> str:
+    """The colour and the kind of line of an entity; empty where it has those of its layer."""
+    color = entity.dxf.get("true_color", entity.dxf.get("color", BY_LAYER))
+    kind = str(entity.dxf.get("linetype", "BYLAYER")).casefold()
+    return "" if color == BY_LAYER and kind == "bylayer" else f"{color} {kind}"
 
 
 def vertex_count(entity: Any) -> int:

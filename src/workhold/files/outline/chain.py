@@ -159,6 +159,8 @@ class Drawing:
     curves : how the curves among them were read, by their labels.
     layers : the layers that segments are on, by their labels; nothing for files without layers.
     solids : all of a STEP file, the largest first.
+    looks : the colour and the kind of line that segments are drawn with, by their labels; nothing where that is
+        not said.
     """
 
     chains: tuple[Chain, ...]
@@ -166,6 +168,7 @@ class Drawing:
     curves: Mapping[str, CurveReading] = field(factory=dict)
     layers: Mapping[str, str] = field(factory=dict)
     solids: tuple[FileSolid, ...] = ()
+    looks: Mapping[str, str] = field(factory=dict)
 
 
 def arc_bulges(sweep: float) -> list[float]:

@@ -10,7 +10,7 @@ frame : a nest with whole parts inside one of its outlines, as a sheet's border 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from math import pi
 
 import numpy as np
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from workhold.errors import InputError
 from workhold.files.budget import Budget, OverBudgetError
-from workhold.files.outline.chain import Chain, at, counted, listed, without_segment
+from workhold.files.outline.chain import Chain, Drawing, at, counted, listed, without_segment
 from workhold.files.outline.diagnostics import surrounds
 from workhold.files.outline.joining import Joined, Junction, Loop, Stray, join
 from workhold.files.outline.nesting import DrawnPart, MeasuredLoop, chosen_part, nest
@@ -80,16 +80,14 @@ class Outlines:
     remarks: tuple[str, ...]
 
 
-def outlines_of(
-    chains: Sequence[Chain], tolerance: float, layers: Mapping[str, str], budget: Budget
-) -> Outlines:
+def outlines_of(chains: Sequence[Chain], tolerance: float, drawing: Drawing, budget: Budget) -> Outlines:
     """The outlines that chains make.
 
     Parameters
     ----------
     chains : in mm, without segments of zero length.
     tolerance : largest gap to close, in mm.
-    layers : that segments are on, by their labels; nothing for drawings without layers.
+    drawing : that they are of, for the layers and the looks of lines.
     budget : what reading the file may still take.
 
     Raises
@@ -103,7 +101,7 @@ def outlines_of(
         joined = with_doubled_lines_once(joined, tolerance, remarks)
     if not joined.junctions:
         return Outlines(nest(joined.loops, budget), joined.strays, (), tuple(remarks))
-    return untangled(joined, tolerance, layers, budget, remarks)
+    return untangled(joined, tolerance, drawing, budget, remarks)
 
 
 def with_doubled_lines_once(joined: Joined, tolerance: float, remarks: list[str]) -> Joined:
@@ -127,9 +125,10 @@ def with_doubled_lines_once(joined: Joined, tolerance: float, remarks: list[str]
 
 
 def untangled(
-    joined: Joined, tolerance: float, layers: Mapping[str, str], budget: Budget, remarks: list[str]
+    joined: Joined, tolerance: float, drawing: Drawing, budget: Budget, remarks: list[str]
 ) -> Outlines:
     """The outlines of a drawing with points where one could go on in more than one way."""
+    junctions = JunctionsAt.of(joined.junctions, drawing.layers)
     tangled = list(joined.tangled)
     around = box_around([segment for chain in tangled for segment in chain.segments])
     near = [loop for loop in joined.loops if meets(box_of(loop), around)]
@@ -152,7 +151,7 @@ def untangled(
             if k >= len(tangled) + len(joined.strays)
         }
         others = [loop for loop in loops if id(loop) not in gone]
-        if is_nest(one, layers) and not in_material(one, others):
+        if is_nest(one, drawing) and not in_material(one, others):
             nests.append(one)
             taken = {k - len(tangled) for k in one.chains}
             strays = [
@@ -164,11 +163,11 @@ def untangled(
             strays += [stray_of(chain) for chain in one.open]
         else:
             labels = {label for k in one.chains if k < len(tangled) for label in tangled[k].labels}
-            spots += spot_of(joined.junctions, labels, one.box, bool(one.faces), layers)
+            spots += junctions.spot(labels, one.box, bool(one.faces))
     for k, chain in enumerate(tangled):
         if k not in known:
             # There is too much of it to look at.
-            spots += spot_of(joined.junctions, set(chain.labels), box_around(chain.segments), True, layers)
+            spots += junctions.spot(chain.labels, box_around(chain.segments), True)
     parts = nest(loops, budget)
     frames = {number for number in range(1, len(nests) + 1) if is_frame(number, parts)}
     if frames:
@@ -191,11 +190,19 @@ def clusters_or_none(chains: Sequence[Chain], tolerance: float) -> list[Cluster]
         return []
 
 
-def is_nest(one: Cluster, layers: Mapping[str, str]) -> bool:
-    """Whether lines that hang together are outlines that share some: on one layer, and larger than letters."""
+def is_nest(one: Cluster, drawing: Drawing) -> bool:
+    """Whether lines that hang together are outlines that share some: on one layer, and larger than letters.
+
+    A shared line that looks like no other line of the outlines is a bend or a marking rather than a cut.
+    """
     if not one.faces or (len(one.faces) == 1 and one.open):
         return False
-    used = {layers.get(label, "").casefold() for face in one.faces for label in face.labels}
+    labels = {label for face in one.faces for label in face.labels}
+    used = {drawing.layers.get(label, "").casefold() for label in labels}
+    shared = {label for label, _, _ in one.shared}
+    looks = {drawing.looks.get(label) for label in labels - shared}
+    if looks and any(drawing.looks.get(label) not in looks for label in shared):
+        return False
     size = max(max(x1 - x0, y1 - y0) for x0, y0, x1, y1 in map(box_of, one.faces))
     return len(used) == 1 and size > LEAST_CELL
 
@@ -221,19 +228,41 @@ def is_frame(number: int, parts: Sequence[DrawnPart]) -> bool:
     return False
 
 
-def spot_of(
-    junctions: Sequence[Junction],
-    labels: set[str],
-    box: tuple[float, float, float, float],
-    bounds_something: bool,
-    layers: Mapping[str, str],
-) -> list[BadSpot]:
-    """The bad spot of lines that hang together, by the first junction among them."""
-    for junction in junctions:
-        if not labels.isdisjoint(junction.labels):
+@frozen
+class JunctionsAt:
+    """The junctions of a drawing, by the labels of what ends there.
+
+    Parameters
+    ----------
+    junctions : in their order.
+    first : number of the first one of each label.
+    layers : of each, where it is one, or nothing.
+    """
+
+    junctions: tuple[Junction, ...]
+    first: Mapping[str, int]
+    layers: tuple[str, ...]
+
+    @classmethod
+    def of(cls, junctions: Sequence[Junction], layers: Mapping[str, str]) -> JunctionsAt:
+        """Those of a drawing whose segments are on some layers."""
+        first = dict[str, int]()
+        alone = list[str]()
+        for number, junction in enumerate(junctions):
             used = {layers.get(label, "") for label in junction.labels}
-            return [BadSpot(junction, box, bounds_something, used.pop() if len(used) == 1 else "")]
-    return []
+            alone.append(used.pop() if len(used) == 1 else "")
+            for label in junction.labels:
+                first.setdefault(label, number)
+        return cls(tuple(junctions), first, tuple(alone))
+
+    def spot(
+        self, labels: Iterable[str], box: tuple[float, float, float, float], bounds_something: bool
+    ) -> list[BadSpot]:
+        """The bad spot of lines that hang together, by the first junction among them."""
+        number = min((self.first[label] for label in labels if label in self.first), default=None)
+        if number is None:
+            return []
+        return [BadSpot(self.junctions[number], box, bounds_something, self.layers[number])]
 
 
 def spots_once(spots: Sequence[BadSpot]) -> list[BadSpot]:
@@ -271,7 +300,9 @@ def chosen_outline(outlines: Outlines, number: int | str | None) -> DrawnPart:
         around = [spot.box, *(part.bounds for part in parts if is_spoiled(part, spot))]
         if max(larger) > MOST_LARGER * best.area or any(surrounds(box, best.bounds) for box in around):
             said = str(spot.junction.refusal).rstrip(".")
-            raise InputError(f"{said}. To read {best} all the same, give {PART_NUMBER} {best.number}.")
+            raise InputError(
+                f"{said}. To read what lies beside it, give {PART_NUMBER} {best.number}: {best}."
+            )
     return best
 
 
@@ -303,8 +334,8 @@ def shared_remarks(one: Cluster) -> list[str]:
         return []
     places = listed([f"{label} from {at(start)} to {at(end)}" for label, start, end in one.shared])
     return [
-        f"Read {len(one.faces)} outlines that share lines as separate parts: {places}; where such a line is no "
-        "cut, remove it, or put it on a layer that is not chosen."
+        f"Read {len(one.faces)} outlines that share lines as separate parts: {places}; where such a line is a "
+        "bend or a marking and no cut, remove it, or put it on a layer that is not chosen."
     ]
 
 

@@ -148,7 +148,7 @@ def outline_of(
 ) -> Loaded:
     """The workpiece, or a refusal, see :func:`from_drawing`."""
     clean = cleaned(drawing.chains)
-    outlines = outlines_of(clean.chains, tolerance, drawing.layers, budget)
+    outlines = outlines_of(clean.chains, tolerance, drawing, budget)
     parts = outlines.parts
     if not parts and outlines.spots:
         raise outlines.spots[0].junction.refusal

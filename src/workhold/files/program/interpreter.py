@@ -313,7 +313,8 @@ class Interpreter:
         if code == "49" or number == 0:
             length = NOSE if self.has_lengths else None
         else:
-            length = f"H{modes.tool if number is None else number:g}"
+            # Without a number it is the length of the tool in the spindle, whichever that is before any is called.
+            length = f"H{modes.tool}" if number is None else f"H{number:g}"
             if number is not None and modes.tool not in (None, number):
                 self.other_lengths.append(self.path.line)
         if length != modes.length:
@@ -341,7 +342,7 @@ class Interpreter:
         elif once in VISITS:
             return used | self.move_once(codes, values)
         elif once is not None:
-            return used | self.set_zero(once, values)
+            return used | self.set_zero(codes, values)
         self.change_motion(codes)
         motion, cycle = self.modes.motion, self.modes.cycle
         if cycle is not None:
@@ -412,9 +413,10 @@ class Interpreter:
         lost = [axis for axis, letter in enumerate(AXES) if letter in axes or alone]
         self.path.lose(lost, f"line {self.path.line} goes to a place of the machine's own")
         self.skipped.append(self.path.line)
-        return axes | ROTARY
+        # P numbers the places of G30.
+        return axes | ROTARY | ({"P"} if once == "30" else set())
 
-    def set_zero(self, code: str, values: dict[str, float]) -> set[str]:
+    def set_zero(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
         """Takes a word that could set another zero, where it sets none.
 
         G52 with 0 is none, and so is taking back what was never set. G92 before anything else says where the
@@ -423,12 +425,15 @@ class Interpreter:
         Raises
         ------
         InputError
-            For every other zero.
+            For every other zero, and one beside a place.
         """
-        modes, axes = self.modes, values.keys() & {"X", "Y", "Z"}
+        modes, axes, code = self.modes, values.keys() & {"X", "Y", "Z"}, codes["once"]
+        self.change_motion(codes)
         if code in ("92.1", "92.2"):
             if self.presets:
                 refuse_code(code)
+            if axes:
+                raise InputError(f"G{code} and a place stand in one block: write them in two.")
         elif code == "52":
             if any(values[letter] for letter in axes):
                 refuse_code(code)

@@ -15,6 +15,7 @@ from workhold.errors import InputError, listed
 from workhold.files.budget import LIMITS
 from workhold.files.program.interpreter import LAST_DIGIT, Interpreter
 from workhold.files.program.path import PathWriter, Place
+from workhold.files.program.subprograms import with_calls
 from workhold.files.program.tool_tables import SHAPE, commented_tools, is_bare, read_tools, tool_of_fields
 from workhold.files.program.words import UNITS, VISITS, ProgramBlock, ProgramText, code_of, program_text
 from workhold.files.questions import START, worded
@@ -105,7 +106,7 @@ def read_program_with_calls(
     begin = None if start is None else place_of(start)
     try:
         content = read_limited(path, LIMITS["program"])
-        listing = program_text(decoded(content))
+        listing = with_calls(program_text(decoded(content)))
         control = run(
             listing,
             None if unit is None else UNITS[unit],

@@ -24,6 +24,7 @@ from workhold.errors import InputError, plain
 from workhold.units import INCH, MILLIMETRE, Unit
 
 __all__ = [
+    "CALLS",
     "CANCEL",
     "CYCLES",
     "FUNCTIONS",
@@ -32,6 +33,8 @@ __all__ = [
     "NOSE",
     "NUMBERED",
     "OTHER_UNITS",
+    "RETURN",
+    "SWITCHED_END",
     "UNITS",
     "VISITS",
     "Modes",
@@ -100,6 +103,10 @@ GROUPS: Mapping[str, str] = {
 # M0 to M9 and M30; none moves the tool but for M6. All others are passed over and listed, but for those that
 # do more than switch something.
 FUNCTIONS = (*(str(number) for number in range(10)), "30")
+ENDS = frozenset(("2", "30"))
+# What calls a subprogram, with the letter of the number at which it begins, and what leads back.
+CALLS: Mapping[str, str] = {"97": "N", "98": "O"}
+RETURN = "99"
 
 COMPENSATION = (
     "offsets the path by a radius that only the control knows: post the program with the compensation made "
@@ -127,7 +134,7 @@ REASONS: Mapping[str, str] = {
     **dict.fromkeys(("5", "5.1", "5.2", "5.3", "6.2"), "is a spline: post the program with lines and arcs"),
 }
 FUNCTION_REASONS: Mapping[str, str] = {
-    **dict.fromkeys(("97", "98", "99", "198"), SUBPROGRAM),
+    "198": SUBPROGRAM,
     **dict.fromkeys(("46", "96"), "jumps to another line: post the program with its moves written out"),
     **dict.fromkeys(("16", "61"), "puts a tool into the spindle in a way that is not read: write M6"),
     "72": "brings codes back that were in force before: write those that are meant",
@@ -149,6 +156,11 @@ SIEMENS = re.compile(r"[ \t]*(?:N[0-9]+[ \t]*)?(?:CYCLE[0-9]+|MCALL|WORKPIECE|TR
 # The number of the switch may stand behind the slash.
 SWITCH = re.compile(r"[ \t]*/[0-9]?")
 CAPITALS = str.maketrans(ascii_lowercase, ascii_uppercase)
+SWITCHED_END = (
+    "whether the program ends here is said by a switch (/), and there is more behind it: take the slash out, or "
+    "the line."
+)
+NO_FUNCTION: frozenset[str] = frozenset()
 # Characters of a line that a message shows.
 SHOWN = 40
 # Characters of a block without its comments; controls take a few hundred.
@@ -256,10 +268,22 @@ class ProgramBlock:
     ----------
     line : its number, from 1.
     words : letters and the texts of their numbers, in order; without the block's own number.
+    number : the block's own, N; None without one.
+    program, program_line : number (O) of the program in which it stands, and that one's line; None before any.
+    functions : codes of its words M.
     """
 
     line: int
     words: list[tuple[str, str]] = field(repr=False)
+    number: float | None = None
+    program: int | None = None
+    program_line: int | None = None
+    functions: frozenset[str] = frozenset()
+
+    @property
+    def ends(self) -> bool:
+        """Whether the program ends with it."""
+        return bool(self.functions & ENDS)
 
 
 @frozen
@@ -268,7 +292,7 @@ class ProgramText:
 
     Parameters
     ----------
-    blocks : those that have words.
+    blocks : those that have words; also those behind the end where a subprogram is called.
     comments : (line, text) of each.
     optional : lines that begin with a slash, which a switch of the machine can leave out.
     behind : lines behind the end of the program, which are not read.
@@ -283,13 +307,17 @@ class ProgramText:
 def program_text(text: str) -> ProgramText:
     """Reads a program's text into blocks, until M2, M30 or a second percent sign ends it.
 
+    Where a subprogram is called, it may stand behind M30, up to the percent sign.
+
     Raises
     ------
     InputError
         Beginning with the number of the line that is none.
     """
     found = ProgramText([], [], [], [])
-    began = ended = is_closed = False
+    began = ended = is_closed = calls = False
+    program: int | None = None
+    program_line: int | None = None
     for line, content in numbered(text):
         if ended:
             if content.strip() not in ("", "%"):
@@ -314,19 +342,22 @@ def program_text(text: str) -> ProgramText:
             )
         if BLOCK.fullmatch(code) is None or "O" in code:
             if PROGRAM_NUMBER.fullmatch(code):
+                program, program_line = int(code.strip(" \tO:")), line
                 continue
             raise InputError(f"line {line}: {refusal(code, written[len(written) - len(code) :])}")
         words = WORD.findall(code)
+        number = None
         if words and words[0][0] == "N":
-            del words[0]
-        ended = any(letter == "M" and float(text) in (2, 30) for letter, text in words)
-        if words:
-            found.blocks.append(ProgramBlock(line, words))
+            number = float(words.pop(0)[1])
+        functions = NO_FUNCTION
+        if "M" in code:
+            functions = frozenset(code_of(text) for letter, text in words if letter == "M")
+        calls = calls or bool(functions & CALLS.keys())
+        ended = bool(functions & ENDS) and not calls
+        if words or number is not None:
+            found.blocks.append(ProgramBlock(line, words, number, program, program_line, functions))
     if found.behind and found.blocks and found.optional[-1:] == [found.blocks[-1].line] and not is_closed:
-        raise InputError(
-            f"line {found.optional[-1]}: whether the program ends here is said by a switch (/), and there is more "
-            "behind it: take the slash out, or the line."
-        )
+        raise InputError(f"line {found.optional[-1]}: {SWITCHED_END}")
     return found
 
 

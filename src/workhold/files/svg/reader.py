@@ -80,7 +80,8 @@ def read_svg(
         raise InputError(
             "no shape of the drawing is seen: each is switched off, transparent, or without fill and stroke."
         )
-    return Drawing(tuple(walk.chains), (*remarks, *walk.remarks()), walk.curves.found)
+    remarks += walk.remarks()
+    return Drawing(tuple(walk.chains), tuple(remarks), walk.curves.found, looks=walk.looks)
 
 
 # Sizes are written with few digits: what differs by less than this share is meant to be the same.

@@ -34,6 +34,8 @@ SILENT |= {"filter", "linearGradient", "radialGradient", "view", "namedview"}
 FEATURES = "http://www.w3.org/TR/SVG11/feature#"
 # Letters that tell where a <use> is in others, and mm for a user unit.
 LONGEST_SUFFIX, MOST_SCALE = 300, 1e15
+# What tells cuts from other lines, as programs for lasers do.
+LOOKS = ("stroke", "stroke-dasharray")
 MARKED = ("path", "line", "polyline", "polygon")
 
 
@@ -49,6 +51,7 @@ class ElementNesting:
     windows : what hides parts of the drawing.
     suffix, links : the <use> elements around, for messages and against endless nesting.
     anchored : whether it is within an <a>.
+    look : colour and dashes of lines, as they are written.
     """
 
     placement: Placement
@@ -58,6 +61,7 @@ class ElementNesting:
     suffix: str = ""
     links: tuple[str, ...] = ()
     anchored: bool = False
+    look: tuple[str, ...] = ("", "")
 
 
 class SvgWalk:
@@ -69,6 +73,7 @@ class SvgWalk:
         self.document = document
         self.styles = styles
         self.chains: list[Chain] = []
+        self.looks: dict[str, str] = {}
         self.hidden = 0
         self.painted_over = 0
         self.ignored: Counter[str] = Counter()
@@ -108,7 +113,11 @@ class SvgWalk:
         if tag == "use":
             placement = placement.after(Placement(e=figure.length("x"), f=figure.length("y")))
         refuse_absurd(placement, label)
-        inner = self.clipped(figure, evolve(nest, placement=placement, style=style))
+        look = tuple(
+            figure.declarations[name][0].text if name in figure.declarations else around
+            for name, around in zip(LOOKS, nest.look, strict=True)
+        )
+        inner = self.clipped(figure, evolve(nest, placement=placement, style=style, look=look))
         if element is self.document.root:
             if placement != nest.placement:
                 raise InputError(
@@ -182,6 +191,9 @@ class SvgWalk:
                     f"{label} is cut by {window.label}: cut the shape itself, or remove what cuts it."
                 )
         self.chains += found
+        look = " ".join(nest.look).strip().lower()
+        if look:
+            self.looks.update((label, look) for chain in found for label in chain.labels)
 
     def placed(self, figure: ShapeElement, nest: ElementNesting) -> Iterator[Chain]:
         """The chains of a shape in mm; of a shape without stroke, what bounds its fill."""

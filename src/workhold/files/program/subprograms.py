@@ -1,0 +1,199 @@
+"""Subprograms of a file: the blocks of a program in the order in which a control comes to them.
+
+M98 P100 runs the blocks behind O100 until M99, M97 P100 those from the block N100 on; L says how often. Of five
+digits and more P has, on Fanuc, how often in front of the last four.
+
+Glossary
+--------
+call : a block with M98 or M97; its other words take effect before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from attrs import define, evolve
+
+from workhold.errors import InputError
+from workhold.files.budget import LIMITS
+from workhold.files.program.words import CALLS, RETURN, SWITCHED_END, ProgramBlock, ProgramText, code_of
+
+__all__ = ["with_calls"]
+
+# Calls within calls; controls take from 4 to 10.
+MOST_CALLS = 10
+MOST_REPEATS = 9999
+MOST_BLOCKS = LIMITS["program"].most_elements or 0
+# Letters of words that may stand beside a call, and of those that belong to it.
+BESIDE, OF_CALLS = frozenset("GMSF"), frozenset("PL")
+Starts = dict[tuple[str, float], list[int]]
+
+
+@define
+class Running:
+    """A subprogram that runs.
+
+    Parameters
+    ----------
+    begin : index of its first block.
+    back : index of the block behind its call.
+    left : how often it still runs, this time included.
+    call : line and words of its call, as a message names them.
+    program : number of the program in which it stands.
+    """
+
+    begin: int
+    back: int
+    left: int
+    call: str
+    program: int | None
+
+    def refuse_endless(self) -> InputError:
+        """The error for a subprogram that does not end."""
+        return InputError(f"{self.call} a subprogram without an end: write M99 behind its last block.")
+
+
+def with_calls(listing: ProgramText) -> ProgramText:
+    """The text with its subprograms written out where they are called; one without calls as it is.
+
+    Raises
+    ------
+    InputError
+        Beginning with the line, for a call of what is not in the file, a subprogram without an end, and an M99
+        that ends none.
+    """
+    if not any(block.functions & {*CALLS, RETURN} for block in listing.blocks):
+        return listing
+    blocks = list(run_blocks(listing.blocks, set(listing.optional)))
+    ran = {block.line for block in blocks}
+    last = next((block.line for block in listing.blocks if block.ends), 0)
+    called = {block.line for block in listing.blocks if block.functions & {*CALLS, RETURN}}
+    behind = [block.line for block in listing.blocks if block.line > last > 0]
+    left = [line for line in behind if line not in ran | called]
+    return evolve(listing, blocks=blocks, behind=sorted({*listing.behind, *left}))
+
+
+def run_blocks(blocks: Sequence[ProgramBlock], optional: set[int]) -> Iterator[ProgramBlock]:
+    """Yields blocks as they run, without calls and M99, up to the program's end."""
+    running: list[Running] = []
+    starts = starts_of(blocks)
+    index = count = 0
+    while index < len(blocks):
+        block = blocks[index]
+        index, count = index + 1, count + 1
+        if count > MOST_BLOCKS:
+            raise InputError(
+                f"line {block.line}: with its subprograms the program has more than {MOST_BLOCKS:,} blocks: split it."
+            )
+        if running and block.program != running[-1].program:
+            raise running[-1].refuse_endless()
+        try:
+            if block.functions & CALLS.keys():
+                call = begin_call(blocks, starts, block, index)
+                if len(running) == MOST_CALLS:
+                    raise InputError(
+                        f"subprograms call each other more than {MOST_CALLS} deep: post the program with its moves "
+                        "written out."
+                    )
+                yield from block_beside(block)
+                running.append(call)
+                index = call.begin
+                continue
+            if RETURN not in block.functions:
+                yield block
+                if block.ends and block.line in optional and index < len(blocks):
+                    raise InputError(SWITCHED_END)
+                if block.ends:
+                    return
+                continue
+            refuse_return(block, bool(running), block.line in optional)
+        except InputError as error:
+            raise InputError(f"line {block.line}: {error}") from error
+        yield from block_beside(block)
+        last = running[-1]
+        last.left -= 1
+        index = last.begin if last.left else last.back
+        if not last.left:
+            running.pop()
+    if running:
+        raise running[-1].refuse_endless()
+
+
+def begin_call(blocks: Sequence[ProgramBlock], starts: Starts, block: ProgramBlock, back: int) -> Running:
+    """The subprogram that a block calls.
+
+    Raises
+    ------
+    InputError
+        For one that is not in the file, or there twice, and words that the block cannot have.
+    """
+    given = {letter: float(text) for letter, text in block.words if letter in OF_CALLS}
+    code = min(block.functions & CALLS.keys())
+    other = next(
+        (letter for letter, _ in block.words if letter not in BESIDE | OF_CALLS or "6" in block.functions),
+        None,
+    )
+    if other is not None or block.ends:
+        raise InputError(
+            f"M{code} stands in a block with a move, a tool change or the end: write that in a block of its own."
+        )
+    number, repeats = given.get("P"), given.get("L", 1.0)
+    if number is None or number != int(number):
+        raise InputError(
+            f"M{code} calls a subprogram without its number P: post the program with its moves written out."
+        )
+    found = starts.get((CALLS[code], number), [])
+    if not found and code == "98" and number >= 10_000 and "L" not in given:
+        # Fanuc's short form: how often, and four digits of the program.
+        repeats, number = divmod(int(number), 10_000)
+        found = starts.get(("O", number), [])
+    name = f"{CALLS[code]}{number:g}"
+    if len(found) != 1:
+        where = "is not in this file" if not found else "stands more than once in this file"
+        raise InputError(
+            f"M{code} calls the subprogram {name}, which {where}: post the program with its moves written out, or "
+            "put the subprogram into the file once."
+        )
+    if repeats != int(repeats) or not 1 <= repeats <= MOST_REPEATS:
+        raise InputError(
+            f"M{code} runs {name} {repeats:g} times: write a whole number from 1 to {MOST_REPEATS}."
+        )
+    call = f"line {block.line}: M{code} calls {name},"
+    return Running(found[0], back, int(repeats), call, blocks[found[0]].program)
+
+
+def starts_of(blocks: Sequence[ProgramBlock]) -> Starts:
+    """Indices of the blocks at which subprograms begin, by the letter and the number that calls name."""
+    starts: Starts = {}
+    before: int | None = None
+    for index, block in enumerate(blocks):
+        if block.number is not None:
+            starts.setdefault(("N", block.number), []).append(index)
+        if block.program is not None and block.program_line != before:
+            starts.setdefault(("O", block.program), []).append(index)
+        before = block.program_line
+    return starts
+
+
+def refuse_return(block: ProgramBlock, is_called: bool, is_optional: bool) -> None:
+    """Refuses an M99 that does not simply lead back behind the call."""
+    if not is_called:
+        raise InputError("M99 stands outside of a subprogram, where the program begins anew: write M30.")
+    if is_optional:
+        raise InputError(
+            "whether the subprogram ends here is said by a switch (/): take the slash out, or the line."
+        )
+    if any(letter == "P" for letter, _ in block.words):
+        raise InputError("M99 with P goes on at another block: post the program with its moves written out.")
+
+
+def block_beside(block: ProgramBlock) -> Iterator[ProgramBlock]:
+    """The block without its call or M99, if anything is left of it."""
+    is_call = bool(block.functions & CALLS.keys())
+    words = [
+        (letter, text)
+        for letter, text in block.words
+        if not (letter == "M" and code_of(text) in {*CALLS, RETURN}) and not (is_call and letter in OF_CALLS)
+    ]
+    if words:
+        yield evolve(block, words=words)
