@@ -192,7 +192,7 @@ def test_a_full_disk_is_one_sentence_and_what_is_done_is_kept(
     write = store_module.write_bytes
 
     def until_full(path: Path, record: bytes) -> None:
-        if len(written) == 5:
+        if len(written) == 10:
             with store_module.plain_errors(path):
                 raise OSError(errno.ENOSPC, "No space left on device")
         written.append(path)
@@ -204,6 +204,7 @@ def test_a_full_disk_is_one_sentence_and_what_is_done_is_kept(
     ):
         run_in(tmp_path, shop, queue=InlineQueue(), held_in=(COARSE, FINE))
     monkeypatch.undo()
+    # Each with its checksum.
     assert len(records_in(tmp_path)) == 5
     queue = InlineQueue()
     assert run_in(tmp_path, shop, queue=queue, held_in=(COARSE, FINE)).is_complete
