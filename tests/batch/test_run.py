@@ -240,6 +240,17 @@ def test_a_file_that_changes_while_the_batch_runs_is_told(shop: Path, tmp_path: 
     assert set(changed) >= {"b.json"}
 
 
+@pytest.mark.parametrize("content", [b"part,seconds,who\na.dxf,1.5,Ann\n", b"\xff\n", b"abc def,1,x\n"])
+def test_what_others_wrote_down_is_left_as_it_is(tmp_path: Path, content: bytes) -> None:
+    path = tmp_path / "measured.csv"
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=r"was not written by workhold: give another folder, or rename it\."):
+        Measured(path)
+    assert path.read_bytes() == content
+    path.write_bytes(b"0a1b")
+    assert not Measured(path).known
+
+
 def test_what_tasks_took_is_kept_and_lines_cut_short_are_passed_over(shop: Path, tmp_path: Path) -> None:
     batch = run_in(tmp_path, shop, queue=InlineQueue())
     path = tmp_path / "measured.csv"
