@@ -123,7 +123,7 @@ def sentence_of(error: dict[str, Any]) -> str:
 
 
 def check_body(payload: tuple[type[Form], bytes, int], order: Order) -> None:
-    """Refuses a request that its form does not take, of too many values, or with a part of too many segments."""
+    """Refuses a request of too many values or segments, or that its form does not take."""
     form, body, most_segments = payload
     try:
         data = json.loads(body)

@@ -104,7 +104,7 @@ def read_bytes(path: Path) -> bytes:
             if not os.access(path, os.R_OK | os.X_OK):
                 raise InputError("this is a folder that cannot be looked into: allow reading it.")
             raise InputError("this is a folder: give a .json, .dxf, .svg or .step file in it.")
-        if path.is_symlink() and not os.path.exists(path):
+        if path.is_symlink() and not path.exists():
             raise InputError("this is a link that leads to no file: give the file itself.")
         if not path.is_file():
             raise InputError("this is not a regular file: give a .json, .dxf, .svg or .step file.")
