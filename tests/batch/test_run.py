@@ -192,7 +192,7 @@ def test_a_full_disk_is_one_sentence_and_what_is_done_is_kept(
     write = store_module.write_bytes
 
     def until_full(path: Path, record: bytes) -> None:
-        if len(written) == 5:
+        if len(written) == 10:
             with store_module.plain_errors(path):
                 raise OSError(errno.ENOSPC, "No space left on device")
         written.append(path)
@@ -204,6 +204,7 @@ def test_a_full_disk_is_one_sentence_and_what_is_done_is_kept(
     ):
         run_in(tmp_path, shop, queue=InlineQueue(), held_in=(COARSE, FINE))
     monkeypatch.undo()
+    # Each with its checksum.
     assert len(records_in(tmp_path)) == 5
     queue = InlineQueue()
     assert run_in(tmp_path, shop, queue=queue, held_in=(COARSE, FINE)).is_complete
@@ -237,6 +238,17 @@ def test_a_file_that_changes_while_the_batch_runs_is_told(shop: Path, tmp_path: 
     batch = run_in(tmp_path, shop, queue=Changing())
     changed = {part.request.listed.name: part.refusal for part in batch.parts if "changed" in part.refusal}
     assert set(changed) >= {"b.json"}
+
+
+@pytest.mark.parametrize("content", [b"part,seconds,who\na.dxf,1.5,Ann\n", b"\xff\n", b"abc def,1,x\n"])
+def test_what_others_wrote_down_is_left_as_it_is(tmp_path: Path, content: bytes) -> None:
+    path = tmp_path / "measured.csv"
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=r"was not written by workhold: give another folder, or rename it\."):
+        Measured(path)
+    assert path.read_bytes() == content
+    path.write_bytes(b"0a1b")
+    assert not Measured(path).known
 
 
 def test_what_tasks_took_is_kept_and_lines_cut_short_are_passed_over(shop: Path, tmp_path: Path) -> None:

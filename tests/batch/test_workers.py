@@ -60,7 +60,10 @@ def test_a_task_without_an_end_is_given_up_and_the_others_go_on(
     with LocalWorkers(1, onlooker, seconds=1.0) as queue:
         outcomes = {outcome.name: outcome for outcome in queue.run(iter(given), Event())}
         assert len(list(scratch.iterdir())) == 1
-    assert outcomes["endless"].failure == "This was given up after 1 s, the most that it may take."
+    assert outcomes["endless"].failure == (
+        "This was given up after 1 s, the most that it may take: allow it more, or make the part or the "
+        "question simpler."
+    )
     assert outcomes["endless"].record is None and len(outcomes) == 3
     assert all(outcomes[name].record for name in ("task0", "task1"))
     assert onlooker.sentences == ["worker 1 was ended: endless took longer than 1 s."]

@@ -54,6 +54,62 @@ def test_hidden_files_own_results_and_folders_left_out_are_no_parts(tmp_path: Pa
     assert names_of(folder, leave_out=(folder / "out",)) == ["a.json", "in/e.json"]
 
 
+def test_what_is_no_file_is_a_row_that_costs_no_other(tmp_path: Path) -> None:
+    folder = folder_of(tmp_path, "a.json")
+    (folder / "circle.json").symlink_to("circle.json")
+    (folder / "lost.json").symlink_to("nowhere")
+    os.mkfifo(folder / "pipe.json")
+    (folder / "under.dxf.json").mkdir()
+    said = {part.name: read_listed(part).refusal for part in part_list([folder])}
+    link = "this is a link that leads to no file: give the file itself."
+    pipe = "this is not a regular file: give a .json, .dxf, .svg or .step file."
+    assert said == {
+        "a.json": "",
+        "circle.json": f"circle.json: {link}",
+        "lost.json": f"lost.json: {link}",
+        "pipe.json": f"pipe.json: {pipe}",
+    }
+
+
+def test_an_inner_folder_that_nobody_may_read_costs_no_other(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = folder_of(tmp_path, "a.json", "closed/b.json", "open/c.json")
+    look = os.scandir
+
+    def refuse(path: Path) -> object:
+        if path == folder / "closed":
+            raise PermissionError(13, "Permission denied")
+        return look(path)
+
+    monkeypatch.setattr(os, "scandir", refuse)
+    monkeypatch.setattr(os, "access", lambda path, _: path != folder / "closed")
+    parts = part_list([folder])
+    assert [part.name for part in parts] == ["a.json", "closed", "open/c.json"]
+    assert "cannot be looked into: allow reading it" in read_listed(parts[1]).refusal
+
+
+def test_folders_may_lie_in_each_other_as_deep_as_the_disk_allows(tmp_path: Path) -> None:
+    nested = [tmp_path]
+    for _ in range(1200):
+        nested.append(nested[-1] / "d")
+        nested[-1].mkdir()
+    part = nested[-1] / "a.json"
+    part.write_text(SQUARE)
+    assert [one.path for one in part_list([tmp_path])] == [part]
+    # Removing them all at once would take as many calls within each other.
+    part.unlink()
+    for folder in reversed(nested[1:]):
+        folder.rmdir()
+
+
+def test_a_link_of_another_ending_hides_no_part(tmp_path: Path) -> None:
+    folder = folder_of(tmp_path, "z.json")
+    (folder / "a.dxf").symlink_to("z.json")
+    (folder / "b.json").symlink_to("z.json")
+    assert names_of(folder) == ["a.dxf", "b.json"]
+
+
 def test_a_link_to_a_folder_above_is_no_circle(tmp_path: Path) -> None:
     folder = folder_of(tmp_path, "a.json")
     (folder / "up").symlink_to(folder, target_is_directory=True)

@@ -111,14 +111,24 @@ def test_what_is_wrong_in_very_many_places_is_found_out_by_a_worker(
     few = {"name": "m", "loops": [SQUARE], **{f"k{k}": 1 for k in range(5_000)}}
     many = {"name": "m", "loops": [SQUARE], **{f"k{k}": 1 for k in range(250_000)}}
     long_part = {"name": "m", "loops": [[[k, k * k, 0] for k in range(3_000)]]}
+    lists = {
+        "axis": "z",
+        "height": 9,
+        "peg_height": 5,
+        "head_room": 0,
+        "least_band": 1,
+        "bands": [[0, 9]] * 4,
+    }
+    solid = {"name": "m", "loops": [SQUARE], "solid": {**lists, "bottom": [SQUARE] * 7_000}}
     deep = b"[" * 1_900_000 + b"]" * 1_900_000
     for content, words in (
         (json.dumps(few).encode(), "at k0: extra inputs are not permitted"),
-        (json.dumps(many).encode(), "more than 20,000 keys"),
+        (json.dumps(many).encode(), "more than 100,000 values"),
+        (json.dumps(solid).encode(), "more than 100,000 values"),
         (json.dumps(long_part).encode(), "3000 segments, more than the 2000"),
         (b'{"name":"m","loops":[' + b",".join([b'[["a"]]'] * 1_500) + b"]}" + b" " * 40_000, "at loops.0.0"),
         (deep, "not valid JSON"),
-        (b'{"name":' * 300_000, "keys"),
+        (b'{"name":' * 300_000, "not valid JSON"),
         (b"\xff" * 40_000, "not valid JSON"),
     ):
         by_worker.clear()

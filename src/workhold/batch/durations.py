@@ -14,14 +14,15 @@ over.
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Mapping
 from math import exp, hypot, log
 from pathlib import Path
 
 from attrs import define, field
 
-from workhold.batch.tasks import Outcome
-from workhold.errors import plain
+from workhold.batch.tasks import LETTERS, Outcome
+from workhold.errors import InputError, plain
 from workhold.files.atomic import plain_errors
 from workhold.fixels.toolkit import Toolkit
 
@@ -34,6 +35,8 @@ LAWS: Mapping[str, tuple[float, float, float]] = {
     "two clamps": (-19.51, 0.07, 3.86),
     "fence": (-3.9, 0.39, -0.02),
 }
+# How a line begins.
+NAME = re.compile(rf"[0-9a-f]{{1,{LETTERS}}}(,|$)")
 # Of a drawing: seconds for the first byte, and for a million of them.
 READING: Mapping[str, tuple[float, float]] = {".step": (2.0, 10.0), ".stp": (2.0, 10.0), ".dxf": (0.02, 4.0)}
 OTHER_READING = (0.005, 1.0)
@@ -76,16 +79,24 @@ class Measured:
     ----------
     path : of the file, in a folder that is there when the first line is added.
     known : what it held, and what was added.
+
+    Raises
+    ------
+    InputError
+        For a file of that name that begins otherwise: nothing is added to what others wrote.
     """
 
     path: Path
     known: dict[str, tuple[float, str]] = field(factory=dict, init=False)
 
     def __attrs_post_init__(self) -> None:
-        try:
-            lines = self.path.read_text(encoding="utf-8", errors="replace").splitlines()
-        except OSError:
+        if not self.path.is_file():
             return
+        with plain_errors(self.path):
+            content = self.path.read_bytes()
+        lines = content.decode("utf-8", errors="replace").splitlines()
+        if lines and not NAME.match(lines[0]):
+            raise InputError(f"{self.path} was not written by workhold: give another folder, or rename it.")
         for line in lines:
             name, _, rest = line.partition(",")
             seconds, comma, worker = rest.partition(",")

@@ -308,7 +308,7 @@ def run_batch(requests: Iterable[Request], best: int, work: BatchRun) -> Batch:
         for job in jobs:
             if job.name in outcomes:
                 job.failure = outcomes[job.name].failure
-        batch.fresh = len(outcomes)
+        batch.fresh = sum(not outcome.failure for outcome in outcomes.values())
     batch.is_complete = not work.stop.is_set()
     return batch
 

@@ -7,9 +7,9 @@ is to be said about it. What cannot be read or asked is a record too: it would b
 A folder keeps each record in a file under its task's name, written whole or not at all. Beside it stands the
 checksum of its name and its bytes, which is written first: a record that has been changed, cut or swapped
 since is none. Two runs may use one folder at a time: a record that both write has the same bytes, and takes
-its name at once. An object store or
-another machine keeps them wherever fsspec can write: ``s3://bucket/folder``, ``sftp://host/folder``. Workers
-of a cluster write there themselves, so that no record passes through the machine that asks.
+its name at once. An object store or another machine keeps them wherever fsspec can write:
+``s3://bucket/folder``, ``sftp://host/folder``. Workers of a cluster write there themselves, so that no record
+passes through the machine that asks.
 """
 
 from __future__ import annotations

@@ -129,7 +129,10 @@ class LocalWorkers:
             task = one.task
             assert task is not None
             self.drop(one)
-            words = f"This was given up after {one.seconds:,.0f} s, the most that it may take."
+            words = (
+                f"This was given up after {one.seconds:,.0f} s, the most that it may take: "
+                "allow it more, or make the part or the question simpler."
+            )
             self.watcher.notify(f"{one.title} was ended: {task.title} took longer than {one.seconds:,.0f} s.")
             yield Outcome(task.name, None, words, one.seconds, one.title)
 

@@ -42,7 +42,7 @@ class LoadArguments(ToolArguments):
     part: str = Field(description="path of a DXF, SVG, JSON or STEP file, or a built-in name such as widget")
     unit: Literal["mm", "cm", "m", "inch", "px72", "px90", "px96"] | None = Field(
         default=None,
-        description="of a drawing that does not say its own; of an SVG drawing in pixels how many make an inch",
+        description="of a drawing that does not say its own; of an SVG drawing how many pixels make an inch",
     )
     layers: list[str] | None = Field(
         default=None, description="DXF layers to read; all visible ones if not given"

@@ -147,6 +147,7 @@ def batch(
     from workhold.cli.warming import compile_on_first_run, compile_seating
 
     store = FolderStore(folder / RECORDS) if records is None else store_at(records)
+    measured = Measured(folder / MEASURED)
     start = perf_counter()
     with ask_to_stop("what is done is kept, tables and report are written") as stop:
         keep_what_is_found()
@@ -158,7 +159,6 @@ def batch(
             where = None if records is None else store
             queue = place_to_work(progress, count, cluster, processes, where, longest)
             workshop.enter_context(queue)
-            measured = Measured(folder / MEASURED)
             done = run_batch(requests, kept, BatchRun(store, queue, measured, progress, stop))
     spent = perf_counter() - start
     report = write_all(done, store, measured, folder, spent, progress.events, sheets)

@@ -84,7 +84,7 @@ def part_list(given: Iterable[str | Path], leave_out: Iterable[str | Path] = ())
     ['widget', 'Flange']
     """
     apart = {os.path.realpath(folder) for folder in leave_out}
-    parts: dict[str, tuple[str, Path, Path]] = {}
+    parts: dict[tuple[str, str], tuple[str, Path, Path]] = {}
     for one in given:
         path = Path(one)
         if is_folder(path):
@@ -98,7 +98,8 @@ def part_list(given: Iterable[str | Path], leave_out: Iterable[str | Path] = ())
         else:
             entries = [(str(one), Path(one), found(one))]
         for entry in entries:
-            parts.setdefault(os.path.realpath(entry[2]), entry)
+            # The ending is what a file is read by: under another one a link is another part.
+            parts.setdefault((os.path.realpath(entry[2]), entry[2].suffix.lower()), entry)
         if len(parts) > MOST_PARTS:
             raise InputError(
                 f"{path} brings more than {MOST_PARTS:,} parts: give fewer folders, or name the files."
@@ -119,22 +120,33 @@ def is_folder(path: Path) -> bool:
 
 
 def drawings_in(folder: Path, apart: set[str]) -> Iterator[Path]:
-    """The drawings in a folder: its own first, then those of each folder in it; refuses what cannot be looked
-    into.
+    """The drawings in a folder: its own first, then those of each folder in it.
+
+    Links that lead nowhere, pipes and inner folders that cannot be looked into stand among them: reading them
+    says what they are.
+
+    Raises
+    ------
+    InputError
+        When the folder itself cannot be looked into.
     """
-    try:
-        entries = sorted(os.scandir(folder), key=lambda entry: natural(entry.name))
+    waiting = [folder]
+    while waiting:
+        inside = waiting.pop()
+        try:
+            entries = sorted(os.scandir(inside), key=lambda entry: natural(entry.name))
+        except OSError as error:
+            if inside != folder:
+                yield inside
+                continue
+            why = (error.strerror or str(error)).lower()
+            raise InputError(f"{folder} cannot be read ({why}).") from error
         entries = [entry for entry in entries if not entry.name.startswith(".")]
-        for entry in entries:
-            path = folder / entry.name
-            if path.suffix.lower() in ENDINGS and entry.is_file() and not is_own(path):
+        for path in (inside / entry.name for entry in entries):
+            if path.suffix.lower() in ENDINGS and not path.is_dir() and not is_own(path):
                 yield path
-        inner = [entry.name for entry in entries if entry.is_dir(follow_symlinks=False)]
-    except OSError as error:
-        raise InputError(f"{folder} cannot be read ({(error.strerror or str(error)).lower()}).") from error
-    for name in inner:
-        if os.path.realpath(folder / name) not in apart:
-            yield from drawings_in(folder / name, apart)
+        inner = [inside / entry.name for entry in entries if entry.is_dir(follow_symlinks=False)]
+        waiting += [path for path in reversed(inner) if os.path.realpath(path) not in apart]
 
 
 def natural(name: str) -> tuple[list[tuple[bool, int, str]], str]:
@@ -147,7 +159,7 @@ def natural(name: str) -> tuple[list[tuple[bool, int, str]], str]:
 
 def is_own(path: Path) -> bool:
     """Whether a file is JSON that workhold wrote and no part; False where it cannot be opened."""
-    if path.suffix.lower() != ".json":
+    if path.suffix.lower() != ".json" or not path.is_file():
         return False
     try:
         with path.open("rb") as stream:

@@ -98,10 +98,10 @@ class NumberedOutlines:
         if not self.runs or not any(self.runs[k] for k in face.segments):
             return self.bands[number] if self.bands else None
 
-        def beyond(k: int) -> float:
+        def distance_past_end(k: int) -> float:
             return abs(self.segments[k].parameter(point)) - self.segments[k].half_extent
 
-        touched = min(face.segments, key=beyond)
+        touched = min(face.segments, key=distance_past_end)
         rows, segment = self.runs[touched], self.segments[touched]
         if not rows:
             return self.bands[touched]

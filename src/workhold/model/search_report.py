@@ -208,8 +208,8 @@ def no_fixture_notes(wording: Wording, line: int | None = None) -> tuple[str, ..
     if line is not None:
         clear = f"clear of the program's tools, of which line {line} is most in the way."
         return tuple(f"{reason[:-1]}, {clear}" for reason in wording.reasons) or (
-            f"Every face that the program's tools leave, of which line {line} takes the most, is an arc about one "
-            "centre, so the forces of all pegs meet in that point and nothing keeps the part from turning.",
+            f"Every face that the program's tools leave, of which line {line} takes the most, is an arc about "
+            "one centre, so the forces of all pegs meet in that point and nothing keeps the part from turning.",
             f"No {wording.two} can touch the part together {clear}",
             f"No {wording.four} can touch the part at the same time {clear}",
             f"Four pegs can touch the part at the same time, but no such set {wording.rules} {clear}",

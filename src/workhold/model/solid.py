@@ -30,8 +30,9 @@ AXES = ("x", "y", "z", "-x", "-y", "-z")
 # What says how a solid stands, as a file of a result has it.
 STANDING = ("axis", "height", "peg_height", "head_room", "least_band")
 Band = tuple[float, float]
-# Heights of the run that holds a segment's band, along the segment: shares of it, rising from 0 to 1, with the
-# lower and the upper end in mm there. Of every four, the last of which begins the next, each end is a cubic.
+# Heights of the run that holds a segment's band, along the segment: shares of it, rising from 0 to 1, with
+# the lower and the upper end in mm there. Of every four, the last of which begins the next, each end is a
+# cubic.
 RunRows = tuple[tuple[float, float, float], ...]
 # Loops of vertices x, y (mm) and bulge.
 Loops = tuple[tuple[tuple[float, ...], ...], ...]
@@ -81,15 +82,15 @@ def runs_of(values: Iterable[Iterable[Any]]) -> tuple[RunRows, ...]:
         is_whole = all(len(row) == 3 for row in rows) and all(map(isfinite, flat))
         if not is_whole or (rows and not is_run(rows)):
             raise InputError(
-                "a run of heights of the solid is none: give shares of the segment from 0 to 1 that rise, one "
-                "and three more for every piece, each with the lower end first."
+                "a run of heights of the solid is none: give shares of the segment from 0 to 1 that rise, "
+                "one and three more for every piece, each with the lower end first."
             )
         found.append(tuple((share, low, high) for share, low, high in rows))
     return tuple(found)
 
 
 def is_run(rows: Sequence[Sequence[float]]) -> bool:
-    """Whether rows tell of a run from one end of a segment to the other."""
+    """Whether rows are a run from one end of a segment to the other."""
     shares = [row[0] for row in rows]
     rise = all(a < b for a, b in pairwise(shares))
     stand = all(0.0 <= row[1] <= row[2] < 1e9 for row in rows)

@@ -173,8 +173,8 @@ class SupportRequest:
         0 to T where there is none.
     bands : the same for each peg of the fixture, in its order, None for those that have no band of their own.
     pad_margin : smallest distance from a pad to the border of the face it supports.
-    bottom, top : faces that supports and the clamp may touch, as loops of (x, y, bulge), the outer one first;
-        no loops are no face, and None is the outline with its holes.
+    bottom, top : faces that supports and the clamp may touch, as loops of (x, y, bulge), the outer one first.
+        No loops are no face, and None is the outline with its holes.
     top_heights : height in mm of the face of every loop of ``top``; None where all lie at the thickness.
     bottom_zones, top_zones : keep-outs from below and from above.
     inside : smallest distance from the clamp to each side of the supports' triangle; the tip's radius if not
@@ -312,7 +312,7 @@ class SupportRequest:
         peg_height: float | None = None,
         numbered: NumberedOutlines | None = None,
     ) -> SupportRequest:
-        """The request with its bands written out: those given, or of each peg what it can press on of a solid.
+        """The request with its bands written out: those given, or what each peg can press on of a solid.
 
         Parameters
         ----------
@@ -380,7 +380,7 @@ def band_of(peg: Peg, solid: SolidOutline) -> Span | None:
 
 
 def pressed_by(peg: Peg, fixture: Fixture, numbered: NumberedOutlines) -> Span | None:
-    """The heights on which a peg can press: the run where it touches, of a corner on a wall those of both faces."""
+    """The heights on which a peg can press: the run where it touches, of a corner that of both faces."""
     faces = (peg.face,) if peg.beside is None else (peg.face, peg.beside)
     point = fixture.pose.inverse.apply(peg.x, peg.y)
     runs = [run for face in faces if (run := numbered.pressed(face, point)) is not None]

@@ -212,7 +212,7 @@ class SearchForm(Form):
 
 
 class JobForm(SearchForm):
-    """A search for every fixture, with the number of first ones whose seating is worked out, and rules for it."""
+    """A search for every fixture, of how many first ones the seating is worked out, and by which rules."""
 
     toolkit: HeldIn
     seating: int | None = Field(default=None, ge=1, le=MOST_SEATED)

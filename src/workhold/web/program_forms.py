@@ -52,9 +52,9 @@ class ProgramForm(Form):
 
     Without a table of tools, what the program's comments say of them is read. ``zero`` is where its X0 Y0 is
     on the part. ``z_zero`` is where its Z0 is, a height above the part's lower side. Of a solid both heights
-    are known, ``thickness`` and ``peg_height``, up to which pegs, clamps and walls reach. ``start`` is where the
-    tip is at the start, from the program's own zero, where the program does not say it. ``whole_numbers`` is what
-    lengths without a decimal point count: thousandths are 0.001 mm or 0.0001 inch.
+    are known, ``thickness`` and ``peg_height``, up to which pegs, clamps and walls reach. ``start`` is where
+    the tip is at the start, from the program's own zero, where the program does not say it. ``whole_numbers``
+    is what lengths without a decimal point count: thousandths are 0.001 mm or 0.0001 inch.
     """
 
     model_config = ConfigDict(json_schema_extra={"examples": [EXAMPLE]})

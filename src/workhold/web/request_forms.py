@@ -6,7 +6,6 @@ A part is sent as an outline or a solid, with outlines of carriers' own heights.
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
@@ -66,8 +65,8 @@ RunForm = Annotated[
 FacesForm = Annotated[list[Annotated[int, Field(ge=0, le=1_000_000)]], Field(max_length=10_000)]
 AskedForm = TypeVar("AskedForm", bound="Form")
 
-# The end of a key; and how many keys a request may have: a family of many parts has a few for each.
-KEY, MOST_KEYS = re.compile(rb'"\s*:'), 20_000
+# Values and lists of values in a request: twice what the largest solid that the server takes has.
+MOST_VALUES = 100_000
 # Sets of three supports that are listed at most.
 MOST_SETS = 50
 
@@ -124,20 +123,34 @@ def sentence_of(error: dict[str, Any]) -> str:
 
 
 def check_body(payload: tuple[type[Form], bytes, int], order: Order) -> None:
-    """Refuses a request that its form does not take, or with a part of too many segments."""
+    """Refuses a request of too many values or segments, or that its form does not take."""
     form, body, most_segments = payload
-    if sum(1 for _ in KEY.finditer(body)) > MOST_KEYS:
-        raise InputError(f"The request has more than {MOST_KEYS:,} keys: send those that are described.")
     try:
         data = json.loads(body)
     except (ValueError, RecursionError) as error:
         raise InputError("The request is not valid JSON: send one object.") from error
     refuse_many(most_vertices_in(data), most_segments)
+    if count_values(data) > MOST_VALUES:
+        raise InputError(
+            f"The request has more than {MOST_VALUES:,} values: send only what is described, and parts of "
+            "fewer segments."
+        )
     try:
         form.model_validate(data)
     except ValidationError as error:
         first = next(iter(error.errors(include_url=False, include_context=False, include_input=False)))
         raise InputError(sentence_of({**first, "loc": ("body", *first["loc"])})) from error
+
+
+def count_values(data: Any) -> int:
+    """How many values there are in a request, those that hold others too."""
+    count, waiting = 0, [[data]]
+    while waiting:
+        one = waiting.pop()
+        inner = list(one.values()) if isinstance(one, dict) else one
+        count += len(inner)
+        waiting += [value for value in inner if isinstance(value, dict | list)]
+    return count
 
 
 def most_vertices_in(data: Any) -> int:

@@ -6,6 +6,7 @@ Canny 1996).
 
 from __future__ import annotations
 
+import os
 from difflib import get_close_matches
 from importlib.resources import files
 from os import PathLike
@@ -75,7 +76,7 @@ def found(part: str | PathLike[str]) -> Path:
     """
     path = Path(part)
     try:
-        if path.exists():
+        if path.exists() or path.is_symlink():
             return path
     except (OSError, ValueError):
         pass
@@ -100,7 +101,11 @@ def read_bytes(path: Path) -> bytes:
     """
     try:
         if path.is_dir():
+            if not os.access(path, os.R_OK | os.X_OK):
+                raise InputError("this is a folder that cannot be looked into: allow reading it.")
             raise InputError("this is a folder: give a .json, .dxf, .svg or .step file in it.")
+        if path.is_symlink() and not path.exists():
+            raise InputError("this is a link that leads to no file: give the file itself.")
         if not path.is_file():
             raise InputError("this is not a regular file: give a .json, .dxf, .svg or .step file.")
         with path.open("rb") as stream:
