@@ -21,7 +21,7 @@ from OCP.GC import GC_MakeSegment
 from OCP.GeomAPI import GeomAPI_PointsToBSpline
 from OCP.gp import gp_Pnt
 from OCP.TopAbs import TopAbs_Orientation
-from step_shapes import box, cut, cylinder, prism
+from step_shapes import box, cut, cylinder, fused, prism
 
 import workhold
 from workhold import Plate, load
@@ -193,3 +193,9 @@ def test_a_tangent_polygon_holds_its_ellipse() -> None:
     for x, y, bulge in opening.tolist():
         size = sqrt(((x - middle) * cos(lean) / 6) ** 2 + ((y - 25) / 6) ** 2)
         assert bulge == 0.0 and 1 - 1e-9 <= size < 1.005
+
+
+def test_line_within_a_face_bounds_nothing() -> None:
+    touching = fused(box(70, 50, 12), cylinder(6, 50, (35, 25, 6), (1, 0, 0)))
+    top = top_loops(standing(touching))
+    assert sum(signed_area(loop_segments(loop)) for loop, _ in top) == pytest.approx(3500.0)

@@ -19,7 +19,7 @@ from step_shapes import cut, cylinder
 from solid_examples import polygon
 from workhold import Workpiece, load
 from workhold.errors import InputError
-from workhold.files.step.heights import measures, standing
+from workhold.files.step.heights import StandingSolid, height_table, measures, standing
 from workhold.files.step.projected import cut_edges, lying_ring_cuts
 from workhold.files.step.solids import read_solids
 from workhold.geometry.loop import loop_segments, signed_area
@@ -88,3 +88,19 @@ def test_a_nut_is_its_hexagon_at_every_height(gap: float) -> None:
     assert area == pytest.approx(across**2 * sqrt(3) / 2 - 81 * pi, abs=1e-6)
     assert border == pytest.approx(6 * across / sqrt(3) + 18 * pi, abs=1e-6)
     assert len(outline.loops) == 2
+
+
+def test_lying_shaft_makes_few_outlines_for_its_table(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of one outline pegs that reach farther touch no less, so not every height of it is looked at."""
+    (solid,) = read_solids((DATA / "lying_shaft_fillets.step").read_bytes())
+    made: list[float] = []
+    whole = StandingSolid.outline
+
+    def counted(self: StandingSolid, peg_height: float, *more: object, **named: object) -> object:
+        made.append(peg_height)
+        return whole(self, peg_height, *more, **named)
+
+    monkeypatch.setattr(StandingSolid, "outline", counted)
+    (row,) = height_table(standing(solid.shape), 0.5, 1.0)
+    assert (round(row.low, 3), row.high) == (8.538, 18.0)
+    assert len(made) <= 4

@@ -39,7 +39,7 @@ from workhold.geometry.segment import Arc, Line, Point, Segment
 from workhold.geometry.subdivision import BorderPiece, CutCarrier
 from workhold.model.solid import Band
 
-__all__ = ["Covered", "End", "Run", "WallEdge", "Walls", "length"]
+__all__ = ["Covered", "End", "KnownWalls", "Run", "WallEdge", "Walls", "length"]
 
 # Edges this far from a carrier in mm, and farther, are not asked whether they lie on it.
 NEAR = 1e-4
@@ -207,7 +207,7 @@ class Branch:
     Parameters
     ----------
     edge : see :class:`WallEdge`.
-    carrier : its segment fixes positions.
+    carrier : a segment of its line or circle, which fixes positions.
     parameters : (N,) of the edge's curve.
     places : (N,) positions on the carrier there, rising, on a circle without jumps.
     heights : (N,) z in mm there; between two of them the edge only rises or only falls.
@@ -216,7 +216,7 @@ class Branch:
     """
 
     edge: EdgeCurve
-    carrier: CutCarrier
+    carrier: Segment
     parameters: NDArray[np.float64]
     places: NDArray[np.float64]
     heights: NDArray[np.float64]
@@ -224,10 +224,10 @@ class Branch:
     known: dict[float, float] = field(init=False, factory=dict)
 
     @classmethod
-    def over(cls, carrier: CutCarrier, wall_edge: WallEdge) -> Iterator[Branch]:
+    def over(cls, carrier: Segment, wall_edge: WallEdge) -> Iterator[Branch]:
         """The branches of an edge over a carrier that holds it."""
         edge = wall_edge.edge
-        places = along(carrier.segment, edge.points)
+        places = along(carrier, edge.points)
         for first, last in wall_edge.branches:
             part = slice(first, last + 1)
             values = edge.parameters[part], places[part], edge.points[part, 2]
@@ -246,9 +246,9 @@ class Branch:
     def turns(self, position: float) -> list[float]:
         """What is added to a position to find it among its places: whole turns on a circle."""
         first, last = float(self.places[0]), float(self.places[-1])
-        if isinstance(self.carrier.segment, Arc) and abs(last - first - tau) <= WHOLE_TURN:
+        if isinstance(self.carrier, Arc) and abs(last - first - tau) <= WHOLE_TURN:
             return [first + (position - first) % tau - position]
-        around = (0.0,) if isinstance(self.carrier.segment, Line) else (-2 * tau, -tau, 0.0, tau, 2 * tau)
+        around = (0.0,) if isinstance(self.carrier, Line) else (-2 * tau, -tau, 0.0, tau, 2 * tau)
         return [turn for turn in around if first < position + turn < last]
 
     def at(self, place: float) -> float:
@@ -272,7 +272,7 @@ class Branch:
     @cached_property
     def located(self) -> Callable[[float, float], float]:
         """The position on the carrier of a point x, y in mm."""
-        segment = self.carrier.segment
+        segment = self.carrier
         if isinstance(segment, Arc):
             return lambda x, y: segment.parameter((x, y))
         (px, py), (tx, ty) = segment.middle, segment.tangent
@@ -281,7 +281,7 @@ class Branch:
     def refined(self, k: int, place: float) -> float:
         """The z in mm at which a curved edge passes a place between its points k and k + 1."""
         curve, located, near = self.edge.curve, self.located, float(self.places[k])
-        is_line = isinstance(self.carrier.segment, Line)
+        is_line = isinstance(self.carrier, Line)
 
         def value(parameter: float) -> float:
             point = curve.Value(parameter)
@@ -450,6 +450,27 @@ class Wall:
         ]
 
 
+@frozen(eq=False)
+class KnownWalls:
+    """What is known of a solid's walls at whatever heights pegs reach.
+
+    Parameters
+    ----------
+    edges : edges of walls by their points' identity.
+    branches : of each over a segment of its carrier.
+    """
+
+    edges: dict[int, WallEdge] = field(factory=dict)
+    branches: dict[tuple[int, Segment], tuple[Branch, ...]] = field(factory=dict)
+
+    def branches_over(self, carrier: Segment, wall_edge: WallEdge) -> tuple[Branch, ...]:
+        """The branches of an edge over a carrier that holds it, with all heights that they were asked for."""
+        key = id(wall_edge.edge.curve), carrier
+        if key not in self.branches:
+            self.branches[key] = tuple(Branch.over(carrier, wall_edge))
+        return self.branches[key]
+
+
 @define
 class Walls:
     """The upright faces of a solid by the carrier that they stand on.
@@ -458,6 +479,7 @@ class Walls:
     ----------
     faces, edges : of the solid.
     low, high : z in mm between which a peg may press.
+    known : of the solid.
     """
 
     faces: Sequence[SolidFace]
@@ -469,7 +491,7 @@ class Walls:
     # Of each of them (x, y) of both ends and a radius of 0, or those of an arc's centre twice and its radius.
     places: NDArray[np.float64] = field(init=False)
     found: dict[int, list[Wall]] = field(init=False, factory=dict)
-    known: dict[int, WallEdge] = field(factory=dict)
+    known: KnownWalls = field(factory=KnownWalls)
 
     def __attrs_post_init__(self) -> None:
         self.upright = [
@@ -488,14 +510,20 @@ class Walls:
     def wall_edge(self, edge: EdgeCurve, segment: Segment) -> WallEdge:
         """An edge of a wall; two walls that have it have the same curve."""
         key = id(edge.points)
-        if key not in self.known:
-            self.known[key] = WallEdge.of(edge, segment)
-        same = self.known[key]
+        if key not in self.known.edges:
+            self.known.edges[key] = WallEdge.of(edge, segment)
+        same = self.known.edges[key]
         return same if same.edge.face == edge.face else evolve(same, edge=evolve(same.edge, face=edge.face))
 
     def cuts(self) -> list[tuple[Segment, Point]]:
         """Points at which an outline is to be cut, because the runs there may change."""
         return [(one.segment, point) for one in self.upright for point in one.cuts(self.low, self.high)]
+
+    def ends(self) -> Iterator[tuple[Segment, Point]]:
+        """Where level edges end: a subdivision that has the edges themselves is cut there."""
+        for one in self.upright:
+            if one.is_level and not (isinstance(one.segment, Arc) and one.segment.is_full):
+                yield from ((one.segment, one.segment.start), (one.segment, one.segment.end))
 
     def over(self, carrier: CutCarrier) -> list[Wall]:
         """The walls that stand on a carrier."""
@@ -504,7 +532,7 @@ class Walls:
             for k in self.near(carrier.segment).tolist():
                 one = self.upright[k]
                 if carrier.holds(one.segment):
-                    branches[one.edge.face] += Branch.over(carrier, one)
+                    branches[one.edge.face] += self.known.branches_over(carrier.segment, one)
             self.found[id(carrier)] = [Wall(index, tuple(own)) for index, own in branches.items()]
         return self.found[id(carrier)]
 

@@ -12,7 +12,7 @@ head room : what is kept free above the pegs, in mm.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import pairwise
 from math import inf
@@ -25,22 +25,24 @@ from numpy.typing import NDArray
 from workhold.conventions import SAME_HEIGHT
 from workhold.errors import InputError
 from workhold.files.questions import PEG_HEIGHT, SECTION
-from workhold.files.step.bands import WallEdge, Walls
+from workhold.files.step.bands import KnownWalls, Walls
 from workhold.files.step.edge_curves import EdgeCurve, Found, edge_curves
 from workhold.files.step.faces import SolidFace, plane_height, solid_faces
 from workhold.files.step.library import bounding_box, occ, raised, sub_shapes
 from workhold.files.step.material import Material
 from workhold.files.step.projected import (
     FLAT,
+    OtherCurveError,
     ProjectedCurves,
     folds,
     has_plain_cuts,
-    other_curve,
+    level_cuts,
     projected_curves,
     refuse_others,
 )
 from workhold.files.step.strips import Strip, run_rows, strips_of_loop
 from workhold.geometry.loop import loop_segments, signed_area
+from workhold.geometry.segment import Arc, Line, Point, Segment
 from workhold.geometry.subdivision import BorderPiece, border_loops, border_pieces, subdivide
 from workhold.model.solid import Band, HeightRow, RunRows, SolidOutline
 
@@ -130,7 +132,10 @@ class StandingSolid:
     edge_boxes: NDArray[np.float64] = field(init=False)
     material: Material = field(init=False)
     folds: dict[int, list[Found]] = field(init=False, factory=dict)
-    wall_edges: dict[int, WallEdge] = field(init=False, factory=dict)
+    # What outlines of all heights have in common.
+    known_walls: KnownWalls = field(init=False, factory=KnownWalls)
+    # The face that was last found to refuse an outline: it is likely to refuse that of a height nearby.
+    suspect: SolidFace | None = field(init=False, default=None)
 
     def __attrs_post_init__(self) -> None:
         self.faces = solid_faces(self.shape)
@@ -158,6 +163,7 @@ class StandingSolid:
         head_room: float = HEAD_ROOM,
         least_band: float = LEAST_BAND,
         low: float = 0.0,
+        silhouette: Sequence[Segment] = (),
     ) -> HeightOutline:
         """The outline of pegs that reach from below up to a height, or from another height.
 
@@ -167,6 +173,7 @@ class StandingSolid:
         head_room : kept free above the pegs, in mm.
         least_band : shortest band in mm that may be touched.
         low : from which pegs reach, in mm; 0 is from below.
+        silhouette : its border, where the outline is known to be the silhouette.
 
         Raises
         ------
@@ -174,13 +181,44 @@ class StandingSolid:
             For heights that leave nothing, and where the outline has a curve that is neither line nor arc.
         """
         top = self.height if peg_height is None else peg_height
-        walls = Walls(self.faces, self.edges, max(low, 0.0), min(top, self.height), self.wall_edges)
-        loops = self.border(low if low > 0.0 else -inf, top + head_room, walls)
+        walls = self.walls(top, low)
+        loops = self.border(low if low > 0.0 else -inf, top + head_room, walls, silhouette)
         strips = tuple(tuple(strips_of_loop(loop, walls, least_band)) for loop in loops)
         return HeightOutline(strips, top, head_room, least_band)
 
-    def border(self, low: float, high: float, walls: Walls | None = None) -> list[list[BorderPiece]]:
+    def walls(self, top: float, low: float = 0.0) -> Walls:
+        """The upright faces as pegs between two heights in mm meet them."""
+        return Walls(self.faces, self.edges, max(low, 0.0), min(top, self.height), self.known_walls)
+
+    def area(self, peg_height: float, head_room: float) -> float | None:
+        """The area in mm² of the outline of pegs that reach from below up to a height; None if it is refused."""
+        high = peg_height + head_room
+        suspect = self.suspect
+        try:
+            if suspect is not None and suspect.low < high < suspect.high:
+                cuts = [one for one in level_cuts(suspect, high) if not isinstance(one, Line | Arc)]
+                refuse_others([(0, one) for one in cuts], [suspect], self.inside(-1.0, high))
+            loops = self.border(-inf, high, self.walls(peg_height))
+        except OtherCurveError as error:
+            self.suspect = error.face
+            return None
+        except InputError:
+            return None
+        return sum(signed_area(loop_segments(vertices_of(loop))) for loop in loops)
+
+    def inside(self, low: float, high: float) -> Callable[[Point], bool]:
+        """Whether the solid has material over a point (x, y) between two heights in mm, as a function."""
+        return lambda point: self.material.reaches_into(point, low, high)
+
+    def border(
+        self, low: float, high: float, walls: Walls | None = None, silhouette: Sequence[Segment] = ()
+    ) -> list[list[BorderPiece]]:
         """The loops of U(low, high), heights in mm.
+
+        Parameters
+        ----------
+        walls : whose runs cut it too.
+        silhouette : see :meth:`outline`.
 
         Raises
         ------
@@ -188,13 +226,13 @@ class StandingSolid:
             Naming the face whose border is neither line nor arc.
         """
         low, high = max(low, -1.0), min(high, self.height + 1.0)
-
-        def inside(point: tuple[float, float]) -> bool:
-            return self.material.reaches_into(point, low, high)
-
-        curves = projected_curves(self.faces, self.edges, low, high, self.folds_of)
-        refuse_others(curves.others, self.faces, inside)
+        inside = self.inside(low, high)
         more = walls.cuts() if walls else []
+        if silhouette:
+            curves = ProjectedCurves(tuple(silhouette), tuple(walls.ends() if walls else ()), ())
+        else:
+            curves = projected_curves(self.faces, self.edges, low, high, self.folds_of)
+            refuse_others(curves.others, self.faces, inside)
         carriers = subdivide(curves.segments, (*curves.cuts, *more))
         pieces = border_pieces(carriers, inside)
         if not pieces:
@@ -216,7 +254,7 @@ class StandingSolid:
         except InputError as error:
             if curves.others:
                 kinds = [self.faces[index] for index, _ in curves.others]
-                raise other_curve(min(kinds, key=lambda face: face.kind in FLAT)) from error
+                raise OtherCurveError(min(kinds, key=lambda face: face.kind in FLAT)) from error
             raise
 
 
@@ -241,6 +279,8 @@ MOST_EDGES = 6_000
 # Heights at which a range is looked at that may be refused in part, and how exactly in mm its end is found. A
 # wall that is this much lower than what may be touched is not.
 PROBES, BEFORE = 8, 1e-3
+# Outlines whose areas differ by no more than this share are one.
+WHOLE = 1e-9
 
 
 def measures(outline: HeightOutline) -> tuple[float, float, float, float]:
@@ -272,16 +312,23 @@ def height_table(solid: StandingSolid, room: float, least: float) -> list[Height
     if len(heights) > most:
         heights = [heights[round(k)] for k in np.linspace(0, len(heights) - 1, most)]
     rows: list[HeightRow] = []
+    whole = Silhouette.of(solid, heights[-1], room, least) if heights else None
     # What is less than the shortest band above the plane touches nothing.
     for low, high in pairwise([least, *heights]):
-        for row in rows_between(solid, low, high, room, least):
+        is_whole = bool(whole and rows and rows[-1].high == low and whole.has_area(rows[-1].area))
+        border = whole.border if whole and is_whole else ()
+        if whole and is_whole and is_like(rows[-1], whole.row):
+            # Of one outline pegs that reach farther touch no less.
+            rows[-1] = evolve(whole.row, low=rows[-1].low)
+            break
+        for row in rows_between(solid, low, high, room, least, whole, is_whole):
             if rows and rows[-1].high == row.low and is_like(rows[-1], row):
                 rows[-1] = evolve(row, low=rows[-1].low)
                 continue
             # Just before a wall is high enough, all is as it was before.
             reached = [round(z + least, 6) for z in sorted(starts) if row.low < z + least - BEFORE < row.high]
             for height in reached if rows and rows[-1].touchable < row.touchable else ():
-                before = row_of(solid, row.low, height, room, least, BEFORE)
+                before = row_of(solid, row.low, height, room, least, BEFORE, border)
                 if before is None or is_like(before, row):
                     continue
                 if rows and rows[-1].high == before.low and is_like(rows[-1], before):
@@ -293,31 +340,81 @@ def height_table(solid: StandingSolid, room: float, least: float) -> list[Height
     return rows
 
 
+@frozen
+class Silhouette:
+    """The outline of the highest pegs: outlines grow with the height, so one of its area is the same.
+
+    Parameters
+    ----------
+    row : what it offers.
+    border : its pieces.
+    """
+
+    row: HeightRow
+    border: tuple[Segment, ...]
+
+    @classmethod
+    def of(cls, solid: StandingSolid, height: float, room: float, least: float) -> Silhouette | None:
+        """The outline of pegs of a height in mm; None where it is refused."""
+        try:
+            outline = solid.outline(height, room, least)
+        except InputError:
+            return None
+        pieces = [one for loop in outline.loops for strip in loop for one in strip.covered]
+        border = tuple(one.piece.carrier.segment.part(one.low, one.high) for one in pieces)
+        return cls(HeightRow(0.0, height, *measures(outline)), border)
+
+    def has_area(self, area: float) -> bool:
+        """Whether an outline of some area in mm² is the whole of it."""
+        return abs(self.row.area - area) <= WHOLE * self.row.area
+
+
 def row_of(
-    solid: StandingSolid, low: float, high: float, room: float, least: float, before: float = 0.0
+    solid: StandingSolid,
+    low: float,
+    high: float,
+    room: float,
+    least: float,
+    before: float = 0.0,
+    border: Sequence[Segment] = (),
 ) -> HeightRow | None:
-    """The range between two heights, with what pegs touch of the upper one, or of one that much lower."""
+    """The range between two heights, with what pegs touch of the upper one, or of one that much lower.
+
+    Parameters
+    ----------
+    border : see :meth:`StandingSolid.outline`.
+    """
     try:
-        return HeightRow(low, high, *measures(solid.outline(high - before, room, least)))
+        return HeightRow(low, high, *measures(solid.outline(high - before, room, least, silhouette=border)))
     except InputError:
         return None
 
 
 def rows_between(
-    solid: StandingSolid, low: float, high: float, room: float, least: float
+    solid: StandingSolid,
+    low: float,
+    high: float,
+    room: float,
+    least: float,
+    whole: Silhouette | None,
+    is_whole: bool,
 ) -> Iterator[HeightRow]:
     """The ranges between two heights at which no face begins or ends, with what their outlines offer.
 
     A face that is cut in curves which are neither lines nor arcs may be refused over some of them.
+
+    Parameters
+    ----------
+    is_whole : whether the outline is known to be the silhouette at all heights between.
     """
-    if not any(
+    if is_whole or not any(
         face.lie == "leaning"
         and face.low < high + room - SAME_HEIGHT
         and face.high > low + room + SAME_HEIGHT
         and not has_plain_cuts(face)
         for face in solid.faces
     ):
-        row = row_of(solid, low, high, room, least)
+        row = row_of(solid, low, high, room, least, border=whole.border if whole and is_whole else ())
         if row is not None:
             yield row
         return
@@ -325,28 +422,33 @@ def rows_between(
     # Just above the lower end is the first place of the range.
     ends[0] += min(BEFORE, (high - low) / 2 / PROBES)
     places = [*ends, high]
-    taken = [row_of(solid, low, place, room, least) for place in places]
-    first = low if taken[0] is not None else None
+    taken: list[bool] = []
+    for place in places:
+        area = None if is_whole else solid.area(place, room)
+        is_whole = is_whole or bool(whole and area is not None and whole.has_area(area))
+        taken.append(is_whole or area is not None)
+    first = low if taken[0] else None
     for (a, b), (one, following) in zip(pairwise(places), pairwise(taken), strict=True):
-        if (one is None) == (following is None):
+        if one == following:
             continue
-        refused, read = (a, b) if one is None else (b, a)
+        refused, read = (b, a) if one else (a, b)
         while abs(read - refused) > BEFORE:
             middle = (refused + read) / 2
-            if row_of(solid, low, middle, room, least) is None:
+            if solid.area(middle, room) is None:
                 refused = middle
             else:
                 read = middle
-        if one is None:
+        if not one:
             first = read
         elif first is not None:
             row = row_of(solid, first, read, room, least)
             if row is not None:
                 yield row
             first = None
-    last = taken[-1]
-    if last is not None and first is not None:
-        yield evolve(last, low=first)
+    if taken[-1] and first is not None:
+        row = row_of(solid, first, high, room, least, border=whole.border if whole and is_whole else ())
+        if row is not None:
+            yield row
 
 
 def is_like(a: HeightRow, b: HeightRow) -> bool:

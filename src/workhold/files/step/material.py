@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from math import pi, sin, tan, tau
+from math import inf, pi, sin, tan, tau
 from typing import Any
 
 import numpy as np
@@ -210,6 +210,9 @@ class Material:
     known: dict[Point, list[tuple[float, float]]] = field(init=False, factory=dict)
     # Heights at which an upright line passes a face that is not flat, by the line's point and the face.
     hits: dict[tuple[Point, int], list[float]] = field(init=False, factory=dict)
+    # By point and lower height: the least upper height for which material was found, and the greatest for which
+    # none was.
+    reached: dict[tuple[Point, float], tuple[float, float]] = field(init=False, factory=dict)
     classifier: Any = field(init=False, default=None)
 
     def __attrs_post_init__(self) -> None:
@@ -269,6 +272,16 @@ class Material:
 
     def reaches_into(self, point: Point, low: float, high: float) -> bool:
         """Whether some material over a point lies strictly between two z in mm."""
+        # Outlines of all heights ask for the same points, and what is reached stays so as the height grows.
+        least, most = self.reached.get((point, low), (inf, -inf))
+        if not most < high < least:
+            return high >= least
+        is_reached = self.finds_within(point, low, high)
+        self.reached[point, low] = (high, most) if is_reached else (least, high)
+        return is_reached
+
+    def finds_within(self, point: Point, low: float, high: float) -> bool:
+        """Finds what :meth:`reaches_into` returns."""
         # A face has material on one of its sides, so one hit within is enough. Flat faces are asked first,
         # because they answer much faster.
         inner = low + 2 * SAME_HEIGHT, high - 2 * SAME_HEIGHT

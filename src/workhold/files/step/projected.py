@@ -48,7 +48,6 @@ __all__ = [
     "folds",
     "has_plain_cuts",
     "level_cuts",
-    "other_curve",
     "projected_curves",
     "refuse_others",
 ]
@@ -394,7 +393,19 @@ def turned_cuts(surface: Any, z: float) -> list[Found]:
 
 
 class OtherCurveError(InputError):
-    """An outline that has a curve which is neither line nor arc."""
+    """The refusal of an outline for a face whose border in it is neither line nor arc.
+
+    Parameters
+    ----------
+    face : the one that makes the curve.
+    """
+
+    def __init__(self, face: SolidFace) -> None:
+        super().__init__(
+            f"the outline has a curve that is neither line nor arc: a {face.kind} at heights "
+            f"{max(round(face.low, 6), 0.0) + 0.0:.6g} to {face.high:.6g} mm"
+        )
+        self.face = face
 
 
 def refuse_others(
@@ -422,14 +433,17 @@ def refuse_others(
         # The face that makes the curve rather than the flat one that it cuts.
         return faces[one[0]].kind in FLAT, -float(np.hypot(*(one[1] - middle).T).max())
 
-    ordered = sorted(others, key=place)
+    # Two faces have an edge, and it is asked once.
+    ordered: dict[bytes, Other] = {}
+    for one in sorted(others, key=place):
+        ordered.setdefault(one[1].tobytes(), one)
     # A curve of the border is there along much of it: few points of every curve find it before all are asked.
     for each in (FEW, 1):
-        for index, points in ordered:
+        for index, points in ordered.values():
             away = np.hypot(*(points[1:-1] - middle).T)
             looked = np.argsort(-away, kind="stable")[::each].tolist()
             if any(is_border(points, k + 1, inside) for k in looked):
-                raise other_curve(faces[index])
+                raise OtherCurveError(faces[index])
 
 
 def is_border(points: NDArray[np.float64], k: int, inside: Callable[[Point], bool]) -> bool:
@@ -444,12 +458,4 @@ def is_border(points: NDArray[np.float64], k: int, inside: Callable[[Point], boo
         inside((float(x + beside * nx), float(y + beside * ny)))
         != inside((float(x - beside * nx), float(y - beside * ny)))
         for beside in BESIDE
-    )
-
-
-def other_curve(face: SolidFace) -> OtherCurveError:
-    """The refusal of a face whose border in the outline is neither line nor arc."""
-    return OtherCurveError(
-        f"the outline has a curve that is neither line nor arc: a {face.kind} at heights "
-        f"{max(round(face.low, 6), 0.0) + 0.0:.6g} to {face.high:.6g} mm"
     )

@@ -175,6 +175,9 @@ def borders(region: Any, fit: float | None = None) -> Borders:
             if piece is not None:
                 pieces.append(piece)
             edges.Next()
+        if not pieces:
+            # A line on which something else touches the face from within bounds nothing.
+            continue
         chain, chain_gap = closed(pieces, len(chains))
         chains.append(chain)
         gap = max(gap, chain_gap)
