@@ -21,8 +21,10 @@ from pathlib import Path
 from attrs import define, field
 
 from workhold.batch.tasks import Outcome
-from workhold.errors import plain
+from workhold.errors import InputError, plain
 from workhold.files.atomic import plain_errors
+from workhold.files.budget import LIMITS
+from workhold.files.text import read_limited
 from workhold.fixels.toolkit import Toolkit
 
 __all__ = ["Measured", "answering_seconds", "measures", "reading_seconds"]
@@ -83,10 +85,10 @@ class Measured:
 
     def __attrs_post_init__(self) -> None:
         try:
-            lines = self.path.read_text(encoding="utf-8", errors="replace").splitlines()
-        except OSError:
+            content = read_limited(self.path, LIMITS["measured"])
+        except InputError:
             return
-        for line in lines:
+        for line in content.decode("utf-8", "replace").splitlines():
             name, _, rest = line.partition(",")
             seconds, comma, worker = rest.partition(",")
             if comma and worker:
