@@ -46,7 +46,9 @@ def reader_row(one: FileLimits) -> str:
     deepest = "" if one.deepest is None else f", {one.deepest} deep"
     seconds = "none"
     if one.seconds is not None:
-        seconds = f"{one.seconds:g} s, and {one.seconds_per_million:g} s for every million bytes"
+        seconds = f"{one.seconds:g} s"
+        if one.seconds_per_million:
+            seconds += f", and {one.seconds_per_million:g} s for every million bytes"
     size = "none" if one.most_bytes is None else f"{count(one.most_bytes)} bytes"
     return f"| {one.what} | {size} | {elements}{deepest} | {seconds} |"
 

@@ -47,7 +47,7 @@ IN_EXTRA = 0xFFFFFFFF
 # The polynomial of the checksum: bits from x^0, which is the highest, to x^31.
 POLYNOMIAL, TOP = 0xEDB88320, 31
 # Bytes of a directory, and of the text of an archive to be read.
-MOST_DIRECTORY, MOST_TEXT = 1 << 20, 200_000_000
+MOST_DIRECTORY, MOST_TEXT = 1 << 20, 50_000_000
 
 
 @frozen

@@ -101,3 +101,19 @@ def test_mistakes_are_told_with_their_place(tmp_path: Path, name: str, text: str
     with pytest.raises(InputError, match=message) as caught:
         read_jobs(tmp_path / name)
     assert name in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        ("jobs.csv", "part\n" + "widget\n" * 20_001, "more than the 20,000 jobs"),
+        ("jobs.toml", "[[job]]\npart = 'a'\n" * 20_001, "more than the 20,000 jobs"),
+        ("jobs.toml", "".join(f"a{k} = 1\n" for k in range(1001)) + "[[job]]\n", "more than 1,000 entries"),
+        ("jobs.csv", "part\n" + " " * 5_000_001, "more than the 5 MB"),
+    ],
+)
+def test_jobs_are_limited(tmp_path: Path, name: str, text: str, words: str) -> None:
+    """In number, in bytes, and in what each has a copy of."""
+    (tmp_path / name).write_text(text)
+    with pytest.raises(InputError, match=words):
+        read_jobs(tmp_path / name)

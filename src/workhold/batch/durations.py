@@ -24,6 +24,8 @@ from attrs import define, field
 from workhold.batch.tasks import LETTERS, Outcome
 from workhold.errors import InputError, plain
 from workhold.files.atomic import plain_errors
+from workhold.files.budget import LIMITS
+from workhold.files.text import read_limited
 from workhold.fixels.toolkit import Toolkit
 
 __all__ = ["Measured", "answering_seconds", "measures", "reading_seconds"]
@@ -92,8 +94,7 @@ class Measured:
     def __attrs_post_init__(self) -> None:
         if not self.path.is_file():
             return
-        with plain_errors(self.path):
-            content = self.path.read_bytes()
+        content = read_limited(self.path, LIMITS["measured"])
         lines = content.decode("utf-8", errors="replace").splitlines()
         if lines and not NAME.match(lines[0]):
             raise InputError(f"{self.path} was not written by workhold: give another folder, or rename it.")

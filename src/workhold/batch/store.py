@@ -27,7 +27,9 @@ from attrs import frozen
 
 from workhold.errors import InputError
 from workhold.files.atomic import plain_errors, write_bytes
+from workhold.files.budget import FileLimits
 from workhold.files.result.writer import outlines_entry, solid_entry, workpiece_entry
+from workhold.files.text import read_limited
 from workhold.model.own_outlines import with_own_outlines
 from workhold.model.solid import SolidOutline
 from workhold.model.workpiece import Workpiece
@@ -47,6 +49,8 @@ __all__ = [
 PART, REFUSAL = "workhold-part/1", "workhold-refusal/1"
 # In records a part has this name, so that files of one content, whatever they are called, are one part.
 PART_NAME = "part"
+# A record is read whole, as it was written.
+RECORD = FileLimits("a record", None)
 FIRST, LAST = b'{"format": "workhold-', b"]}\n"
 
 
@@ -172,8 +176,8 @@ class FolderStore(Store):
         """A record, if it is whole."""
         path = self.path(name)
         try:
-            content, line = path.read_bytes(), path.with_suffix(CHECKSUM).read_bytes()
-        except OSError:
+            content, line = (read_limited(file, RECORD) for file in (path, path.with_suffix(CHECKSUM)))
+        except InputError:
             return None
         return content if is_whole(name, content, line) else None
 

@@ -26,7 +26,7 @@ from attrs import define, evolve, field, frozen
 
 from workhold.batch.store import part_record, plain_record, refusal_record, workpiece_of
 from workhold.errors import NO_ROOM, InputError, WorkholdError, lacks_memory
-from workhold.files.budget import SECONDS, SECONDS_PER_MILLION
+from workhold.files.budget import LIMITS
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.query import Query
 from workhold.model.result import Result
@@ -137,7 +137,7 @@ class Reading(Task):
     @property
     def most_seconds(self) -> float:
         """Ten times the processor time after which readers give a file up, for a machine that is busy."""
-        return MOST_BUSY * (SECONDS + SECONDS_PER_MILLION * len(self.content) / 1e6)
+        return MOST_BUSY * max(one.seconds_for(len(self.content)) or 0.0 for one in LIMITS.values())
 
     def prepare(self) -> None:
         """Loads the readers' kernels."""

@@ -113,13 +113,20 @@ def toml_entries(text: str) -> Iterator[dict[str, Any]]:
     InputError
         When it is none, or its jobs are no tables.
     """
+    from workhold.files.budget import LIMITS, Budget
+    from workhold.files.tables import MOST_COLUMNS
     from workhold.files.text import toml_table
 
     content = toml_table(text)
     jobs = content.pop("job", [])
     if not isinstance(jobs, list) or not all(isinstance(job, dict) for job in jobs):
         raise InputError("its jobs are no tables: write [[job]] above each.")
+    if len(content) > MOST_COLUMNS:
+        # Each job has a copy of them.
+        raise InputError(f"more than {MOST_COLUMNS:,} entries stand above its jobs: leave out what is none.")
+    budget = Budget(LIMITS["jobs"], len(text))
     for job in jobs:
+        budget.spend()
         yield content | job
 
 

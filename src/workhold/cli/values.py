@@ -8,7 +8,7 @@ from math import inf, isfinite, nan
 from pathlib import Path
 
 from workhold.errors import InputError
-from workhold.limits import counting_number, refuse_strong
+from workhold.limits import counting_number, refuse_long, refuse_strong
 from workhold.units import MILLIMETRE, POUND, Unit, pixels_an_inch, unit_named
 
 __all__ = [
@@ -60,7 +60,7 @@ def length(option: str, text: str, unit: Unit = MILLIMETRE) -> float:
     Raises
     ------
     InputError
-        For anything that is not one finite number.
+        For anything that is not one finite number, or longer than any part.
 
     Examples
     --------
@@ -77,6 +77,7 @@ def length(option: str, text: str, unit: Unit = MILLIMETRE) -> float:
             f"{option} {text!r} is not a length: give a plain number in {unit.abbreviation}, such as 12.5, "
             "or one with its unit, such as 0.5in."
         )
+    refuse_long(option, value)
     return value
 
 

@@ -18,6 +18,8 @@ from workhold.model.support_request import SpatialLoad, SupportRequest
 __all__ = ["FORMAT", "SupportsPart", "read_supports_part"]
 
 FORMAT = "workhold-supports/1"
+# As many triples as are listed at most, 150,000, take ten lists and objects each, and 32 values.
+TIMES = 2.5
 Two = Annotated[list[float], Field(min_length=2, max_length=2)]
 Ring = Annotated[list[float], Field(min_length=4, max_length=4)]
 Loop = list[Annotated[list[float], Field(min_length=3, max_length=3)]]
@@ -193,7 +195,8 @@ def read_supports_part(path: Path) -> SupportsPart:
         When it cannot be read, or is no such file.
     """
     try:
-        return SupportsPart.model_validate(json_value(read_text(path, LIMITS["supports"])))
+        text = read_text(path, LIMITS["supports"])
+        return SupportsPart.model_validate(json_value(text, times=TIMES))
     except InputError as error:
         raise InputError(f"{path} is not a file of supports: {error}") from error
     except ValidationError as error:

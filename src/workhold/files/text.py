@@ -20,8 +20,11 @@ __all__ = ["json_value", "read_limited", "read_text", "toml_table"]
 
 # Floats end at 1.8e308.
 MOST_DIGITS = 308
-# Lists and objects of JSON, and values of them, in millions: as many of the smallest take half a gigabyte and more.
-MOST_BRACKETS, MOST_COMMAS = 10_000_000, 30_000_000
+# Bytes that are read at once of a file that turns out longer than the system said.
+BLOCK = 1 << 20
+# Lists and objects of JSON, which take up to 200 bytes of memory each, and values after others in them, which
+# take as much where every key is another: together less than 500 MB.
+MOST_BRACKETS, MOST_COMMAS = 1_000_000, 2_000_000
 
 
 def read_text(path: Path, limits: FileLimits, saved: str = "save it as UTF-8") -> str:
@@ -70,7 +73,10 @@ def read_limited(path: Path, limits: FileLimits) -> bytes:
                 f"{limits.remedy}."
             )
         with path.open("rb") as stream:
-            content = stream.read(-1 if most is None else most + 1)
+            # As many bytes as are asked for are set aside before any is read.
+            content = stream.read(size + 1)
+            while (most is None or len(content) <= most) and (more := stream.read(BLOCK)):
+                content += more
         if most is not None and len(content) > most:
             raise InputError(f"the file grows while it is read: give {limits.what} that is finished.")
         return content
@@ -82,20 +88,21 @@ def read_limited(path: Path, limits: FileLimits) -> bytes:
         ) from error
 
 
-def json_value(text: str, hook: Callable[[dict[str, Any]], Any] | None = None) -> Any:
+def json_value(text: str, hook: Callable[[dict[str, Any]], Any] | None = None, times: float = 1.0) -> Any:
     """The content of JSON text.
 
     Parameters
     ----------
     hook : makes something else of each object as soon as it is read.
+    times : how many times as much as a usual file it may hold.
 
     Raises
     ------
     InputError
         A sentence without the file's name, that gives line and column where the form is broken.
     """
-    if len(text) > MOST_BRACKETS:
-        for most, what in ((MOST_BRACKETS, "[{"), (MOST_COMMAS, ",")):
+    if len(text) > times * MOST_BRACKETS:
+        for most, what in ((times * MOST_BRACKETS, "[{"), (times * MOST_COMMAS, ",")):
             if sum(map(text.count, what)) > most:
                 raise InputError(
                     f"the file holds more than {most / 1e6:g} million "

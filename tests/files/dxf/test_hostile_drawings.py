@@ -47,6 +47,21 @@ def test_a_unit_that_is_no_number_is_asked_for(tmp_path: Path, unit: str) -> Non
     assert survey(path).asked == ("unit",)
 
 
+@pytest.mark.parametrize("number", ["nan", "1e400", "1e300"])
+@pytest.mark.parametrize("code", ["42", "20"])
+def test_the_unit_is_asked_for_whatever_the_numbers_are(tmp_path: Path, code: str, number: str) -> None:
+    """A size to help choose is said of sound ones only."""
+    rows = "".join(f"10\n{x}\n20\n{y}\n42\n0\n" for x, y in ((0, 0), (60, 0), (60, 40)))
+    head = "0\nLWPOLYLINE\n100\nAcDbEntity\n8\n0\n100\nAcDbPolyline\n90\n3\n70\n1\n"
+    damaged = rows.replace(f"{code}\n0\n", f"{code}\n{number}\n", 1)
+    path = drawing(tmp_path / "no_unit.dxf", head + damaged, unit="70\n0")
+    with pytest.raises(InputError, match=r"the drawing's unit is not said: say which"):
+        read_workpiece(path)
+    with pytest.raises(InputError, match=r"no_unit\.dxf: "):
+        read_workpiece(path, unit="mm")
+    assert survey(path).asked == ("unit",)
+
+
 def test_a_file_without_a_model_space_is_damaged(tmp_path: Path) -> None:
     """Its layouts name one that is not there."""
     objects = (

@@ -22,6 +22,7 @@ from workhold.files.outline.nesting import DrawnPart
 from workhold.files.questions import JOIN_TOLERANCE, LAYERS, PART_NUMBER, UNIT, UnitAskedError
 from workhold.geometry.loop import loop_segments
 from workhold.geometry.segment import Point, box_around
+from workhold.limits import MOST_RADIUS
 from workhold.units import INCH, PIXELS
 
 __all__ = [
@@ -43,6 +44,13 @@ def size_of(chains: Sequence[Chain]) -> tuple[float, float] | None:
     return x1 - x0, y1 - y0
 
 
+def has_sound_numbers(chain: Chain) -> bool:
+    """Whether all of a chain's numbers are such as a drawing in any unit may have."""
+    return all(abs(value) <= MOST_RADIUS for value in chain.bulges) and all(
+        abs(x) <= MOST_RADIUS and abs(y) <= MOST_RADIUS for x, y in chain.points
+    )
+
+
 def unit_asked(
     lacking: str, chains: Sequence[Chain], pixels: float | None = None, in_pixels: bool = False
 ) -> UnitAskedError:
@@ -55,7 +63,7 @@ def unit_asked(
     pixels : how many pixels one unit of the drawing is; None where drawings have none.
     in_pixels : whether the drawing says that it is in pixels.
     """
-    size = size_of(chains)
+    size = size_of(chains) if all(map(has_sound_numbers, chains)) else None
     shown = of_pixels = ""
     counts = f"{', '.join(f'px{count}' for count in PIXELS[:-1])} or px{PIXELS[-1]}"
     if size is not None:

@@ -66,7 +66,7 @@ NOT_FINITE = "cannot be used: a length, an angle or a force is not a finite numb
 HEAD = "result.json"
 # Bytes of the line of a fixture, and of all that stands before and after the fixtures, as of the text of an
 # archive. What is looked through for the first fixture is read in such pieces.
-MOST_LINE, MOST_AROUND, CHUNK = 20_000_000, 200_000_000, 1 << 20
+MOST_LINE, MOST_AROUND, CHUNK = 20_000_000, 50_000_000, 1 << 20
 # What stands alone on the line before the first fixture, and how long that line may be.
 FIRST_LINE = re.compile(rb'"fixtures": \[[ \t\r]{0,99}\n')
 LONGEST_FIRST_LINE = 250
