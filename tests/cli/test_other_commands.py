@@ -69,7 +69,7 @@ def test_show_writes_bodies(run: Any, result_file: Path, tmp_path: Path) -> None
         (("r.json", "7"), "lists 6 fixtures: there is no fixture 7"),
         (("r.json", "best"), "fixture 'best' is not a whole number"),
         (("none.json", "1"), "none.json cannot be read: No such file"),
-        ((".", "1"), "cannot be read: Is a directory"),
+        ((".", "1"), "is not a file: give a result file"),
         (("r.json", "1", "--draw", "a.pdf"), "let the name end in .svg or .png"),
         (("r.json", "1", "--draw", "missing/a.svg"), "there is no folder missing"),
         (

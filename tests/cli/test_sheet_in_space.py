@@ -85,7 +85,7 @@ def test_sheet_without_supports_or_result_file(run: Run, folder: Path) -> None:
         (("--sheet", "none/a.pdf"), "none"),
         (
             ("--sheet", "x.pdf", "--out", "x.pdf"),
-            "--sheet and --out are both x.pdf: give them different names.",
+            "x.pdf is not the name of such a result file: let the name end in .json.",
         ),
     ],
 )

@@ -181,7 +181,7 @@ def test_a_fixture_left_out_with_all_counts_adjusted(run: Any, result_file: Path
     ("arguments", "message"),
     [
         (("none.json",), "none.json cannot be read: No such file"),
-        ((".",), "cannot be read: Is a directory"),
+        ((".",), "is not a file: give a result file"),
         (("r.json", "--list", "all"), "--list 'all' is not a whole number"),
         ((), "Missing argument 'RESULT'"),
     ],

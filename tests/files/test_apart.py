@@ -10,10 +10,12 @@ import time
 from pathlib import Path
 
 import pytest
+from attrs import evolve
 
 from workhold.errors import InputError
 from workhold.files import apart
 from workhold.files.apart import run_apart
+from workhold.files.budget import LIMITS
 from workhold.files.fork_server import CAN_FORK
 
 # Seconds to wait for what comes at once on a machine that has nothing else to do.
@@ -82,7 +84,7 @@ def test_every_bad_end_is_one_sentence(
 ) -> None:
     """A crash, an endless loop deaf to SIGTERM, a lack of memory, and a refusal of the work itself."""
     if content == b"loop":
-        monkeypatch.setattr(apart, "SECONDS", 0.9)
+        monkeypatch.setitem(LIMITS, "step", evolve(LIMITS["step"], seconds=0.9))
     with pytest.raises(InputError) as caught:
         run_apart(work, content, {}, "the file")
     assert str(caught.value) == said

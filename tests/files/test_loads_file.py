@@ -113,7 +113,9 @@ def test_files_that_cannot_be_read_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"there is no file of that name\.$"):
         read_loads(tmp_path / "none.toml")
     (tmp_path / "bytes.toml").write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(InputError, match=r"the file is not UTF-8 text \(byte 0\): save it as UTF-8\.$"):
+    with pytest.raises(
+        InputError, match=r"the file is not UTF-8 text \(byte 0, line 1\): save it as UTF-8\.$"
+    ):
         read_loads(tmp_path / "bytes.toml")
     with pytest.raises(InputError, match=r"under the key load\.$"):
         read_loads(written(tmp_path, "[]", "list.json"))

@@ -20,7 +20,12 @@ from workhold.web.part_tasks import CALLED as ON_THE_PAGE
 from workhold.web.part_tasks import Upload, read_part
 
 SOURCE = Path(workhold.__file__).parent
-MARKS = [value for name in questions.__all__ if isinstance(value := getattr(questions, name), str)]
+# Where the tip starts is asked by programs, which name it themselves.
+MARKS = [
+    value
+    for name in questions.__all__
+    if isinstance(value := getattr(questions, name), str) and value != questions.START
+]
 FLAG = re.compile(r"(?<![\w-])--[a-z]")
 # Serving is a command alone, and pip's own option is no word of ours.
 # The report of many parts is written by a command, and has the command for each sheet.

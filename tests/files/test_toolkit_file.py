@@ -224,7 +224,7 @@ def test_unknown_vises_come_with_names_that_are_near(
 def test_binary_files_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "jaws.toml"
     path.write_bytes(b"pitch = \xff")
-    with pytest.raises(InputError, match=r"jaws\.toml: the file is not UTF-8 text \(byte 8\)"):
+    with pytest.raises(InputError, match=r"jaws\.toml: the file is not UTF-8 text \(byte 8, line 1\)"):
         load_toolkit(path)
 
 

@@ -124,6 +124,6 @@ def test_a_full_disk_is_told_in_a_sentence_and_leaves_the_earlier_file(
 
     monkeypatch.setattr(runs, "TemporaryFile", full)
     with pytest.raises(InputError, match=r"a\.npz cannot be written: No space left on device\."):
-        workhold.answer_to_file(QUERIES["symmetric"], tmp_path / "a.npz")
+        workhold.answer_to_file(QUERIES["symmetric"], tmp_path / "a.npz", overwrite=True)
     assert (tmp_path / "a.npz").read_text() == "old"
     assert [path.name for path in tmp_path.iterdir()] == ["a.npz"]

@@ -236,7 +236,7 @@ EXAMPLES = {
     f"GET {JOB}/fixtures": ApiExample(
         OF_JOB,
         {"limit": 5, "sort": "location_error", "angle": "0..90"},
-        answer={"total": 669, "rows": [{"rank": 108, "holes": ["L-A4", "L-B1", "R-A2", "R-A6"]}]},
+        answer={"total": 679, "rows": [{"rank": 108, "holes": ["L-A4", "L-B1", "R-A2", "R-A6"]}]},
     ),
     f"GET {JOB}/explanation": ApiExample(
         {"name": NONE_NAME}, answer={"helps": [{"change": "with half the pitch", "fixtures": 2}]}

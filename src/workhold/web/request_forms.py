@@ -144,12 +144,14 @@ def check_body(payload: tuple[type[Form], bytes, int], order: Order) -> None:
 
 def count_values(data: Any) -> int:
     """How many values there are in a request, those that hold others too."""
-    count, waiting = 0, [[data]]
+    count, waiting = 0, [data]
     while waiting:
         one = waiting.pop()
-        inner = list(one.values()) if isinstance(one, dict) else one
-        count += len(inner)
-        waiting += [value for value in inner if isinstance(value, dict | list)]
+        count += 1
+        if isinstance(one, dict):
+            waiting += one.values()
+        elif isinstance(one, list):
+            waiting += one
     return count
 
 

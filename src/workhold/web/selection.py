@@ -6,6 +6,7 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
+from workhold.conventions import ANGLE_SLACK
 from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.listing.identity import Entries, first_of_each, near_duplicates
@@ -86,7 +87,9 @@ class Selection:
             chosen &= (table.face == self.face).any(axis=1)
         if self.angle is not None:
             low, high = self.angle
-            chosen &= (np.degrees(table.theta) - low) % 360.0 <= high - low
+            # A limit that is met exactly is kept, however a machine rounds.
+            turned = (np.degrees(table.theta) - low + ANGLE_SLACK) % 360.0
+            chosen &= turned <= high - low + 2.0 * ANGLE_SLACK
         found = np.flatnonzero(chosen)
         if column is None:
             return found[::-1] if self.descending else found

@@ -6,7 +6,7 @@ import json
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 import pytest
@@ -148,10 +148,10 @@ def test_folders_and_unreadable_files_are_named(tmp_path: Path, monkeypatch: pyt
         load(tmp_path)
     path = write(tmp_path, PLATE)
 
-    def refuse(_: Path) -> bytes:
+    def refuse(*_: object) -> NoReturn:
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr(Path, "read_bytes", refuse)
+    monkeypatch.setattr(Path, "open", refuse)
     with pytest.raises(InputError, match=r"part\.json: the file cannot be read \(permission denied\)"):
         load(path)
 

@@ -403,8 +403,8 @@ def test_the_bytes_do_not_depend_on_the_threads(
 
 
 def test_missing_files_and_folders_are_refused(tmp_path: Path) -> None:
-    for path in (tmp_path, tmp_path / "none.json"):
-        with pytest.raises(InputError, match="cannot be read"):
+    for path, words in ((tmp_path, "is not a file"), (tmp_path / "none.json", "cannot be read")):
+        with pytest.raises(InputError, match=words):
             read_result(path)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import sqrt
 from pathlib import Path
 from typing import Any
 
@@ -222,13 +223,15 @@ def example_named(name: str) -> Any:
 
 
 def test_band_jumps_where_an_opening_reaches_over_the_pegs() -> None:
-    """Over a hole across the wall the band ends below it where the hole reaches over the pegs, and nowhere else."""
+    """Over a hole of radius 5 across the wall the band ends below it, and is half as long as the longest run."""
     strips = standing(example_named("cross drilled")).outline(12.0).loops[0]
     wall = sorted((strip.start[1], strip.band) for strip in strips if strip.start[0] == strip.end[0] == 60.0)
     assert wall == [
         (0.0, pytest.approx((0.0, 12.0), abs=1e-9)),
-        (pytest.approx(16.0), pytest.approx((0.0, 4.0), abs=1e-9)),
-        (pytest.approx(24.0), pytest.approx((0.0, 12.0), abs=1e-9)),
+        (pytest.approx(15.0), pytest.approx((0.0, 9.0 - 5.0 * sqrt(0.75)), abs=1e-9)),
+        (pytest.approx(17.5), pytest.approx((0.0, 4.0), abs=1e-9)),
+        (pytest.approx(22.5), pytest.approx((0.0, 9.0 - 5.0 * sqrt(0.75)), abs=1e-9)),
+        (pytest.approx(25.0), pytest.approx((0.0, 12.0), abs=1e-9)),
     ]
 
 
