@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 
 from workhold.errors import InputError
 from workhold.files.budget import LIMITS, Budget
-from workhold.files.tables import SAVED, Row, table_of
+from workhold.files.tables import SAVED, CsvRow, table_of
 from workhold.files.text import json_value, read_text
 from workhold.geometry.symmetry import centroid_of_joints, rotated, rotations_onto_itself
 from workhold.limits import real, refuse_long
@@ -188,7 +188,7 @@ def rows_of(text: str) -> tuple[Entered, ...]:
     return tuple(numbered(row.row, as_object(row, pegs)) for row in table.rows())
 
 
-def as_object(row: Row, pegs: Sequence[str]) -> dict[str, Any]:
+def as_object(row: CsvRow, pegs: Sequence[str]) -> dict[str, Any]:
     """A row of CSV as an object of JSON; pegs without any cell are none, for not all toolkits have as many."""
     given = [peg for peg in pegs if not row.cells.keys().isdisjoint((peg, f"{peg}_x", f"{peg}_y"))]
     return {

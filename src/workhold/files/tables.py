@@ -24,7 +24,7 @@ from workhold.errors import InputError
 from workhold.files.budget import Budget
 from workhold.limits import real
 
-__all__ = ["MOST_COLUMNS", "MOST_LETTERS", "NOT_GIVEN", "SAVED", "Row", "Table", "table_of"]
+__all__ = ["MOST_COLUMNS", "MOST_LETTERS", "NOT_GIVEN", "SAVED", "CsvRow", "CsvTable", "table_of"]
 
 # Letters of a cell, and columns: more than anything that is read from tables needs.
 MOST_LETTERS, MOST_COLUMNS = 10_000, 1_000
@@ -44,7 +44,7 @@ BLANK = re.compile(r"[ \t]*\n")
 
 
 @frozen
-class Row:
+class CsvRow:
     """A row of a table.
 
     Parameters
@@ -89,7 +89,7 @@ class Row:
 
 
 @define(eq=False)
-class Table:
+class CsvTable:
     """A table, whose rows are read as they are asked for.
 
     Parameters
@@ -120,7 +120,7 @@ class Table:
         name = self.names[column] if column < len(self.names) else ""
         return f"{words}, column {column + 1}" + (f" ({name[:40]})" if name else "")
 
-    def rows(self) -> Iterator[Row]:
+    def rows(self) -> Iterator[CsvRow]:
         """Yields the rows that have a cell, once.
 
         Raises
@@ -141,7 +141,7 @@ class Table:
                 if not self.names[k]:
                     raise InputError(f"{self.place(k, line)} has a cell and no name: name the column.")
             self.budget.spend()
-            yield Row(self.number, line, {self.names[k]: cell for k, cell in given.items()}, self.mark)
+            yield CsvRow(self.number, line, {self.names[k]: cell for k, cell in given.items()}, self.mark)
 
     def next_row(self) -> tuple[int, list[str]] | None:
         """The line and the cells of the next row that has one; None at the end."""
@@ -201,7 +201,7 @@ def called(mark: str) -> str:
     return {",": "commas", ";": "semicolons"}.get(mark, "tabs")
 
 
-def table_of(text: str, budget: Budget, remarks: str = "") -> Table:
+def table_of(text: str, budget: Budget, remarks: str = "") -> CsvTable:
     """The table of a text: the names of its columns in small letters, and its rows.
 
     Parameters
@@ -211,7 +211,7 @@ def table_of(text: str, budget: Budget, remarks: str = "") -> Table:
     Raises
     ------
     InputError
-        For a text without names, and names given twice; see :meth:`Table.rows`.
+        For a text without names, and names given twice; see :meth:`CsvTable.rows`.
 
     Examples
     --------
@@ -223,7 +223,7 @@ def table_of(text: str, budget: Budget, remarks: str = "") -> Table:
     text = LINE_END.sub("\n", text)
     remark = re.compile(rf"[ \t]*{re.escape(remarks)}[^\n]*\n?") if remarks else None
     first = SEPARATOR.match(text)
-    table = Table(text, ",", remark, budget, *((0, 1) if first is None else (first.end(), 2)))
+    table = CsvTable(text, ",", remark, budget, *((0, 1) if first is None else (first.end(), 2)))
     table.mark = first[1] if first and first[1] in MARKS else mark_of(table)
     _, cells = table.next_row() or (0, [])
     names = [name.lower() for name in cells]
@@ -238,7 +238,7 @@ def table_of(text: str, budget: Budget, remarks: str = "") -> Table:
     return table
 
 
-def mark_of(table: Table) -> str:
+def mark_of(table: CsvTable) -> str:
     """What separates the cells: that of the usual three which stands most often between the names."""
     at = table.at
     while (found := BLANK.match(table.text, at)) or (
