@@ -312,7 +312,7 @@ def height_table(solid: StandingSolid, room: float, least: float) -> list[Height
     if len(heights) > most:
         heights = [heights[round(k)] for k in np.linspace(0, len(heights) - 1, most)]
     rows: list[HeightRow] = []
-    whole = Silhouette.of(solid, heights[-1], room, least) if heights else None
+    whole = WholeOutline.of(solid, heights[-1], room, least) if heights else None
     # What is less than the shortest band above the plane touches nothing.
     for low, high in pairwise([least, *heights]):
         is_whole = bool(whole and rows and rows[-1].high == low and whole.has_area(rows[-1].area))
@@ -341,7 +341,7 @@ def height_table(solid: StandingSolid, room: float, least: float) -> list[Height
 
 
 @frozen
-class Silhouette:
+class WholeOutline:
     """The outline of the highest pegs: outlines grow with the height, so one of its area is the same.
 
     Parameters
@@ -354,7 +354,7 @@ class Silhouette:
     border: tuple[Segment, ...]
 
     @classmethod
-    def of(cls, solid: StandingSolid, height: float, room: float, least: float) -> Silhouette | None:
+    def of(cls, solid: StandingSolid, height: float, room: float, least: float) -> WholeOutline | None:
         """The outline of pegs of a height in mm; None where it is refused."""
         try:
             outline = solid.outline(height, room, least)
@@ -396,7 +396,7 @@ def rows_between(
     high: float,
     room: float,
     least: float,
-    whole: Silhouette | None,
+    whole: WholeOutline | None,
     is_whole: bool,
 ) -> Iterator[HeightRow]:
     """The ranges between two heights at which no face begins or ends, with what their outlines offer.
