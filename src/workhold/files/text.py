@@ -16,7 +16,7 @@ from typing import Any, NoReturn
 from workhold.errors import InputError
 from workhold.files.budget import FileLimits
 
-__all__ = ["json_value", "read_limited", "read_text", "toml_table"]
+__all__ = ["json_value", "read_at_most", "read_limited", "read_text", "toml_table"]
 
 # Floats end at 1.8e308.
 MOST_DIGITS = 308
@@ -72,11 +72,7 @@ def read_limited(path: Path, limits: FileLimits) -> bytes:
                 f"the file has {size / 1e6:.0f} MB, more than the {most / 1e6:g} MB of {limits.what}: "
                 f"{limits.remedy}."
             )
-        with path.open("rb") as stream:
-            # As many bytes as are asked for are set aside before any is read.
-            content = stream.read(size + 1)
-            while (most is None or len(content) <= most) and (more := stream.read(BLOCK)):
-                content += more
+        content = read_at_most(path, most)
         if most is not None and len(content) > most:
             raise InputError(f"the file grows while it is read: give {limits.what} that is finished.")
         return content
@@ -86,6 +82,23 @@ def read_limited(path: Path, limits: FileLimits) -> bytes:
         raise InputError(
             f"the file cannot be read ({(getattr(error, 'strerror', None) or str(error)).lower()})."
         ) from error
+
+
+def read_at_most(path: Path, most: int | None) -> bytes:
+    """The bytes of a regular file; of one with more than ``most``, at least one more than that.
+
+    Raises
+    ------
+    OSError
+        When it cannot be read.
+    """
+    size = path.stat().st_size
+    with path.open("rb") as stream:
+        # As many bytes as are asked for are set aside before any is read.
+        content = stream.read((size if most is None else min(size, most)) + 1)
+        while (most is None or len(content) <= most) and (more := stream.read(BLOCK)):
+            content += more
+    return content
 
 
 def json_value(text: str, hook: Callable[[dict[str, Any]], Any] | None = None, times: float = 1.0) -> Any:

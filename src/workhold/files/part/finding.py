@@ -16,6 +16,7 @@ from attrs import frozen
 
 from workhold.errors import InputError
 from workhold.files.budget import PART_BYTES
+from workhold.files.text import read_at_most
 
 __all__ = ["BuiltinPart", "builtin_parts", "builtin_path", "found", "kind_of", "read_bytes"]
 
@@ -108,8 +109,7 @@ def read_bytes(path: Path) -> bytes:
             raise InputError("this is a link that leads to no file: give the file itself.")
         if not path.is_file():
             raise InputError("this is not a regular file: give a .json, .dxf, .svg or .step file.")
-        with path.open("rb") as stream:
-            content = stream.read(PART_BYTES + 1)
+        content = read_at_most(path, PART_BYTES)
         if len(content) > PART_BYTES:
             raise InputError(
                 f"the file is larger than {PART_BYTES // 1_000_000} MB: save a drawing of the part's "
