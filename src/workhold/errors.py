@@ -49,8 +49,8 @@ def encodable(text: str) -> str:
 
     Examples
     --------
-    >>> print(encodable("Fl\udcfcgel"))
-    Fl\xfcgel
+    >>> print(encodable("Fl\\udcfcgel"))
+    Fl\\xfcgel
     """
     if text.isascii():
         return text
