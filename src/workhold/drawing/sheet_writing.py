@@ -331,7 +331,7 @@ def write_flats(column: TextColumn, sheet: Sheet) -> None:
 
 def lies_words(sheet: Sheet) -> str:
     """How the part lies beside its drawing."""
-    return f"turned {sheet.fixture.pose.theta_deg:.1f}° counter-clockwise from its drawing"
+    return f"turned {sheet.fixture.pose.written_deg:.1f}° counter-clockwise from its drawing"
 
 
 def inside_words(sheet: Sheet) -> str:

@@ -35,6 +35,8 @@ from workhold.units import Unit
 
 __all__ = ["Arrangement", "Carrier", "Change", "Limit", "Symmetry", "Toolkit", "Travel", "Wording"]
 
+# The field whose change makes other pegs.
+PEG_RADIUS = "peg_radius"
 # The order in which a person would ask for limits to be lifted.
 LIFTED = ("bodies", "travel", "holes")
 
@@ -114,6 +116,8 @@ class Toolkit:
     setup_words : what setting it up is called on sheets, pictures and pages.
     page : what the page calls it.
     supports, top_clamp : the supports and the clamp on top that its owner has; None where nobody says.
+    tolerance : how far its pegs and the faces they touch may be off (``model.requirements.Tolerance``), as its
+        preset or file says; None where nobody says. A query takes it where it is given no other.
     """
 
     __slots__ = ()
@@ -124,6 +128,7 @@ class Toolkit:
 
         supports: SupportPads | None
         top_clamp: TopClamp | None
+        tolerance: Any
 
     kind: ClassVar[str]
     table: ClassVar[FieldTable]
@@ -264,6 +269,8 @@ class Toolkit:
         ((20.0, 20.0), 5.0)
         """
         given = {**delegate("preset_fields")(cls, name), **changes}
+        if PEG_RADIUS not in changes:
+            given.setdefault("tolerance", delegate("preset_tolerance")(name))
         try:
             return cls(**given)
         except TypeError as error:
@@ -290,7 +297,9 @@ class Toolkit:
         InputError
             When there is no such toolkit.
         """
-        return evolve(self, **fields)  # type: ignore[misc]
+        # Other pegs are as good as nobody says.
+        others = {"tolerance": None} if PEG_RADIUS in fields else {}
+        return evolve(self, **others, **fields)  # type: ignore[misc]
 
     def without(self, limits: Iterable[Limit]) -> Self:
         """The toolkit without some of its limits."""
