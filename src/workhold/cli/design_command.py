@@ -135,8 +135,10 @@ def design(
     asked = words.asked(shown, machined.program is not None, machined.has_forces) | seated_by.asked(shown)
     asked["tolerance"] = with_fit_of(asked["tolerance"], tolerance)
     type_ = choice("--type", type_, (*toolkit.types, EVERY_TYPE))
+    from workhold.geometry.segment import Box
     from workhold.kernels.base.compiling import is_first_run
     from workhold.model.query import Query
+    from workhold.model.requirements import far_loads
 
     first_run, second = is_first_run(), None
     if first_run and engine == "curves":
@@ -152,6 +154,8 @@ def design(
     query = Query(
         workpiece, toolkit, None if type_ == EVERY_TYPE else type_, best=kept, listing=listing, **asked
     )
+    for remark in far_loads(query.loads, Box(*workpiece.bounds)):
+        print_remark(remark)
     start = perf_counter()
     # What was found is decided for a moment more (``proof.deciding``); the rest of it is left.
     with ask_to_stop("what was found is kept as far as it is soon proven") as cancel:

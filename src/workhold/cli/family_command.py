@@ -33,9 +33,6 @@ if TYPE_CHECKING:
 
 __all__ = ["family"]
 
-# Letters of a part's name that are shown.
-LONGEST_NAME = 26
-
 
 def report(found: Family, plan: Plan | None, spent: str, unit: Unit) -> None:
     """Prints the curve, what was left out, and the plan."""
@@ -91,7 +88,7 @@ def curve_table(found: Family, unit: Unit) -> Table:
             loss_text(point.loss),
             str(plan.moved),
             figure_text(found.figure, worst.figure, unit),
-            short_name(worst.member.name),
+            worst.member.name,
         )
     return table
 
@@ -119,9 +116,9 @@ def setup_table(setup: SetUp, found: Family, unit: Unit) -> Table:
         pose = fixture.pose
         lengths = [unit.number(setting.length) for setting in settings_of(fixture, found.toolkit)]
         table.add_row(
-            short_name(one.member.name),
+            one.member.name,
             f"{one.number:,}" + ("'" if one.turned else ""),
-            f"{pose.theta_deg:.3f}",
+            f"{pose.written_deg:.3f}",
             unit.number(pose.x),
             unit.number(pose.y),
             *lengths,
@@ -129,16 +126,6 @@ def setup_table(setup: SetUp, found: Family, unit: Unit) -> Table:
             figure_text(found.figure, one.figure, unit),
         )
     return table
-
-
-def short_name(name: str) -> str:
-    """Shortens a long name of a part to its beginning and end.
-
-    >>> short_name("ell.dxf"), short_name("bracket, left, machined side up.dxf")
-    ('ell.dxf', 'bracket, left… side up.dxf')
-    """
-    half = LONGEST_NAME // 2
-    return name if len(name) <= LONGEST_NAME else f"{name[:half]}…{name[1 - half :]}"
 
 
 FAMILY, OUTPUT = "The family", "Results"
