@@ -22,7 +22,15 @@ from workhold.cli.progress import search_progress
 from workhold.cli.search_options import QueryWords
 from workhold.cli.table import Table, plural, print_tables
 from workhold.cli.toolkit_options import ToolkitWords
-from workhold.cli.values import choice, length_unit, number, optional_count, picture_ending, positive_number
+from workhold.cli.values import (
+    choice,
+    length_unit,
+    number,
+    optional_count,
+    picture_ending,
+    positive_number,
+    printed_unit,
+)
 from workhold.errors import InputError
 
 if TYPE_CHECKING:
@@ -214,6 +222,7 @@ def family(
     seconds = positive_number("--time-limit", time_limit)
     workers = optional_count("--threads", threads)
     toolkit, tolerance = held_in.asked(shown)
+    printed = printed_unit(reading.unit, toolkit)
     words.asked(shown)
     type_ = choice("--type", type_, (*toolkit.types, EVERY_TYPE))
     from workhold.family.solver import load_solver
@@ -268,7 +277,7 @@ def family(
     plan = found.plan(most) if found.members and (most is not None or loss is not None) else None
     compiled = ", compiling on this first run included" if first_run else ""
     spent = f"{perf_counter() - start:.1f} s{compiled}"
-    written = write_all(found, plan, out, draw, sheets, shown)
+    written = write_all(found, plan, out, draw, sheets, printed)
     if json_:
         from json import loads
 
@@ -276,7 +285,7 @@ def family(
 
         print_json(**loads(family_text(found)), written=written)
         return
-    report(found, plan, spent, shown)
+    report(found, plan, spent, printed)
     if written:
         print_tables(f"Written to {', '.join(written)}.")
 

@@ -37,6 +37,8 @@ __all__ = ["Arrangement", "Carrier", "Change", "Limit", "Symmetry", "Toolkit", "
 
 # The field whose change makes other pegs.
 PEG_RADIUS = "peg_radius"
+# An eighth of an inch in mm.
+EIGHTH = 3.175
 # The order in which a person would ask for limits to be lifted.
 LIFTED = ("bodies", "travel", "holes")
 
@@ -94,6 +96,11 @@ class Limit:
     rule: str
     bounds: Literal["bodies", "travel", "holes"]
     lifted: Change
+
+
+def is_whole(number: float) -> bool:
+    """Whether a number is a whole one but for rounding."""
+    return abs(number - round(number)) < 1e-9
 
 
 class Toolkit:
@@ -161,6 +168,12 @@ class Toolkit:
     def plates(self) -> tuple[Carrier, ...]:
         """The carriers that have a lattice of holes."""
         return tuple(carrier for carrier in self.carriers if carrier.has_lattice)
+
+    @property
+    def is_in_inches(self) -> bool:
+        """Whether its holes are eighths of an inch apart, and not whole or half millimetres."""
+        pitches = [pitch for carrier in self.plates for pitch in carrier.pitch]
+        return all(is_whole(pitch / EIGHTH) and not is_whole(pitch / 0.5) for pitch in pitches)
 
     @property
     def contacts(self) -> frozenset[ContactKind]:
