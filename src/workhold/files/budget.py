@@ -14,7 +14,7 @@ depth : how many elements lie inside each other.
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from attrs import frozen
@@ -115,7 +115,13 @@ LIMITS = {
     "tools": FileLimits(
         "a table of tools", 1_000_000, 10_000, "tools", remedy="give the tools of the program"
     ),
-    "program": FileLimits("a program", 64_000_000, 2_000_000, "moves", remedy="split it"),
+    "program": FileLimits(
+        "a program",
+        64_000_000,
+        2_000_000,
+        "moves, or blocks with those of its subprograms written out,",
+        remedy="split it",
+    ),
     "jobs": FileLimits("a file that describes jobs", 5_000_000, 20_000, "jobs", remedy="split it"),
     "supports": FileLimits("a file that describes supports", 120_000_000),
     "result": FileLimits(
@@ -218,12 +224,30 @@ class Budget:
         InputError
             Where it is deeper than the limit.
         """
-        self.depth += 1
         try:
-            if self.limits.deepest is not None and self.depth > self.limits.deepest:
-                raise OverBudgetError(
-                    f"{label} is nested more than {self.limits.deepest} levels deep: {self.limits.remedy}."
-                )
+            self.enter(lambda: label)
             yield
         finally:
-            self.depth -= 1
+            self.leave()
+
+    def enter(self, label: Callable[[], str]) -> None:
+        """Counts what is read from now on as one level deeper, until :meth:`leave`.
+
+        Parameters
+        ----------
+        label : as in :meth:`nested`, made where it is needed.
+
+        Raises
+        ------
+        InputError
+            Where it is deeper than the limit.
+        """
+        self.depth += 1
+        if self.limits.deepest is not None and self.depth > self.limits.deepest:
+            raise OverBudgetError(
+                f"{label()} is nested more than {self.limits.deepest} levels deep: {self.limits.remedy}."
+            )
+
+    def leave(self) -> None:
+        """Counts what is read from now on as one level less deep."""
+        self.depth -= 1
