@@ -33,6 +33,15 @@ STEP_SECONDS, STEP_SECONDS_PER_MILLION = 12.0, 2.0
 class OverBudgetError(InputError):
     """A file asks for more than its reader may take; no reader goes on after it."""
 
+    @staticmethod
+    def is_behind(error: BaseException | None) -> bool:
+        """Whether such an error is what another was raised from, with its place."""
+        while error is not None:
+            if isinstance(error, OverBudgetError):
+                return True
+            error = error.__cause__
+        return False
+
 
 @frozen
 class FileLimits:
