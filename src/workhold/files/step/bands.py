@@ -283,7 +283,7 @@ class Branch:
 
             def value(parameter: float) -> float:
                 point = at(parameter)
-                return (point.X() - px) * tx + (point.Y() - py) * ty - place
+                return float((point.X() - px) * tx + (point.Y() - py) * ty - place)
 
         else:
 

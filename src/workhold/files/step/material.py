@@ -180,7 +180,8 @@ def boxed(points: Sequence[Point], boxes: Array, more: float = 0.0) -> NDArray[n
     """
     x, y = np.array(points)[:, :, None].transpose(1, 0, 2)
     near: NDArray[np.bool_] = (boxes[:, 0] - more <= x) & (x <= boxes[:, 2] + more)
-    return near & (boxes[:, 1] - more <= y) & (y <= boxes[:, 3] + more)
+    near &= (boxes[:, 1] - more <= y) & (y <= boxes[:, 3] + more)
+    return near
 
 
 def plane_of(face: SolidFace) -> Sheet | None:
