@@ -10,7 +10,7 @@ from typing import Any, cast
 
 from attrs import evolve, field, frozen
 
-from workhold.errors import InputError
+from workhold.errors import InputError, refuse_kind
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Box
 from workhold.limits import counting_number, real, refuse_long, refuse_strong
@@ -66,8 +66,7 @@ KINDS: dict[str, tuple[type, str]] = {
 def refuse_other_kinds(query: Query) -> None:
     """Refuses parts of a query whose type is wrong."""
     for name, (kind, remedy) in KINDS.items():
-        if not isinstance(value := getattr(query, name), kind):
-            raise InputError(f"the {name} cannot be {value!r}: {remedy}.")
+        refuse_kind(getattr(query, name), kind, f"the {name}", remedy)
     loads: tuple[Any, ...] = query.loads
     for load in loads:
         if not isinstance(load, Load):
