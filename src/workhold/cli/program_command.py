@@ -169,7 +169,7 @@ def force_table(program: Program, unit: Unit) -> list[Table | str]:
             unit.force_above(up),
         )
     where = "in any direction" if forces.direction == "any" else "within 60 degrees of against the feed"
-    return ["", table, f"Forces on the part act {where}, at the tool's periphery.", *forces.reasons.values()]
+    return ["", table, f"Forces on the part act {where}, at the tool's periphery.", *forces.said(program.moves, program.tools).values()]
 
 
 def report(read: ReadProgram, unit: Unit, from_z_zero: bool) -> None:

@@ -216,7 +216,8 @@ class PathWriter:
         if len(self.rows) >= MOST_MOVES:
             raise InputError(f"the program has more than {MOST_MOVES:,} moves: split it.")
         tool = -1 if modes.tool is None else modes.tool
-        self.rows.append((self.line, tool, cutting, start, end, bulge, feed, modes.spindle))
+        in_cycle = modes.cycle is not None
+        self.rows.append((self.line, tool, cutting, start, end, bulge, feed, modes.spindle, in_cycle))
 
 
 def refuse_unknown(path: PathWriter, place: Reached, what: str = "the tool cuts at a place") -> NoReturn:
