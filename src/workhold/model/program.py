@@ -105,7 +105,8 @@ class Program:
     skipped : lines with a move that was left out, such as one to a place of the machine's own.
     notes : sentences on what was read in one way where another is thinkable.
     forces : of the tools on the part, on every move; None where nobody asks for them.
-    stock : what the part is cut from, on which alone forces act.
+    stock : what the part is cut from, on which alone forces act; None where a file does not say.
+    is_placed : whether forces are those on a part already.
 
     Raises
     ------
@@ -125,7 +126,8 @@ class Program:
     skipped: tuple[int, ...] = field(default=(), converter=lines_of)
     notes: tuple[str, ...] = field(default=(), converter=notes_of)
     forces: CuttingForces | None = None
-    stock: Stock = Stock()
+    stock: Stock | None = Stock()
+    is_placed: bool = field(default=False, eq=False)
 
     def __attrs_post_init__(self) -> None:
         if self.unit not in UNITS or self.rapid not in WAYS:
@@ -302,11 +304,11 @@ class Program:
         ----------
         loops : the part's outer loops, (N, 3) vertices x, y in mm and bulge.
         """
-        if self.forces is None:
+        if self.forces is None or self.stock is None or self.is_placed:
             return self
         border, acts = self.stock.border(loops), self.forces.acts
         forces = self.forces.along(stretches_in(self.moves, self.tools, self.stock, border, acts))
-        return self if forces is self.forces else evolve(self, forces=forces)
+        return evolve(self, forces=forces, is_placed=True)
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data as in a result file."""
@@ -341,7 +343,8 @@ class Program:
         """What is said of forces on the part, as plain data; nothing without any."""
         if self.forces is None:
             return {}
-        return {"stock": self.stock.to_dict(), "forces": self.forces.to_dict(self.moves, self.tools)}
+        stock = {} if self.stock is None else {"stock": self.stock.to_dict()}
+        return {**stock, "forces": self.forces.to_dict(self.moves, self.tools)}
 
     @classmethod
     def of_entries(cls, entries: Mapping[str, Any]) -> Program:
@@ -356,7 +359,7 @@ class Program:
         """
         tools = {int(key): Tool.of_entries(int(key), value) for key, value in entries["tools"].items()}
         x, y = (real(value) for value in entries["zero"])
-        rows, said = entries["pieces"], entries.get("forces")
+        rows, said, stock = entries["pieces"], entries.get("forces"), entries.get("stock")
         moves = moves_of([one if isinstance(one, bytes) else packed_piece(one) for one in rows], tools)
         # A move has a piece for each cylinder of its tool, all with the same force; packed ones have none.
         each = np.array([len(tools[number].cylinders) for number in moves.tool.tolist()], np.int64)
@@ -374,5 +377,6 @@ class Program:
             skipped=[int(line) for line in entries["skipped"]],
             notes=[str(note) for note in entries.get("notes", ())],
             forces=None if said is None else CuttingForces.of_entries(first, said),
-            stock=Stock.of_entries(entries.get("stock")),
+            stock=None if stock is None else Stock.of_entries(stock),
+            is_placed=True,
         )

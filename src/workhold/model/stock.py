@@ -111,9 +111,9 @@ class Stock:
         return cls(**given, height=height)
 
     @classmethod
-    def of_entries(cls, entries: Mapping[str, Any] | None) -> Stock:
-        """The stock of a file's entries; of a file that has none it has no height."""
-        return cls() if entries is None else cls(**{name: entries[name] for name in FIELDS})
+    def of_entries(cls, entries: Mapping[str, Any]) -> Stock:
+        """The stock of a file's entries."""
+        return cls(**{name: entries[name] for name in FIELDS})
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data as in a result file."""
