@@ -106,7 +106,18 @@ def test_the_ends_are_exact_by_hand() -> None:
     across = moves_of(((-40.0, 90.0), (100.0, -50.0), 0.0), ((10.0, 130.0), (10.0, 131.0), 0.0))
     assert len(found(across, [ELL], side=0)) == 1
     hooks = moves_of(((-20.0, 60.0), (180.0, 60.0), 0.0))
-    two = np.array([(0.0, 0, 0), (100, 0, 0), (100, 80, 0), (80, 80, 0), (80, 20, 0), (20, 20, 0), (20, 80, 0), (0, 80, 0)])
+    two = np.array(
+        [
+            (0.0, 0, 0),
+            (100, 0, 0),
+            (100, 80, 0),
+            (80, 80, 0),
+            (80, 20, 0),
+            (20, 20, 0),
+            (20, 80, 0),
+            (0, 80, 0),
+        ]
+    )
     want = [[14 / 200, 46 / 200], [94 / 200, 126 / 200]]
     assert np.array(found(hooks, [two], side=0)) == pytest.approx(np.array(want), abs=1e-7)
 
@@ -190,7 +201,9 @@ def test_only_the_stretch_within_the_stock_presses(tmp_path: Path) -> None:
     assert entries[0]["cutting"]["stretches"] == [[shares.first[0], shares.last[0]]]
     assert program.to_dict()["stock"] == {"side": 5.0, "top": 5.0, "shape": "outline", "height": 15.0}
     back = Program.of_entries(program.to_dict())
-    assert back.forces == program.forces and back.stock == program.stock and back.to_dict() == program.to_dict()
+    assert (
+        back.forces == program.forces and back.stock == program.stock and back.to_dict() == program.to_dict()
+    )
     assert back.pressing_on([PLATE]) is back
     # A finished top, and none of the force at the finished height.
     bare = asked(path, stock={"top": 0, "side": 0})
@@ -244,12 +257,16 @@ def test_drills_drill_and_mills_plunge(tmp_path: Path) -> None:
     program = asked(tmp_path / "p.nc").program
     assert program is not None and program.forces is not None
     forces, moves = program.forces, program.moves
-    said = {int(moves.line[k]): (int(forces.kind[k]), forces.axial[k, 1]) for k in np.flatnonzero(forces.acts)}
+    said = {
+        int(moves.line[k]): (int(forces.kind[k]), forces.axial[k, 1]) for k in np.flatnonzero(forces.acts)
+    }
     # The face mill plunges beside the part at first, which presses on nothing, and then into it.
     assert said == {11: (3, 400), 14: (2, 560), 17: (3, 400), 19: (2, 560)} and 8 not in said
     assert forces.force.max() == 0.0
     assert forces.torque[forces.acts].tolist() == [400 * 20.0, 1600, 1600, 1600]
-    start = dict(zip(moves.line[forces.stretches.move].tolist(), forces.stretches.first.tolist(), strict=True))
+    start = dict(
+        zip(moves.line[forces.stretches.move].tolist(), forces.stretches.first.tolist(), strict=True)
+    )
     # From 40 down to 31: the stock ends at 20. The drill begins at 35 and comes down to 13.
     assert start[14] == pytest.approx(15 / 22, abs=1e-6)
 
@@ -263,5 +280,7 @@ def test_a_type_says_what_a_tool_is(tmp_path: Path) -> None:
     assert kinds[14] == 3 and kinds[17] == 2
     assert Tool(1, [Cylinder(0, 9, 1)], 2, "SPOT DRILL 90").is_drill
     assert not Tool(1, [Cylinder(0, 9, 1)], 2, "drill mill", kind="end mill").is_drill
-    with pytest.raises(InputError, match="T2 lacks its teeth and its depth of cut.*; of a drill say type drill"):
+    with pytest.raises(
+        InputError, match=r"T1 lacks its teeth and its depth of cut, .* of a drill say type drill"
+    ):
         asked(tmp_path / "p.nc", tools=tools, cutting={"material": "steel"})

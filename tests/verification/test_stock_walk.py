@@ -66,7 +66,11 @@ def milled(folder: Path) -> Query:
     how: dict[str, Any] = {"thickness": 10, "z_zero": 0.0, "cutting": {"cutting_force": 100}}
     program = Program.read(folder / "p.nc", **how)
     return Query(
-        Workpiece.from_loops("L", [ELL]), kinds_of_toolkit(10.0)["vise"], program=program, peg_height=3, best=1
+        Workpiece.from_loops("L", [ELL]),
+        kinds_of_toolkit(10.0)["vise"],
+        program=program,
+        peg_height=3,
+        best=1,
     )
 
 

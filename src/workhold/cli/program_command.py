@@ -173,7 +173,13 @@ def force_table(program: Program, unit: Unit) -> list[Table | str]:
         )
     where = "in any direction" if forces.direction == "any" else "within 60 degrees of against the feed"
     said = forces.said(program.moves, program.tools).values()
-    return ["", table, f"Forces on the part act {where}, at the tool's periphery.", *said, stock_words(program, unit)]
+    return [
+        "",
+        table,
+        f"Forces on the part act {where}, at the tool's periphery.",
+        *said,
+        stock_words(program, unit),
+    ]
 
 
 def stock_words(program: Program, unit: Unit) -> str:

@@ -109,7 +109,7 @@ class CuttingForces:
             raise InputError("a force of the program is no number, or negative: give 0 or more.")
         refuse_strong("a force of the program", float(ends.max(initial=0.0)))
         own, first, last = self.stretches.move, self.stretches.first, self.stretches.last
-        is_one = (0.0 <= first) & (first < last) & (last <= 1.0)
+        is_one = (first >= 0.0) & (first < last) & (last <= 1.0)
         rise = (own[1:] > own[:-1]) | ((own[1:] == own[:-1]) & (first[1:] >= last[:-1]))
         if not (is_one.all() and rise.all() and ((own >= 0) & (own < count)).all()):
             raise InputError("a stretch of a cut is none: give shares from 0 to 1, the lower one first.")

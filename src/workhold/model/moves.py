@@ -163,9 +163,16 @@ class Moves:
             height = start[:, 2] + share * (end - start)[:, 2]
             height = np.where(share == 0.0, start[:, 2], np.where(share == 1.0, end[:, 2], height))
             places.append(np.column_stack([along(start[:, :2], end[:, :2], bulge, share), height]))
-        flat = (getattr(self, name)[move] for name in ("feed", "spindle", "cycle"))
         return Moves(
-            self.line[move], self.tool[move], self.cutting[move], *places, bulge_of(bulge, last - first), *flat
+            self.line[move],
+            self.tool[move],
+            self.cutting[move],
+            places[0],
+            places[1],
+            bulge_of(bulge, last - first),
+            self.feed[move],
+            self.spindle[move],
+            self.cycle[move],
         )
 
     @property

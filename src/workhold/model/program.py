@@ -126,7 +126,7 @@ class Program:
     skipped: tuple[int, ...] = field(default=(), converter=lines_of)
     notes: tuple[str, ...] = field(default=(), converter=notes_of)
     forces: CuttingForces | None = None
-    stock: Stock | None = Stock()
+    stock: Stock | None = field(factory=Stock)
     is_placed: bool = field(default=False, eq=False)
 
     def __attrs_post_init__(self) -> None:

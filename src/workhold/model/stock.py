@@ -293,8 +293,9 @@ def stretches_in(
     rows, first, last = rows[kept], first[kept], last[kept]
     if border is None or not len(rows):
         return Stretches(rows, first, last)
-    which, low, high = near(Curves.of(moves.start[rows, :2], moves.end[rows, :2], moves.bulge[rows]),
-                            reach[rows], border)
+    which, low, high = near(
+        Curves.of(moves.start[rows, :2], moves.end[rows, :2], moves.bulge[rows]), reach[rows], border
+    )
     low, high = np.maximum(low, first[which]), np.minimum(high, last[which])
     long = high > low
     return Stretches(rows[which[long]], low[long], high[long])
@@ -399,7 +400,9 @@ def on_circle(paths: Curves, center: Floats, radius: Floats) -> Floats:
 def on_line(paths: Curves, normal: Floats, level: Floats) -> Floats:
     """Shares (P, 2) at which paths meet lines normal · x = level; NaN where they do not."""
     with np.errstate(invalid="ignore", divide="ignore"):
-        place = (level - (normal * paths.start).sum(axis=1)) / (normal * (paths.end - paths.start)).sum(axis=1)
+        place = (level - (normal * paths.start).sum(axis=1)) / (normal * (paths.end - paths.start)).sum(
+            axis=1
+        )
         spread = np.arccos((level - (normal * paths.center).sum(axis=1)) / paths.radius)
     straight = np.stack([place, np.full(len(place), np.nan)], axis=1)
     middle = np.arctan2(normal[:, 1], normal[:, 0])

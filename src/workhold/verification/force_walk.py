@@ -137,7 +137,11 @@ class ForceWalk:
 
     def look(self, rows: IntArray, a: float, b: float, c: float, found: float) -> float:
         """The largest value on some stretches, to a part of it; ``found`` if that is more."""
-        moves, low, high = self.move[rows], self.forces.stretches.first[rows], self.forces.stretches.last[rows]
+        moves, low, high = (
+            self.move[rows],
+            self.forces.stretches.first[rows],
+            self.forces.stretches.last[rows],
+        )
         ends = [self.at(moves, share, a, b, c) for share in (low, high)]
         found = max(found, float(np.maximum(*ends).max(initial=0.0)))
         round_ = self.walk.is_round[moves] & (self.forces.force[moves] > 0.0)

@@ -58,7 +58,7 @@ class Edge:
         way = np.angle(np.exp(1j * self.angle(points)))
         on_rim = np.abs(np.hypot(*(points - self.center).T) - self.radius)
         ends = np.minimum(np.hypot(*(points - self.start).T), np.hypot(*(points - self.end).T))
-        return np.where(np.abs(way) <= 2.0 * np.arctan(abs(self.bulge)), on_rim, ends)
+        return np.asarray(np.where(np.abs(way) <= 2.0 * np.arctan(abs(self.bulge)), on_rim, ends))
 
     def angle(self, points: Array) -> Array:
         """How far points (N, 2) are turned about the centre from the middle of the arc, in radians."""
@@ -108,9 +108,11 @@ class Ground:
     def encloses(self, points: Array) -> Mask:
         """(N,) whether points lie within a loop."""
         each = [np.abs(sum(edge.turns(points) for edge in loop)) > pi for loop in self.loops]
-        return np.logical_or.reduce(each)
+        return np.asarray(np.logical_or.reduce(each))
 
-    def bounds(self, one: Array, other: Array, middle: Array, half: Array, sagitta: Array) -> tuple[Array, Array]:
+    def bounds(
+        self, one: Array, other: Array, middle: Array, half: Array, sagitta: Array
+    ) -> tuple[Array, Array]:
         """The least distance of pieces of a path from the border at least, and how far one is at most (N,).
 
         Parameters
@@ -151,7 +153,9 @@ def stock_faults(query: Query) -> Iterator[str]:
         return
     rows = list(ranges_of(program, acts))
     for begin in range(0, len(rows), AT_ONCE):
-        move, first, last, within = (np.array(one) for one in zip(*rows[begin : begin + AT_ONCE], strict=True))
+        move, first, last, within = (
+            np.array(one) for one in zip(*rows[begin : begin + AT_ONCE], strict=True)
+        )
         at = wrong_piece(walk_of(program), ground, move, first, last, within)
         if at >= 0:
             yield f"the tool in line {line[at]} of the program meets the stock elsewhere than is said"
@@ -205,7 +209,9 @@ def wrong_piece(
         sagitta = np.where(walk.is_round[move], walk.radius[move] * (1.0 - np.cos(turned / 2)), 0.0)
         low, high = ground.bounds(one, other, middle, half, sagitta)
         inside = ground.encloses(middle)
-        sure = np.where(within, (high <= reach + OFF) | (inside & (low > 0.0)), ~inside & (low >= reach - OFF))
+        sure = np.where(
+            within, (high <= reach + OFF) | (inside & (low > 0.0)), ~inside & (low >= reach - OFF)
+        )
         left = np.flatnonzero(~sure)
         if not len(left):
             return -1
@@ -217,10 +223,12 @@ def wrong_piece(
         if wrong.any():
             return int(move[left[np.argmax(wrong)]])
         middles = (first[left] + last[left]) / 2
-        move, within, reach = (np.tile(one[left], 2) for one in (move, within, reach))
         first, last = np.concatenate([first[left], middles]), np.concatenate([middles, last[left]])
-        tiny = last - first < 1e-13
-        move, within, reach, first, last = (one[~tiny] for one in (move, within, reach, first, last))
+        left = np.concatenate([left, left])
+        # What cannot be halved any more only touches.
+        long_enough = last - first >= 1e-13
+        first, last, left = first[long_enough], last[long_enough], left[long_enough]
+        move, within, reach = move[left], within[left], reach[left]
         if not len(move):
             return -1
     return int(move[0])

@@ -30,8 +30,8 @@ from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.seat import SeatBalance
 from workhold.verification.seat_clamps import SeatOnPlate
 from workhold.verification.seating import SeatingJudge
-from workhold.verification.tolerances import AGREEMENT, Finding, number, rule
 from workhold.verification.stock_walk import stock_faults
+from workhold.verification.tolerances import AGREEMENT, Finding, number, rule
 from workhold.verification.tool_walk import program_fault
 from workhold.verification.touching import touching_findings
 

@@ -106,6 +106,7 @@ def read_program_with_calls(
             "one of them."
         )
     begin = None if start is None else place_of(start)
+    cut_from = Stock.of(stock, None if thickness is None else real(thickness))
     try:
         content = read_limited(path, LIMITS["program"])
         listing = with_calls(program_text(decoded(content)))
@@ -132,13 +133,13 @@ def read_program_with_calls(
         tools=found,
         skipped=sorted({*control.skipped, *control.path.unplaced, *control.path.nose}),
         notes=[*notes_on(control, listing), *notes],
-        stock=Stock.of(stock, None if thickness is None else real(thickness)),
+        stock=cut_from,
     )
     # Where it runs is checked by now.
     moves = moves_of(control, found, np.array([*program.zero, height]))
     try:
         # Beside the part no tool is known to be before the part is.
-        within = stretches_in(moves, found, program.stock, None, moves.cutting)
+        within = stretches_in(moves, found, cut_from, None, moves.cutting)
         forces = forces_on(moves, found, CuttingData.of(cutting), within)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
