@@ -206,7 +206,10 @@ def test_forces_rank_where_they_are_asked_for(
         (["--power", "2", "--material", "steel"], "power and material are two ways to the same force"),
         (["--cutting-force", "-3"], "--cutting-force"),
         (["--cutting-force", "3", "--stock", "ball"], "--stock 'ball' is not known: give outline or block"),
-        (["--cutting-force", "3", "--stock", "block,5"], "--stock '5' is not the stock: give outline or block"),
+        (
+            ["--cutting-force", "3", "--stock", "block,5"],
+            "--stock '5' is not the stock: give outline or block",
+        ),
         (["--teeth", "2.5"], "--teeth"),
         (["--cutting-force", "90", "--cutting-direction", "up"], "--cutting-direction 'up' is not known"),
     ],

@@ -59,7 +59,9 @@ def as_loads(program: Program, step: float = 0.05) -> tuple[Load, ...]:
         ends = (np.outer(ones, one[k, :2]) for one in (moves.start, moves.end))
         points = along(*ends, moves.bulge[k] * ones, share)
         for sign in (1, -1):
-            out.append(Load(points.tolist(), float(forces.force[own]), moment=sign * float(forces.torque[own])))
+            out.append(
+                Load(points.tolist(), float(forces.force[own]), moment=sign * float(forces.torque[own]))
+            )
     return tuple(out)
 
 
