@@ -12,7 +12,6 @@ from attrs import evolve, field, frozen
 
 from workhold.errors import InputError, refuse_kind
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.segment import Box
 from workhold.limits import counting_number, real, refuse_long, refuse_strong
 from workhold.model.own_outlines import met_by
 from workhold.model.program import Program
@@ -149,7 +148,7 @@ class Query:
         if PROGRAM_FIGURE.key in self.ranking and self.program is None:
             raise InputError(f"there is no program to rank by the {PROGRAM_FIGURE.words}: give one.")
         if self.program is not None:
-            object.__setattr__(self, "program", self.program.pressing_on(Box(*self.workpiece.bounds)))
+            object.__setattr__(self, "program", self.program.pressing_on(self.workpiece.outer_loops))
             object.__setattr__(self, "peg_height", height_of_pegs(self.peg_height, self.workpiece))
         if self.listing is not None and (not pairs or self.listing not in LISTINGS):
             remedy = f"choose {' or '.join(LISTINGS)}" if pairs else "only fixtures with two clamps have one"
