@@ -36,7 +36,7 @@ from workhold.units import Unit
 __all__ = ["Arrangement", "Carrier", "Change", "Limit", "Symmetry", "Toolkit", "Travel", "Wording"]
 
 # The order in which a person would ask for limits to be lifted.
-LIFTED = ("bodies", "travel", "holes")
+LIFTED = ("bodies", "travel", "reach", "holes")
 
 
 @frozen
@@ -85,12 +85,12 @@ class Limit:
     Parameters
     ----------
     rule : what it asks, in a few words, such as "rows of holes".
-    bounds : whether it is about the pegs' bodies, the travel, or the holes there are.
+    bounds : whether it is about the pegs' bodies, the travel, how far a wall reaches, or the holes there are.
     lifted : the toolkit without it.
     """
 
     rule: str
-    bounds: Literal["bodies", "travel", "holes"]
+    bounds: Literal["bodies", "travel", "reach", "holes"]
     lifted: Change
 
 
