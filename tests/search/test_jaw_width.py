@@ -76,7 +76,7 @@ def touched(workpiece: Workpiece, fixture: Fixture) -> list[tuple[float, float]]
 
 
 def expected(workpiece: Workpiece, fixture: Fixture, vise: FlatJaw) -> Any:
-    """The column, ends and forces of an endless wall's fixture; None where none holds, "marginal" where it hangs by a hair."""
+    """The column, ends and forces of an endless wall's fixture; None where none does, "marginal" by a hair."""
     assert vise.columns is not None and vise.jaw_width is not None
     left, right, *pegs = fixture.pegs
     acts = left.force * left.x + right.force * right.x
@@ -90,7 +90,7 @@ def expected(workpiece: Workpiece, fixture: Fixture, vise: FlatJaw) -> Any:
         common = [(max(a + shift, first), min(b + shift, last)) for a, b in pieces]
         common = [(a, b) for a, b in common if a <= b]
         if any(
-            NEAR > abs(end - edge)
+            abs(end - edge) < NEAR
             for a, b in pieces
             for end in (a + shift, b + shift)
             for edge in (first, last)
@@ -219,7 +219,7 @@ def test_a_width_asks_for_columns_and_a_length() -> None:
         InputError, match="jaw width 50 says where the jaws end only beside a plate that ends"
     ):
         FlatJaw(pitch=10, peg_radius=3, jaw_width=50)
-    with pytest.raises(InputError, match="jaw width 0.0 is not a positive length"):
+    with pytest.raises(InputError, match=r"jaw width 0\.0 is not a positive length"):
         FlatJaw(pitch=10, peg_radius=3, columns=4, jaw_width=0)
     six = workhold.FlatJaw.preset("machine-vise-6-inch")
     four = workhold.FlatJaw.preset("machine-vise-4-inch")
@@ -227,7 +227,7 @@ def test_a_width_asks_for_columns_and_a_length() -> None:
 
 
 def test_why_a_jaw_holds_nothing_names_its_width() -> None:
-    """What it takes away, and that a jaw as wide as the part, or of any width, helps; also without a ranking that is left."""
+    """What it takes away, and that a jaw as wide as the part helps; also where that has no figure to rank by."""
     query = workhold.Query(
         part(KITE), FlatJaw(pitch=40, peg_radius=2, columns=2, jaw_width=1.0), ranking="jaw-contact"
     )

@@ -18,7 +18,6 @@ from workhold.fixels.carrier import WALL
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.hull import HullTouch, touches_along
 from workhold.geometry.segment import Box
-from workhold.geometry.symmetry import rotated
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["CommonStretch", "WallEnds", "common_stretch", "standouts", "touches_of", "wall_ends"]

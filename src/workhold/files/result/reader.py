@@ -41,7 +41,6 @@ from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.model.seating import Seating
 from workhold.model.wall_ends import wall_ends
-from workhold.model.workpiece import Workpiece
 
 __all__ = ["read_result"]
 

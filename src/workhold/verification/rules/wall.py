@@ -304,14 +304,14 @@ def flush_findings(
     ends: Sequence[tuple[str, Peg, WallContact]],
     pose: BallPose,
     outline: BallOutline,
-    written: Sequence[WallContact],
+    written: Sequence[WallContact] | None = None,
 ) -> Iterator[Finding]:
     """Whether the part lies flush on a wall called ``noun``, its two named ends where they are written.
 
     Parameters
     ----------
     ends : those of the whole contact.
-    written : those that the file says: the same, or the ends of what the wall reaches of it.
+    written : those that the file says, the ends of what the wall reaches of it; the same if None.
     """
     (left, _), (right, _) = [contact.place(pose) for _, _, contact in ends]
     yield from rule(right - left - LEAST_FLUSH, f"the part does not lie flush on the {noun}")
@@ -322,7 +322,8 @@ def flush_findings(
         if not (low > FLUSH / 2 or beyond < 0):
             words = f"the part lies on the {noun} at face {face}, beyond its stated ends"
             yield Finding(bool(low < -FLUSH), words)
-    for (name, peg, _), contact in zip(ends, written, strict=True):
+    said = [contact for *_, contact in ends] if written is None else written
+    for (name, peg, _), contact in zip(ends, said, strict=True):
         place = contact.place(pose)
         if peg.face != min(contact.faces):
             yield Finding(True, f"{name} touches face {min(contact.faces)}, and not {peg.face}")
