@@ -63,6 +63,8 @@ def write_pegs(column: TextColumn, sheet: Sheet) -> None:
     )
     for wall in (carrier for carrier in toolkit.carriers if carrier.contact is WALL_END):
         write_flush(column, sheet, wall)
+    if words := overhang_words(sheet.fixture, toolkit, sheet.workpiece, sheet.lengths.words):
+        column.paragraph(words, NOTE, bold=True)
     added = "" if sheet.is_closed_at_once else f", both {noun}s added up, in the ratio stated below"
     column.paragraph(f"{per} of {noun} force{added}, without friction.", NOTE)
     write_flats(column, sheet)
@@ -87,7 +89,7 @@ def write_flush(column: TextColumn, sheet: Sheet, wall: Carrier) -> None:
     lies = f"with {ends[0]}" if len(ends) == 1 else f"from {ends[0]} to {ends[1]}"
     words = f"The part lies flush on the {wall.noun} {lies}."
     if wall.width is not None:
-        words += f" It is {sheet.lengths.words(wall.width)} wide."
+        words += f" That is {sheet.lengths.words(wall.width)} wide."
     if edge is not None:
         words += f" Row 1 of the {plate.noun} is {sheet.lengths.words(edge)} from the {wall.noun}."
     column.paragraph(words, NOTE)
@@ -284,7 +286,8 @@ def write_jaws(column: TextColumn, sheet: Sheet) -> None:
     column.paragraph(f"Columns: {where}. {rows}", BODY)
     if offset := offset_words(sheet.toolkit, lengths):
         column.paragraph(f"Row 1 of the {moving.title} lies {offset} that of the {first.name}.", BODY)
-    write_place(column, sheet)
+    if words := place_words(sheet):
+        column.paragraph(words, BODY)
 
 
 def write_plate(column: TextColumn, sheet: Sheet) -> None:
@@ -302,15 +305,8 @@ def write_plate(column: TextColumn, sheet: Sheet) -> None:
     size = "" if plate.columns is None and plate.rows is None else f", {holes_words(plate)}"
     column.paragraph(f"The holes of the {plate.noun} are {apart}{size}.", BODY)
     column.paragraph(moving_words(sheet), BODY)
-    write_place(column, sheet)
-
-
-def write_place(column: TextColumn, sheet: Sheet) -> None:
-    """Writes where on its plate the set-up stands, and over which sides the part hangs."""
     if words := place_words(sheet):
         column.paragraph(words, BODY)
-    if words := overhang_words(sheet.fixture, sheet.toolkit, sheet.workpiece, sheet.lengths.words):
-        column.paragraph(words, BODY, bold=True)
 
 
 def place_words(sheet: Sheet) -> str:

@@ -170,16 +170,13 @@ def move_to(fixture: Fixture, toolkit: Toolkit, name: str) -> Hole:
             least = lowest[number] - back
             most = None if ahead is None else lowest[number] + ahead
             named = [column_letters, lambda row: str(row + 1)][number]
-            if most == least:
-                may = f"{noun} {named(least)} alone"
-            else:
-                may = (
-                    f"{noun} {named(least)} or farther"
-                    if most is None
-                    else f"{noun}s {named(least)} to {named(most)}"
-                )
+            may = named(least)
+            if most is None:
+                may += " or farther"
+            elif most > least:
+                may = f"one of {may} to {named(most)}"
             raise InputError(
-                f"the set-up cannot stand at {name.strip()[:40]}: its lowest {noun} may be {may}; {REMEDY}."
+                f"the set-up cannot stand at {name.strip()[:40]}: its lowest {noun} can be {may}; {REMEDY}."
             )
     for peg in moved_on(fixture, toolkit, move).pegs:
         if toolkit.carrier(peg.carrier).is_blocked(peg.column, peg.row):
