@@ -69,8 +69,8 @@ def sheet(
     at: str | None = option(
         None,
         "HOLE",
-        "Where on the plate all of it stands: the hole of its lowest column and row, such as D4; in the middle "
-        "of the plate if not given.",
+        "Where on the plate all of it stands: the hole of its lowest column and row, such as D4. In the "
+        "middle of the plate if not given.",
     ),
     machine_position: str | None = option(
         ON_PAPER,

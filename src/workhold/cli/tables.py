@@ -190,7 +190,7 @@ def quality_table(fixture: Fixture, mover: str, unit: Unit = MILLIMETRE) -> Tabl
 def standing_sentences(fixture: Fixture, result: Result, unit: Unit) -> list[str]:
     """Says how far the part stands out or hangs over, and where on its plate the setup sheet has it."""
     from workhold.drawing.panel import moved_words
-    from workhold.model.on_plate import middle_move, moved_on, overhang_words
+    from workhold.model.moved_setup import middle_move, moved_on, overhang_words
 
     toolkit, move = result.toolkit, middle_move(fixture, result.toolkit, result.workpiece)
     words = overhang_words(moved_on(fixture, toolkit, move), toolkit, result.workpiece, unit.text)

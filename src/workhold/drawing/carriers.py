@@ -64,7 +64,7 @@ def draw_plate(scene: Scene, shown: ShownCarrier, view: View, tooth: float = 5.0
 
 
 def draw_wall(scene: Scene, bar: Box, view: View, weight: float = 1.0, has_ends: bool = False) -> None:
-    """Draws a wall, a bar in mm: hatched below the line that the part lies on, with its ends if it has some."""
+    """Draws a wall, a bar in mm: hatched below the line that the part lies on, and any ends of it."""
     box = view.box(bar)
     scene.rectangle(box, FENCE[0])
     high, step = box.height, max(box.height * 0.8, 6.0 * weight)

@@ -180,7 +180,7 @@ def fixture_words(fixture: Fixture, toolkit: Toolkit) -> str:
 
 
 def moved_words(move: tuple[int, int]) -> str:
-    """By how many columns and rows, not both 0, all of a set-up stands further on.
+    """Columns and rows, not both 0, by which all of a set-up stands further on, in words.
 
     >>> moved_words((3, -1)), moved_words((0, 2))
     ('3 columns further right and 1 row further down', '2 rows further up')

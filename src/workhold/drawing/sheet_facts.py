@@ -19,7 +19,7 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.model.bodies import SUPPORT_HEIGHT
 from workhold.model.first_side import FirstSide
 from workhold.model.fixture import Fixture
-from workhold.model.on_plate import middle_move, move_to, moved_on
+from workhold.model.moved_setup import middle_move, move_to, moved_on
 from workhold.model.program import Program
 from workhold.model.requirements import Load, Tolerance
 from workhold.model.result import Result
@@ -275,7 +275,7 @@ def cautions_of(
 
 
 def placing_of(fixture: Fixture, result: Result, at: str | None) -> tuple[int, int]:
-    """By how many columns and rows a fixture of a result stands further on where it is asked to."""
+    """Columns and rows by which a fixture of a result stands further on where it is asked to."""
     if at is None:
         return middle_move(fixture, result.toolkit, result.workpiece)
     return move_to(fixture, result.toolkit, at)
@@ -334,8 +334,8 @@ def result_details(
         has it.
     supports : see :class:`SheetDetails`; with these the sheet is of their fixture in holes that all have
         names.
-    at : the hole in which the lowest column and the lowest row of the set-up meet, such as "D4"; in the middle
-        of its plate if None.
+    at : the hole in which the lowest column and the lowest row of the set-up meet, such as "D4"; None is the
+        middle of its plate.
     result_hash, day, unit, jaw_force, friction, peg_height, support_height : see :class:`SheetDetails`.
     further : any others of :class:`SheetDetails`, such as ``paper`` or ``thickness``.
 

@@ -37,7 +37,7 @@ from workhold.errors import listed
 from workhold.fixels.carrier import Carrier, column_letters, hole_name
 from workhold.fixels.contacts import WALL_END
 from workhold.model.clamps import clamp_names, clamp_shares, freedom_words, order_words, second_over_first
-from workhold.model.on_plate import overhang_words, spare_holes
+from workhold.model.moved_setup import overhang_words, spare_holes
 from workhold.model.setup import LengthSetting
 
 __all__ = ["CLAMPS", "OPENING", "touch_words", "write_counting", "write_pegs"]

@@ -192,7 +192,7 @@ class Carrier:
 
     @property
     def reach(self) -> tuple[float, float] | None:
-        """From which x to which in mm a wall is there; None where it is endless."""
+        """The x from which and up to which a wall is there, in mm; None where it is endless."""
         if self.width is None:
             return None
         middle = (self.column_count - 1) * self.pitch[0] / 2

@@ -135,13 +135,13 @@ class FlatJaw(Toolkit):
         settle(self, noun="jaw", peg="peg")
         if self.jaw_width is not None and self.columns is None:
             raise InputError(
-                f"jaw width {self.jaw_width:g} says where the jaws end only beside a plate that ends as well: "
-                "give the number of columns, or leave the jaw width out."
+                f"jaw width {self.jaw_width:g} says where the jaws end only beside a plate that ends as "
+                "well: give the number of columns, or leave the jaw width out."
             )
 
     @property
     def limits(self) -> tuple[Limit, ...]:
-        """Those of its fields; as many columns as needed leave no jaw to have a width."""
+        """The limits of its fields; as many columns as needed leave no jaw to have a width."""
         found = super().limits
         if self.jaw_width is None:
             return found

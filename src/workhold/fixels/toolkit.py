@@ -302,6 +302,11 @@ class Toolkit:
         return next((carrier for carrier in self.carriers if carrier.is_wall), None)
 
     @property
+    def reaching(self) -> Carrier | None:
+        """The wall where it has ends; None of an endless one, and where there is none."""
+        return next((carrier for carrier in self.carriers if carrier.reach is not None), None)
+
+    @property
     def moving(self) -> Carrier:
         """The carrier that moves."""
         return next(carrier for carrier in self.carriers if carrier.travel is not None)

@@ -249,12 +249,12 @@ def identity_order(table: FixtureTable, toolkit: Toolkit | None = None) -> NDArr
     Where the toolkit has a wall with ends, columns count from the first peg's, as on an endless one.
     """
     position, column = table.position, table.column
-    if toolkit is not None and toolkit.wall is not None and toolkit.wall.width is not None:
+    if toolkit is not None and toolkit.reaching is not None:
         (ends,) = toolkit.ends_on_walls
         pegs = np.delete(np.arange(column.shape[1]), ends)
         first = column[:, pegs].min(axis=1, keepdims=True, initial=1 << 30)
         column = np.where(np.isin(np.arange(column.shape[1]), pegs), column - first, column)
-        position = position - np.hstack([first * toolkit.wall.pitch[0], 0 * first])
+        position = position - np.hstack([first * toolkit.reaching.pitch[0], 0 * first])
     place = position @ np.array([1.0, 0.7548776662])
     columns = [*column.T, *table.row.T, np.round(table.theta / SAME_POSE), *table.face.T, place]
     return np.lexsort([*reversed(columns), table.arrangement])

@@ -274,8 +274,8 @@ def chosen_ranking(
     ------
     InputError
         For a name that is no figure, one given twice, and none at all. Also for a figure of loads without
-        loads, of two clamps where there is one, of a jaw's ends where it has none (``ended`` says that it
-        has), and of seating where that is not asked for.
+        loads, of two clamps where there is one, and of seating where that is not asked for. So for one of a
+        jaw's ends, unless it is ``ended``.
     """
     if names is None:
         return for_loads(PAIR_RANKING if pairs else DEFAULT_RANKING, loaded)
@@ -300,8 +300,8 @@ def chosen_ranking(
             raise InputError(f"there is one clamp: nothing has a {FIGURES[number].words} to rank by.")
         if number == JAW_CONTACT and not ended:
             raise InputError(
-                f"there is no {FIGURES[number].words} to rank by: give the width of a flat jaw's vise, or rank "
-                "by others."
+                f"there is no {FIGURES[number].words} to rank by: give the width of the jaws of a vise with a "
+                "flat one, or rank by others."
             )
         keys.append(RANKED[number].key)
     if not keys:

@@ -17,7 +17,7 @@ from workhold.errors import InputError
 from workhold.fixels.carrier import Carrier, hole_name, letter_of
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
-from workhold.model.on_plate import counted_on, middle_move, move_to
+from workhold.model.moved_setup import counted_on, middle_move, move_to
 from workhold.model.query import Query
 from workhold.model.support_request import SpatialLoad, SupportRequest
 
@@ -374,7 +374,7 @@ class ChosenSupports:
         return chosen
 
     def standing_at(self, name: str) -> ChosenSupports:
-        """The same with its lowest column and row of pegs and clamps at a hole's of a name, such as "D4".
+        """The set with the lowest column and row of pegs and clamps at a hole's of a name, such as "D4".
 
         Raises
         ------

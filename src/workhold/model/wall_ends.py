@@ -114,7 +114,7 @@ def wall_ends(workpiece: Workpiece, toolkit: Toolkit, theta: Array, position: Ar
     ----------
     theta, position : (N,) in radians and (N, 2) in mm, of the poses.
     """
-    flush, reach = workpiece.flush, None if toolkit.wall is None else toolkit.wall.reach
+    flush, reach = workpiece.flush, toolkit.reaching and toolkit.reaching.reach
     edge, x = flush.number(theta), flush.x(theta, position)
     named = [faces for pair in flush.touching for faces in pair]
     which = 2 * edge[:, None] + np.arange(2)

@@ -18,7 +18,7 @@ from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
 from workhold.files.replacing import refuse_output
 from workhold.listing.identity import entries
-from workhold.model.on_plate import moved_on
+from workhold.model.moved_setup import moved_on
 from workhold.model.setup import part_zero
 from workhold.model.support_triples import ChosenSupports
 from workhold.presenting.assembly import STEP_ENDINGS, Assembly, shape_in
@@ -276,10 +276,9 @@ def write_model(
     Parameters
     ----------
     path : of a file whose name ends in .dxf, .step, .stp or .csv.
-    settings : ``unit``, ``zero``, ``dowel``, ``thickness``, ``peg_length`` and ``peg_height``, lengths in mm,
-        and where it stands on its plate, ``at``;
-        of a STEP file also ``supports``, a set that was chosen, their ``support_height``, and
-        the ``shape`` of the part.
+    settings : ``unit``, ``zero``, ``dowel``, ``at``, ``thickness``, ``peg_length`` and ``peg_height``.
+        Of a STEP file also ``supports``, a set that was chosen, their ``support_height``, and
+        the ``shape`` of the part. Lengths are in mm.
     clearance : how far the cutter is to keep off the pegs of a DXF, in mm; None is the usual length.
 
     Raises

@@ -102,7 +102,7 @@ class LatticePairSearch(FlushSearch):
             np.abs(pairs.step[:, 1]) + back <= rows
         )
         pairs, back, first = pairs.take(fits), back[fits], np.zeros(int(fits.sum()), np.int64)
-        wall = self.problem.toolkit.wall
+        wall = self.problem.toolkit.reaching
         if wall is not None and wall.reach is not None:
             first, pairs = self.on_jaw(pairs, edge, wall.reach)
             holds = first >= 0

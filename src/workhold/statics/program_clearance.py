@@ -104,12 +104,12 @@ class Passing:
     radius: float
 
     def in_holes(self, before: Sequence[str], after: Sequence[str]) -> Passing:
-        """The same with the holes of contacts renamed, contact by contact."""
+        """The passing with the holes of contacts renamed, contact by contact."""
         return evolve(self, element=renamed(self.element, before, after))
 
 
 def renamed(element: str, before: Sequence[str], after: Sequence[str]) -> str:
-    """What a contact stands on, such as "peg L-A1", with its hole renamed.
+    """The name of what a contact stands on, such as "peg L-A1", with its hole renamed.
 
     >>> renamed("peg B2", ["A1", "B2"], ["C1", "D2"]), renamed("clamp A1", ["clamp A1"], ["clamp C1"])
     ('peg D2', 'clamp C1')

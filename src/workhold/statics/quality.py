@@ -169,7 +169,7 @@ def quality_of(
         if toolkit.tips > 1:
             filled[:, [CLOSURE_MARGIN, CLAMP_FREEDOM]] = closures(contact_matrices.closing)
         filled[:, JAW_CONTACT] = np.nan
-        if toolkit.wall is not None and toolkit.wall.width is not None:
+        if toolkit.reaching is not None:
             (ends,) = toolkit.ends_on_walls
             filled[:, JAW_CONTACT] = np.diff(x[:, ends], axis=1)[:, 0]
         filled[:, TILT] = tilts(block.theta, direction)

@@ -367,7 +367,7 @@ def figure_missing(fixture: Fixture, query: Query) -> str:
 
 def has_ends(query: Query) -> bool:
     """Whether the part lies on a wall that has ends."""
-    return any(carrier.is_wall and carrier.width is not None for carrier in query.toolkit.carriers)
+    return any(carrier.width is not None for carrier in query.toolkit.carriers)
 
 
 def written_numbers(

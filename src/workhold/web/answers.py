@@ -20,7 +20,7 @@ from workhold.geometry.segment import Arc, Box, Segment
 from workhold.model.clamps import ShownClamp, order_words
 from workhold.model.fixture import Fixture
 from workhold.model.fixture_table import FixtureTable, fixture_at
-from workhold.model.on_plate import middle_move, moved_on, overhangs
+from workhold.model.moved_setup import middle_move, moved_on, overhangs
 from workhold.model.quality import FIGURES
 from workhold.model.search_report import Explanation, Proof
 from workhold.model.setup import settings_of
@@ -283,7 +283,7 @@ def fixture_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> 
         "origin": toolkit.datum.name,
         "placed": placed,
         "hangs_over": {one.side: one.length for one in overhangs(stands, toolkit, workpiece)},
-        "wall": None if toolkit.wall is None or toolkit.wall.width is None else toolkit.wall.noun,
+        "stands_out_of": toolkit.reaching and toolkit.reaching.noun,
         "holes": [peg.hole for peg in stands.pegs],
         "faces": [peg.face for peg in fixture.pegs],
         "touched": [peg.touched for peg in fixture.pegs],

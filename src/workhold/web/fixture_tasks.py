@@ -191,7 +191,7 @@ def picture(order: PaperOrder) -> tuple[bytes, str | None]:
     """Draws the picture to set the vise from."""
     from workhold.drawing.fixture_pictures import draw_fixture
     from workhold.drawing.path_drawn import planned_path
-    from workhold.model.on_plate import middle_move, moved_on
+    from workhold.model.moved_setup import middle_move, moved_on
 
     result = order.result
     title = f"Fixture {order.rank} of {order.count}"

@@ -18,7 +18,7 @@ from workhold.errors import InputError
 from workhold.geometry.segment import bounding_box
 from workhold.model.bodies import BodySizes
 from workhold.model.fixture import Fixture
-from workhold.model.on_plate import middle_move, moved_on
+from workhold.model.moved_setup import middle_move, moved_on
 from workhold.model.query import Query
 from workhold.model.requirements import zone_of
 from workhold.model.support_bodies import bodies_on_supports, supported_sizes

@@ -173,7 +173,7 @@ class Stretch:
 
     @property
     def length(self) -> arb:
-        """In mm."""
+        """The length in mm."""
         return self.right - self.left
 
 
@@ -286,7 +286,7 @@ class Jaw:
 
 
 def on_line(outline: BallOutline, pose: BallPose) -> Iterator[tuple[arb, arb, tuple[int, ...]]]:
-    """From which x to which, in mm, a part touches the line of a wall, and the numbers of what touches."""
+    """The x in mm between which a part touches the line of a wall, and the numbers of what touches."""
     for face, side in outline.faces.items():
         if isinstance(side, LineSide):
             ends = [turned(point, pose.cosine, pose.sine) for point in (side.start, side.end)]

@@ -51,7 +51,7 @@ function writePegs(row) {
 }
 
 /** How far the part stands out beyond a jaw, or hangs over its plates. */
-function overhangWords({ hangs_over, wall }) {
+function overhangWords({ hangs_over, stands_out_of: wall }) {
   const sides = Object.entries(hangs_over).map(([side, by]) => `${length(by)} at the ${side}${side.endsWith("er") ? " side" : ""}`);
   if (!sides.length) return "";
   return `The part ${wall ? `stands out beyond the ${wall}` : "hangs over the plate"}: ${sides.join(", ")}. `;

@@ -12,7 +12,7 @@ from workhold import Fence, FlatJaw, InputError, Plate, Result, Vise
 from workhold.drawing.sheet_facts import result_details
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
-from workhold.model.on_plate import middle_move, move_to, moved_on, overhang_words, overhangs, spare_holes
+from workhold.model.moved_setup import middle_move, move_to, moved_on, overhang_words, overhangs, spare_holes
 from workhold.model.shown import placed_box
 from workhold.web.answers import fixture_answer
 
@@ -21,7 +21,9 @@ KITE = [(0, 0, 0), (56, 6, 0), (48, 44, 0), (10, 37, 0)]
 KINDS: dict[str, Toolkit] = {
     "plate": Plate(pitch=20, peg_radius=3, clamp_radius=5, columns=13, rows=10, travel=(10, 40)),
     "no stroke": Plate(pitch=20, peg_radius=3, columns=13, rows=10),
-    "two clamps": Plate(pitch=20, peg_radius=3, clamp_radius=5, columns=12, rows=9, travel=(10, 40), clamps=2),
+    "two clamps": Plate(
+        pitch=20, peg_radius=3, clamp_radius=5, columns=12, rows=9, travel=(10, 40), clamps=2
+    ),
     "fence": Fence(pitch=20, peg_radius=3, wall_offset=10, columns=12, rows=8, travel=(10, 40)),
     "flat jaw": FlatJaw(pitch=12, peg_radius=3, columns=15),
 }
@@ -34,7 +36,7 @@ def held(toolkit: Toolkit) -> Result:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_all_stands_in_the_middle_and_nothing_changes_among_itself(kind: str) -> None:
-    """No other place has its extent nearer to the middle; pegs, part and strokes keep to one another; holes have names."""
+    """No other place is nearer to the middle; pegs, part and strokes keep to one another; holes have names."""
     toolkit, result = KINDS[kind], held(KINDS[kind])
     assert len(result)
     moves = set()
@@ -47,7 +49,9 @@ def test_all_stands_in_the_middle_and_nothing_changes_among_itself(kind: str) ->
             assert (other.x - one.x, other.y - one.y) == pytest.approx(by)
             carrier = toolkit.carrier(one.carrier)
             if carrier.has_lattice:
-                assert carrier.place(other.column, other.row, placed.jaw_separation) == pytest.approx((other.x, other.y))
+                assert carrier.place(other.column, other.row, placed.jaw_separation) == pytest.approx(
+                    (other.x, other.y)
+                )
                 assert 0 <= other.column < (toolkit.plates[0].columns or 99)
                 assert 0 <= other.row < (toolkit.plates[0].rows or 99)
         assert (placed.pose.x - fixture.pose.x, placed.pose.y - fixture.pose.y) == pytest.approx(by)
@@ -130,9 +134,9 @@ def test_what_hangs_over_is_told() -> None:
     kite = workhold.design(part(KITE), jaw)
     words = overhang_words(kite[0], jaw, kite.workpiece, "{:.3f} mm".format)
     box = placed_box(kite.workpiece, kite[0].pose)
-    assert words == (
-        f"The part stands out beyond the flat jaw: {3.0 - box.x0:.3f} mm at the left and {box.x1 - 33.0:.3f} mm at the right."
-    )
+    left, right = 3.0 - box.x0, box.x1 - 33.0
+    told = f"{left:.3f} mm at the left and {right:.3f} mm at the right"
+    assert words == f"The part stands out beyond the flat jaw: {told}."
     free = held(Plate(pitch=20, peg_radius=3))
     assert overhang_words(free[0], free.toolkit, free.workpiece, str) == ""
 
@@ -152,6 +156,6 @@ def test_the_sheet_has_it_there_and_the_page_lays_the_plate_so() -> None:
     assert min(peg.column for peg in there.pegs) == 1 and details.is_asked_place
     mouth = workhold.design(part(MOUTH), FlatJaw(pitch=9, peg_radius=2, columns=12, jaw_width=40), best=3)
     row = fixture_answer(mouth[0], mouth.workpiece, mouth.toolkit)
-    assert row["wall"] == "flat jaw" and row["hangs_over"]
+    assert row["stands_out_of"] == "flat jaw" and row["hangs_over"]
     wall = row["carriers"][1]["plate"]
     assert wall[2] - wall[0] == pytest.approx(40.0)

@@ -1,9 +1,9 @@
 """Where on the shop's plate a set-up stands: in its middle, or where somebody says, and what hangs over.
 
-A fixture is listed in the lowest columns and rows. Part, pegs and clamps may stand in others together: so many
-columns and rows further on. Where the plate's columns and rows are known, sheet and page show all of it in the
-middle of the plate. Jaws of a vise keep their columns, which are nearest to the opening, and what counts from
-a wall its rows. Where a flat jaw has ends its columns are listed as it holds best.
+A fixture is listed in the lowest columns and rows. Part, pegs and clamps may stand in others together: so
+many columns and rows further on. Where the plate's columns and rows are known, sheet and page show all of it
+in the middle of the plate. Jaws of a vise keep their columns, which are nearest to the opening, and what
+counts from a wall its rows. Where a flat jaw has ends its columns are listed as it holds best.
 """
 
 from __future__ import annotations
@@ -98,19 +98,19 @@ def spare_holes(fixture: Fixture, toolkit: Toolkit) -> tuple[tuple[int, int | No
 
     None stands for any number, where the plate has no end. What cannot be moved has zeros.
     """
-    plate, wall = toolkit.plates[0], toolkit.wall
+    plate = toolkit.plates[0]
     along, across = (
         (min(used), None if count is None else count - 1 - max(used))
         for used, count in zip(used_holes(fixture, toolkit), (plate.columns, plate.rows), strict=True)
     )
     # Jaws hold in the columns nearest to the opening, and a jaw with ends where it reaches the part best.
-    if len(toolkit.plates) > 1 or (wall is not None and wall.width is not None):
+    if len(toolkit.plates) > 1 or toolkit.reaching is not None:
         along = 0, 0
-    return along, (0, 0) if wall is not None else across
+    return along, (0, 0) if toolkit.datum.fixes_rows else across
 
 
 def middle_move(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> Hole:
-    """By how many columns and rows all of a set-up stands further on in the middle of its plate.
+    """Columns and rows by which all of a set-up stands further on in the middle of its plate.
 
     The extent of part, pegs and clamps is then as near to the middle as holes allow; of two places the lower
     one counts. It is 0 along what has no end, and where all may stand in one place only. Rows of jaws are
@@ -138,7 +138,7 @@ def middle_move(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> Hol
 
 
 def move_to(fixture: Fixture, toolkit: Toolkit, name: str) -> Hole:
-    """By how many columns and rows all of a set-up stands further on with its lowest ones at a hole's.
+    """Columns and rows by which all of a set-up stands further on with its lowest ones at a hole's.
 
     Parameters
     ----------
@@ -156,7 +156,7 @@ def move_to(fixture: Fixture, toolkit: Toolkit, name: str) -> Hole:
     for letter in match[1]:
         column = 26 * column + ord(letter) - ord("A") + 1
     wanted, lowest = (column - 1, int(match[2]) - 1), [*map(min, used_holes(fixture, toolkit))]
-    if toolkit.wall is not None:
+    if toolkit.datum.fixes_rows:
         # Rows beside a wall, or of a jaw that slides toward one, are where they are.
         wanted = wanted[0], lowest[1]
     if len(toolkit.plates) > 1:
@@ -210,12 +210,14 @@ class Overhang:
 
 
 def overhangs(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> Iterator[Overhang]:
-    """The sides over which the part hangs, of a wall with ends, else of plates, half a pitch beyond their holes."""
-    part, wall = placed_box(workpiece, fixture.pose), toolkit.wall
+    """The sides over which the part hangs: of a wall with ends, else of plates.
+
+    A plate ends half a pitch beyond its holes.
+    """
+    part, wall = placed_box(workpiece, fixture.pose), toolkit.reaching
+    edge = plates_box(fixture, toolkit)
     if wall is not None and wall.reach is not None:
         edge = Box(wall.reach[0], -inf, wall.reach[1], inf)
-    else:
-        edge = plates_box(fixture, toolkit)
     sides = {
         "left": edge.x0 - part.x0,
         "right": part.x1 - edge.x1,
@@ -238,11 +240,11 @@ def overhang_words(
     ----------
     text : writes a length in mm.
     """
-    found, wall = list(overhangs(fixture, toolkit, workpiece)), toolkit.wall
+    found, wall = list(overhangs(fixture, toolkit, workpiece)), toolkit.reaching
     if not found:
         return ""
     sides = listed([f"{text(one.length)} at the {SIDES[one.side]}" for one in found])
-    if wall is not None and wall.width is not None:
+    if wall is not None:
         return f"The part stands out beyond the {wall.noun}: {sides}."
     nouns = listed([plate.title for plate in toolkit.plates])
     edges = "edge is" if len(toolkit.plates) == 1 else "edges are"
@@ -250,7 +252,7 @@ def overhang_words(
 
 
 def plates_box(fixture: Fixture, toolkit: Toolkit) -> Box:
-    """From where to where plates are, half a pitch beyond their holes; infinite where one has no end."""
+    """The box of all plates, half a pitch beyond their holes; infinite where one has no end."""
     boxes = []
     for plate in toolkit.plates:
         travelled = 0.0 if plate.travel is None else fixture.jaw_separation
@@ -261,7 +263,7 @@ def plates_box(fixture: Fixture, toolkit: Toolkit) -> Box:
             -inf if end == inf else first for end, first in ((right, x0 - half_x), (upper, y0 - half_y))
         )
         # What counts from a wall goes on below its first row, and a plate that slides leaves the rows open.
-        is_open = toolkit.wall is not None
+        is_open = toolkit.datum.fixes_rows
         boxes.append(Box(left, -inf if is_open else lower, right, inf if is_open and plate.travel else upper))
     box = boxes[0]
     for other in boxes[1:]:
