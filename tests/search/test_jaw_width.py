@@ -18,10 +18,11 @@ import pytest
 import workhold
 from strategies import outline
 from toolkit_results import assert_all_proven, part, verify_edited
-from workhold import FlatJaw, InputError, Result, Workpiece
+from workhold import FlatJaw, InputError, Query, Result, Workpiece
 from workhold.fixels.kinds import toolkit_of
 from workhold.model.fixture import Fixture
 from workhold.model.requirements import Load
+from workhold.search.design import Explored, explore, first_choice
 from workhold.search.explaining import explain
 
 KITE = [(0, 0, 0), (56, 6, 0), (48, 44, 0), (10, 37, 0)]
@@ -318,3 +319,44 @@ def test_turning_and_mirroring_the_part() -> None:
         lengths = [sorted(round(one.quality["jaw_contact"], 5) for one in result) for result in (base, again)]
         assert lengths[0] == lengths[1] and len(lengths[0]) > 5
     assert degrees(turn) == pytest.approx(23.0)
+
+
+def test_the_first_choice_holds_the_part_over_its_length_and_not_the_first_name() -> None:
+    """Among those with as few warnings tenths of the length come first, in another order last."""
+    figures = {
+        "warnings": 0.0,
+        "penalty": 6.0,
+        "clamp_amplification": 1.0,
+        "closure_margin": 0.1,
+        "edge_distance": 3.0,
+    }
+    ranking = ("warnings", "penalty", "clamp_amplification", "closure_margin", "edge_distance")
+    short = Explored("a 4-inch vise", {"flat": 1}, figures, fit=True, held=0.25)
+    better = Explored("b 4-inch vise", {"flat": 1}, figures | {"penalty": 2.0}, fit=True, held=0.29)
+    long = Explored("c 6-inch vise", {"flat": 1}, figures, fit=True, held=0.38)
+    warned = Explored("d plate", {"clamp": 1}, figures | {"warnings": 1.0}, fit=True, held=1.0)
+    assert first_choice([short, better, warned], ranking) is better
+    assert first_choice([short, better, long, warned], ranking) is long
+    assert first_choice([short, long, better], ("penalty",)) is better
+    assert first_choice([short, long], ("penalty",)) is long
+    assert first_choice([short, long], ranking, lambda name: name == short.name) is short
+
+
+def test_a_bar_is_held_over_more_of_its_length_by_wider_jaws() -> None:
+    """The share between the outermost contacts, as far as the jaws of each vise reach."""
+    loop = [
+        (0, 0, 0),
+        (400, 0, 0),
+        (400, 40, 0),
+        (260, 40, 0),
+        (230, 60, 0),
+        (170, 60, 0),
+        (140, 40, 0),
+        (0, 40, 0),
+    ]
+    bar = part([(x, y, bulge) for x, y, bulge in loop])
+    names = ("machine-vise-4-inch", "machine-vise-6-inch")
+    four, six = explore([(name, Query(bar, FlatJaw.preset(name), best=5)) for name in names])
+    assert four.held == pytest.approx(101.6 / 400, abs=0.02) and six.held == pytest.approx(
+        152.4 / 400, abs=0.02
+    )

@@ -300,8 +300,8 @@ def chosen_ranking(
             raise InputError(f"there is one clamp: nothing has a {FIGURES[number].words} to rank by.")
         if number == JAW_CONTACT and not ended:
             raise InputError(
-                f"there is no {FIGURES[number].words} to rank by: give the width of the jaws of a vise with a "
-                "flat one, or rank by others."
+                f"there is no {FIGURES[number].words} to rank by: give the width of the jaws of a vise with "
+                "a flat one, or rank by others."
             )
         keys.append(RANKED[number].key)
     if not keys:
