@@ -14,6 +14,8 @@ from random import Random
 from typing import Any
 
 import pytest
+from attrs import evolve
+from flint import arb
 
 import workhold
 from strategies import outline
@@ -24,6 +26,9 @@ from workhold.model.fixture import Fixture
 from workhold.model.requirements import Load
 from workhold.search.design import Explored, explore, first_choice
 from workhold.search.explaining import explain
+from workhold.verification.ball_geometry import BallOutline
+from workhold.verification.contacts import BallPose
+from workhold.verification.rules.hardware import ToolkitRules
 
 KITE = [(0, 0, 0), (56, 6, 0), (48, 44, 0), (10, 37, 0)]
 # Two feet, arcs outside and inside.
@@ -269,6 +274,20 @@ def test_verify_refutes_what_the_jaw_does_not_reach_and_other_columns(tmp_path: 
     reason = said(lambda content: moved(content, 1))
     assert "its pegs would stand better from column" in reason or "of the flat jaw at its" in reason
     wall = data["fixtures"][0]["wall"]
+    wide = workhold.design(part(ROCKER), vise.changed({"jaw_width": 58.0}))
+    number = next(
+        k for k, one in enumerate(wide) if one.quality["jaw_contact"] > 57.9 and one.pegs[2].column > 0
+    )
+    jaw, fixture = ToolkitRules(wide.toolkit).jaw, wide[number]
+    assert jaw is not None
+    outline, pose = BallOutline.of(wide.workpiece), BallPose.written(fixture.pose)
+    columns, left, right = [peg.column for peg in fixture.pegs[2:]], *fixture.pegs[:2]
+    acts = arb(left.force * left.x + right.force * right.x)
+    assert list(jaw.findings(columns, acts, outline, pose)) == []
+    off = evolve(pose, x=pose.x - vise.pitch[0])
+    beside = [column - 1 for column in columns]
+    reasons = [one.reason for one in jaw.findings(beside, acts - vise.pitch[0], outline, off)]
+    assert any("mm of the part there" in reason for reason in reasons), reasons
 
     def stretched(content: dict[str, Any]) -> None:
         content["fixtures"][0]["wall"]["from"][0] -= 3.0
