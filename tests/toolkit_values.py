@@ -17,6 +17,7 @@ VALUES: dict[str, tuple[Any, Any]] = {
     "blocked": (["L-B3", "R-A"], ["L-B3", "R-A"]),
     "min_gap": (13.0, "13"),
     "max_opening": (61.0, "61"),
+    "jaw_width": (47.0, "47"),
     "row_offset": (-4.5, "-4.5"),
     "clamps": (2, "2"),
     "clamp_radius": (5.5, "5.5"),

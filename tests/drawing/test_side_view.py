@@ -26,7 +26,7 @@ from svg_reading import by_class, matrix, texts, to_model
 
 from workhold.drawing.bench import bench_of, contact_of
 from workhold.drawing.scene import UNITS_PER_MM
-from workhold.drawing.sheet_facts import SheetDetails
+from workhold.drawing.sheet_facts import SheetDetails, result_details
 from workhold.drawing.sheet_writing import heights_of
 from workhold.drawing.side_view import WAYS, apart, side_view
 from workhold.errors import InputError
@@ -61,7 +61,8 @@ def boxes(page: str, name: str) -> list[Box]:
 def test_view_is_true_to_the_scale_that_is_written(name: str) -> None:
     """What is drawn of part, pegs and bands is as large as their heights and places, at the scale of the title."""
     result = result_of(name)
-    fixture, toolkit = result[0], result.toolkit
+    # The sheet has all of it in the middle of the plate.
+    fixture, toolkit = result_details(result, 1)[0], result.toolkit
     page = side_page(sheet(result))
     (title,) = (word for word in texts(page) if word.startswith("Side view"))
     paper, model = (float(word) for word in title.rpartition(" ")[2].split(":"))
@@ -150,7 +151,7 @@ def test_every_height_is_in_the_pdf(unit: object, size: str) -> None:
     ):
         assert wanted in words
     assert SOLID.solid is not None
-    for peg in result[0].pegs:
+    for peg in result_details(result, 1)[0].pegs:
         band = SOLID.solid.bands[peg.face]
         assert band is not None and f"{peg.hole} {told(band[0])} {told(band[1])}" in words
 

@@ -137,7 +137,8 @@ def print_explored(
         shown = [f for f in (*figures[1:], figures[0]) if f.key in best.figures]
         words = ", ".join(f"{heading(f, unit)} {figure_text(f, best.figures[f.key], unit)}" for f in shown)
         unsold = "" if is_sold(best.name) else " Nobody sells it: it is the gripper of the paper."
-        print_tables(f"First choice: {best.name}; its first fixture has {words}.{unsold}")
+        over = f"It holds the part over {best.held:.0%} of its length."
+        print_tables(f"First choice: {best.name}; its first fixture has {words}. {over}{unsold}")
 
 
 def table_text(found: list[Explored], types: list[str]) -> str:

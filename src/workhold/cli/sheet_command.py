@@ -69,6 +69,12 @@ def sheet(
         "Part zero: corner (lower left, as drawn), centre, hole N, or X,Y of the drawing. If not given, the "
         "origin of the drawing where that is on the part, else the corner.",
     ),
+    at: str | None = option(
+        None,
+        "HOLE",
+        "Where on the plate all of it stands: the hole of its lowest column and row, such as D4. In the "
+        "middle of the plate if not given.",
+    ),
     machine_position: str | None = option(
         ON_PAPER,
         "X,Y",
@@ -152,6 +158,7 @@ def sheet(
         "friction": None if friction is None else positive_number("--friction", friction),
         "jaw": jaw_stiffness(jaw),
         "zero": zero,
+        "at": at,
         "thickness": optional_positive_length("--thickness", thickness, shown_unit),
         "peg_length": optional_positive_length("--peg-length", peg_length, shown_unit),
         "peg_height": optional_positive_length("--peg-height", peg_height, shown_unit),

@@ -43,6 +43,7 @@ __all__ = [
     "quality_table",
     "result_table",
     "solid_table",
+    "standing_sentences",
     "unfit_sentence",
 ]
 
@@ -184,6 +185,20 @@ def quality_table(fixture: Fixture, mover: str, unit: Unit = MILLIMETRE) -> Tabl
             words, meaning = figure.named_for(mover)
             table.add_row(words, value, of, better, meaning)
     return table
+
+
+def standing_sentences(fixture: Fixture, result: Result, unit: Unit) -> list[str]:
+    """Says how far the part stands out or hangs over, and where on its plate the setup sheet has it."""
+    from workhold.drawing.panel import moved_words
+    from workhold.model.moved_setup import middle_move, moved_on, overhang_words
+
+    toolkit, move = result.toolkit, middle_move(fixture, result.toolkit, result.workpiece)
+    words = overhang_words(moved_on(fixture, toolkit, move), toolkit, result.workpiece, unit.text)
+    moved = ""
+    if move != (0, 0):
+        moved = f"The setup sheet has all of it in the middle of the {toolkit.plates[0].noun}, "
+        moved += f"{moved_words(move)}."
+    return [said for said in (moved, words) if said]
 
 
 def fixture_tables(

@@ -233,7 +233,7 @@ def draw_bench(
     for carrier in bench.shown.carriers:
         draw_holes(holes, carrier, view, most_holes(view, bench.shown))
     for wall in bench.shown.walls:
-        draw_wall(scene.group("wall"), wall.bar, view, weight)
+        draw_wall(scene.group("wall"), wall.bar, view, weight, wall.standouts is not None)
     if axes and bench.shown.measured:
         group = scene.group("axes")
         for low, high in (axis for measured in bench.shown.measured for axis in measured.axes):

@@ -63,8 +63,8 @@ def draw_plate(scene: Scene, shown: ShownCarrier, view: View, tooth: float = 5.0
         scene.line(run, edge, 0.8 if side in shown.broken else 2.0, stroke_linecap="round")
 
 
-def draw_wall(scene: Scene, bar: Box, view: View, weight: float = 1.0) -> None:
-    """Draws a wall, a bar in mm: hatched below the line that the part lies on."""
+def draw_wall(scene: Scene, bar: Box, view: View, weight: float = 1.0, has_ends: bool = False) -> None:
+    """Draws a wall, a bar in mm: hatched below the line that the part lies on, and any ends of it."""
     box = view.box(bar)
     scene.rectangle(box, FENCE[0])
     high, step = box.height, max(box.height * 0.8, 6.0 * weight)
@@ -76,6 +76,8 @@ def draw_wall(scene: Scene, bar: Box, view: View, weight: float = 1.0) -> None:
             ends = [(low, box.y1 - (low - foot)), (top, box.y1 - (top - foot))]
             scene.line(ends, FENCE[1], 0.9 * weight, **{"class": "hatching"})
     scene.line([(box.x0, box.y0), (box.x1, box.y0)], FENCE[1], 2.6 * weight, **{"class": "fence"})
+    for x in (box.x0, box.x1) if has_ends else ():
+        scene.line([(x, box.y0), (x, box.y1)], FENCE[1], 2.6 * weight, **{"class": "end of fence"})
 
 
 def zigzag(start: Point, end: Point, tooth: float) -> list[Point]:

@@ -33,6 +33,7 @@ __all__ = [
     "value_words",
     "fixture_words",
     "holes_words",
+    "moved_words",
     "offset_words",
     "pegs_words",
     "plural",
@@ -176,6 +177,18 @@ def arrangement_words(arrangement: Arrangement, toolkit: Toolkit) -> str:
 def fixture_words(fixture: Fixture, toolkit: Toolkit) -> str:
     """The arrangement of a fixture in words."""
     return arrangement_words(toolkit.arrangement(fixture.type, fixture.direction), toolkit)
+
+
+def moved_words(move: tuple[int, int]) -> str:
+    """Columns and rows, not both 0, by which all of a set-up stands further on, in words.
+
+    >>> moved_words((3, -1)), moved_words((0, 2))
+    ('3 columns further right and 1 row further down', '2 rows further up')
+    """
+    ways = zip(move, ("column", "row"), (("right", "left"), ("up", "down")), strict=True)
+    return " and ".join(
+        f"{plural(abs(count), noun)} further {way[count < 0]}" for count, noun, way in ways if count
+    )
 
 
 def plural(count: int, noun: str, numbers: Sequence[str] = ()) -> str:

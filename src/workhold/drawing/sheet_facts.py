@@ -19,6 +19,7 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.model.bodies import SUPPORT_HEIGHT
 from workhold.model.first_side import FirstSide
 from workhold.model.fixture import Fixture
+from workhold.model.moved_setup import middle_move, move_to, moved_on
 from workhold.model.program import Program
 from workhold.model.requirements import Load, Tolerance
 from workhold.model.result import Result
@@ -44,6 +45,7 @@ __all__ = [
     "cautions_of",
     "edge_distances",
     "lift_of",
+    "placing_of",
     "result_cautions",
     "result_details",
 ]
@@ -87,6 +89,8 @@ class SheetDetails:
         holds it; None where that is not known.
     cutting : the jaw force that the program's tools ask for; None where their forces are not known.
     listed_as : what ``number`` counts.
+    moved : by how many columns and rows all stands further on than the fixture is listed.
+    is_asked_place : whether somebody said where.
     """
 
     number: int
@@ -119,6 +123,8 @@ class SheetDetails:
     passing: Passing | None = None
     cutting: CuttingNeed | None = None
     listed_as: str = "Fixture"
+    moved: tuple[int, int] = (0, 0)
+    is_asked_place: bool = False
 
     @property
     def paper_size(self) -> str:
@@ -273,6 +279,13 @@ def cautions_of(
     return found
 
 
+def placing_of(fixture: Fixture, result: Result, at: str | None) -> tuple[int, int]:
+    """Columns and rows by which a fixture of a result stands further on where it is asked to."""
+    if at is None:
+        return middle_move(fixture, result.toolkit, result.workpiece)
+    return move_to(fixture, result.toolkit, at)
+
+
 def lift_of(supports: ChosenSupports | None, support_height: float | None) -> float:
     """How far the part lies above the plates in mm: as high as its supports, or 0 without any."""
     if supports is None:
@@ -309,6 +322,7 @@ def result_details(
     seating: bool | None = None,
     supports: ChosenSupports | None = None,
     support_height: float | None = None,
+    at: str | None = None,
     **further: Any,
 ) -> tuple[Fixture, SheetDetails]:
     """One fixture with all figures of quality, and the further details of its setup sheet.
@@ -325,13 +339,15 @@ def result_details(
         has it.
     supports : see :class:`SheetDetails`; with these the sheet is of their fixture in holes that all have
         names.
+    at : the hole in which the lowest column and the lowest row of the set-up meet, such as "D4"; None is the
+        middle of its plate.
     result_hash, day, unit, jaw_force, friction, peg_height, support_height : see :class:`SheetDetails`.
     further : any others of :class:`SheetDetails`, such as ``paper`` or ``thickness``.
 
     Raises
     ------
     InputError
-        For a jaw force, a coefficient of friction or a part zero that cannot be.
+        For a jaw force, a coefficient of friction, a part zero or a place on the plate that cannot be.
     """
     from workhold.seating.solver import Solver
     from workhold.statics.quality import measured_fixture
@@ -341,10 +357,14 @@ def result_details(
     fixture = measured_fixture(result, rank - 1, asked, jaw_force)
     workpiece, toolkit = result.workpiece, result.toolkit
     known, not_seated = result[rank - 1].seating if seating is not False else None, ""
-    if supports is not None and supports.recounted.fixture.pegs != fixture.pegs:
+    if supports is not None and at is not None:
+        supports = supports.standing_at(at)
+    move = placing_of(fixture, result, at) if supports is None else supports.recounted.move
+    placed = moved_on(fixture, toolkit, move) if supports is None else supports.recounted.fixture
+    if placed.pegs != fixture.pegs:
         # The readings of its seats would be those of other holes.
         seating, known = seating or known is not None, None
-        fixture = evolve(supports.recounted.fixture, quality=fixture.quality)
+        fixture = evolve(placed, quality=fixture.quality)
     if seating is None and not toolkit.closes_at_once:
         seating = rank <= (result.query.seating or 0)
     put_in = None if not seating or toolkit.closes_at_once else by_hand(fixture, workpiece, toolkit)
@@ -357,10 +377,12 @@ def result_details(
     if peg_height is None and reach is not None:
         # The query's height is above where the part lies, the sheet's above the plates.
         peg_height = reach + lift_of(supports, support_height)
-    cutting = cutting_need_of(result, rank - 1, jaw_force, jaw)
+    cutting, passing = cutting_need_of(result, rank - 1, jaw_force, jaw), passing_of(result, rank - 1)
+    named = [peg.hole for peg in result[rank - 1].pegs], [peg.hole for peg in fixture.pegs]
     if cutting is not None:
-        listed_holes = [peg.hole for peg in result[rank - 1].pegs]
-        cutting = cutting.in_holes(listed_holes, [peg.hole for peg in fixture.pegs])
+        cutting = cutting.in_holes(*named)
+    if passing is not None:
+        passing = passing.in_holes(*named)
     cases = load_cases(fixture, workpiece, toolkit, asked, jaw_force, friction, jaw)
     if program is not None and zero is None:
         # Where the program counts from is what the machinist sets.
@@ -387,8 +409,10 @@ def result_details(
         supports=supports,
         support_height=support_height,
         program=program,
-        passing=passing_of(result, rank - 1),
+        passing=passing,
         cutting=cutting,
+        moved=move,
+        is_asked_place=at is not None,
         **further,
     )
     return fixture, details

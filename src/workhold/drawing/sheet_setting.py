@@ -8,9 +8,16 @@ about counting holes also says how far the whole set-up may be moved along them.
 from __future__ import annotations
 
 from functools import partial
-from math import ceil
 
-from workhold.drawing.panel import NUMBERS, TextColumn, diameter_words, holes_words, offset_words, plural
+from workhold.drawing.panel import (
+    NUMBERS,
+    TextColumn,
+    diameter_words,
+    holes_words,
+    moved_words,
+    offset_words,
+    plural,
+)
 from workhold.drawing.sheet_facts import caliper_check
 from workhold.drawing.sheet_writing import (
     BODY,
@@ -30,8 +37,8 @@ from workhold.errors import listed
 from workhold.fixels.carrier import Carrier, column_letters, hole_name
 from workhold.fixels.contacts import WALL_END
 from workhold.model.clamps import clamp_names, clamp_shares, freedom_words, order_words, second_over_first
+from workhold.model.moved_setup import overhang_words, spare_holes
 from workhold.model.setup import LengthSetting
-from workhold.model.shown import shown
 
 __all__ = ["CLAMPS", "OPENING", "touch_words", "write_counting", "write_pegs"]
 
@@ -56,6 +63,8 @@ def write_pegs(column: TextColumn, sheet: Sheet) -> None:
     )
     for wall in (carrier for carrier in toolkit.carriers if carrier.contact is WALL_END):
         write_flush(column, sheet, wall)
+    if words := overhang_words(sheet.fixture, toolkit, sheet.workpiece, sheet.lengths.words):
+        column.paragraph(words, NOTE, bold=True)
     added = "" if sheet.is_closed_at_once else f", both {noun}s added up, in the ratio stated below"
     column.paragraph(f"{per} of {noun} force{added}, without friction.", NOTE)
     write_flats(column, sheet)
@@ -79,6 +88,8 @@ def write_flush(column: TextColumn, sheet: Sheet, wall: Carrier) -> None:
     ends = list(dict.fromkeys(peg.touching for peg in sheet.fixture.pegs if peg.carrier == wall.name))
     lies = f"with {ends[0]}" if len(ends) == 1 else f"from {ends[0]} to {ends[1]}"
     words = f"The part lies flush on the {wall.noun} {lies}."
+    if wall.width is not None:
+        words += f" That is {sheet.lengths.words(wall.width)} wide."
     if edge is not None:
         words += f" Row 1 of the {plate.noun} is {sheet.lengths.words(edge)} from the {wall.noun}."
     column.paragraph(words, NOTE)
@@ -275,6 +286,8 @@ def write_jaws(column: TextColumn, sheet: Sheet) -> None:
     column.paragraph(f"Columns: {where}. {rows}", BODY)
     if offset := offset_words(sheet.toolkit, lengths):
         column.paragraph(f"Row 1 of the {moving.title} lies {offset} that of the {first.name}.", BODY)
+    if words := place_words(sheet):
+        column.paragraph(words, BODY)
 
 
 def write_plate(column: TextColumn, sheet: Sheet) -> None:
@@ -292,50 +305,31 @@ def write_plate(column: TextColumn, sheet: Sheet) -> None:
     size = "" if plate.columns is None and plate.rows is None else f", {holes_words(plate)}"
     column.paragraph(f"The holes of the {plate.noun} are {apart}{size}.", BODY)
     column.paragraph(moving_words(sheet), BODY)
-    for side, way, count, noun in overhangs(sheet):
-        beyond = f"As named, the part reaches beyond the {side} of the {plate.noun}"
-        column.paragraph(f"{beyond}; {plural(count, noun)} {way} it does not.", BODY)
+    if words := place_words(sheet):
+        column.paragraph(words, BODY)
+
+
+def place_words(sheet: Sheet) -> str:
+    """Where on its plate all of a set-up stands, a sentence; nothing where that is as it is listed."""
+    if sheet.details.supports is not None or sheet.details.moved == (0, 0):
+        return ""
+    where = (
+        "as asked" if sheet.details.is_asked_place else f"in the middle of the {sheet.toolkit.plates[0].noun}"
+    )
+    return f"All stands {moved_words(sheet.details.moved)} than the fixture is listed, {where}."
 
 
 def moving_words(sheet: Sheet) -> str:
     """How far all of the set-up may be moved along the holes of the plate."""
     ways = []
-    known = zip(spare_holes(sheet), ("column", "row"), ("further right", "further up"), strict=True)
-    for spare, noun, way in list(known)[: 1 if sheet.datum.fixes_rows else 2]:
-        if spare is None:
-            ways.append(f"any {noun}s {way}")
-        elif spare:
-            ways.append(f"up to {plural(spare, noun)} {way}")
+    spares = spare_holes(sheet.fixture, sheet.toolkit)
+    words = (("column", "left", "right"), ("row", "down", "up"))
+    for (back, ahead), (noun, down, up) in zip(spares, words, strict=True):
+        for spare, way in ((ahead, up), (back, down)):
+            if spare is None:
+                ways.append(f"any {noun}s further {way}")
+            elif spare:
+                ways.append(f"up to {plural(spare, noun)} further {way}")
     if not ways:
         return f"The set-up fits the {sheet.toolkit.noun} in this place only."
-    return (
-        f"All of it may stand {' and '.join(ways)}; places are then measured from {sheet.datum.substitute}."
-    )
-
-
-def spare_holes(sheet: Sheet) -> tuple[int | None, int | None]:
-    """How many columns and rows the set-up may be moved right and up; None where the plate has no end."""
-    plate, toolkit = sheet.toolkit.plates[0], sheet.toolkit
-    counted = [(peg, toolkit.carrier(peg.carrier).counted) for peg in sheet.fixture.pegs]
-    columns = max(peg.column for peg, (in_column, _) in counted if in_column)
-    rows = max(peg.row for peg, (_, in_row) in counted if in_row)
-    return (
-        None if plate.columns is None else plate.columns - 1 - columns,
-        None if plate.rows is None else plate.rows - 1 - rows,
-    )
-
-
-def overhangs(sheet: Sheet) -> list[tuple[str, str, int, str]]:
-    """The lower sides of a plate over which the part hangs, as holes are named.
-
-    Each has the direction, number and noun of the columns or rows by which the set-up has to be moved so that
-    it does not. Sides where that is impossible are left out.
-    """
-    plate, part = sheet.toolkit.plates[0], shown(sheet.fixture, sheet.toolkit, sheet.workpiece).part
-    sides = (("left side", "further right", part.x0, "column"), ("lower side", "further up", part.y0, "row"))
-    found = []
-    for (side, way, low, noun), pitch, spare in zip(sides, plate.pitch, spare_holes(sheet), strict=True):
-        needed = 0 if noun == "row" and sheet.datum.fixes_rows else ceil(-low / pitch - 0.5)
-        if spare is not None and 0 < needed <= spare:
-            found.append((side, way, needed, noun))
-    return found
+    return f"All of it may stand {listed(ways)}; places are then measured from {sheet.datum.substitute}."

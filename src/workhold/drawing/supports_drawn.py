@@ -9,7 +9,7 @@ from math import cos, dist, pi, sin
 from attrs import frozen
 
 from workhold.drawing.annotation import Label, LabelPlacer, Place, around
-from workhold.drawing.panel import TextColumn, plural
+from workhold.drawing.panel import TextColumn, moved_words
 from workhold.drawing.scene import Box, Scene, View, text_width
 from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, fact_or_field, heading
 from workhold.errors import listed
@@ -225,17 +225,10 @@ def holding_up_words(sheet: Sheet, chosen: ChosenSupports) -> str:
 def counting_words(sheet: Sheet, chosen: ChosenSupports) -> list[str]:
     """What to know where holes have other names than in the list of fixtures."""
     recounted, sentences = chosen.recounted, list[str]()
-    if recounted.is_moved:
-        ways = [
-            f"{plural(abs(count), noun)} further {way[count < 0]}"
-            for count, noun, way in (
-                (recounted.columns, "column", ("right", "left")),
-                (recounted.rows, "row", ("up", "down")),
-            )
-            if count
-        ]
+    if recounted.move != (0, 0):
         sentences.append(
-            f"So that supports have holes, all stands {' and '.join(ways)} than the fixture was listed."
+            f"So that supports have holes near the middle of the {sheet.plates_noun}, all stands "
+            f"{moved_words(recounted.move)} than the fixture is listed."
         )
     travelled = recounted.fixture.jaw_separation - chosen.supports.fixture.jaw_separation
     if sheet.toolkit.moving.has_lattice and abs(travelled) > 1e-6:

@@ -170,6 +170,7 @@ class Carrier:
     flat : of its pegs, which lies on straight faces; None where they are round.
     heights : between which what stands on it reaches, in mm above the plane on which the part lies. None
         where it reaches from below up to the peg height, as all pegs do.
+    width : of a wall in mm, the columns beside it in its middle; None where it is endless.
     """
 
     name: str
@@ -187,6 +188,15 @@ class Carrier:
     is_wall: bool = False
     flat: Flat | None = None
     heights: Heights | None = None
+    width: float | None = None
+
+    @property
+    def reach(self) -> tuple[float, float] | None:
+        """The x from which and up to which a wall is there, in mm; None where it is endless."""
+        if self.width is None:
+            return None
+        middle = (self.column_count - 1) * self.pitch[0] / 2
+        return middle - self.width / 2, middle + self.width / 2
 
     @property
     def role(self) -> str:

@@ -151,6 +151,17 @@ MAX_OPENING = ToolkitField(
     lifted=Lifted("largest opening", "travel", "with a larger opening"),
     belongs_to="jaws",
 )
+JAW_WIDTH = ToolkitField(
+    "jaw_width",
+    "length",
+    "Of a flat jaw: how wide the jaws are, the peg plate in their middle; endless if not given. Needs the "
+    "number of columns.",
+    (PageLabel("Width of the jaws", "endless"),),
+    figure="width of the jaws",
+    unset="endless",
+    lifted=Lifted("width of the jaws", "reach", "with a flat jaw as wide as the part"),
+    belongs_to="flat jaw",
+)
 ROW_OFFSET = ToolkitField(
     "row_offset",
     "length",
@@ -275,6 +286,7 @@ OPTIONS = (
     BLOCKED,
     MIN_GAP,
     MAX_OPENING,
+    JAW_WIDTH,
     ROW_OFFSET,
     CLAMPS,
     CLAMP_RADIUS,

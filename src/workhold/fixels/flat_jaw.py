@@ -8,13 +8,16 @@ from collections.abc import Iterator
 from functools import cached_property
 from math import pi
 
+from attrs import evolve
+
+from workhold.errors import InputError
 from workhold.fixels import fields
 from workhold.fixels.carrier import Heights
 from workhold.fixels.making import finer, lattice_carrier, made_from_table, settle, wall_carrier
 from workhold.fixels.pegs import Flat
 from workhold.fixels.setup_words import Datum, PageWords, SetupWords
 from workhold.fixels.table import FieldTable, PageLabel
-from workhold.fixels.toolkit import Arrangement, Carrier, Change, Toolkit, Travel, Wording
+from workhold.fixels.toolkit import Arrangement, Carrier, Change, Limit, Toolkit, Travel, Wording
 from workhold.units import Unit
 
 __all__ = ["FlatJaw"]
@@ -35,6 +38,8 @@ class FlatJaw(Toolkit):
     min_gap : smallest distance in mm from the flat jaw to the centres of the first row of holes; None means
         the peg radius.
     max_opening : largest such distance in mm, or None for no limit.
+    jaw_width : of the flat jaw in mm, in whose middle the columns are; None where it is endless. It asks for
+        the number of columns.
     flat : of the pegs, see :class:`workhold.Vise`.
     jaw_heights, wall_heights : lower and upper end in mm, above the plane on which the part lies, of the pegs
         and of the flat jaw. None where they reach up to the peg height.
@@ -42,7 +47,8 @@ class FlatJaw(Toolkit):
     Raises
     ------
     InputError
-        For values that are not finite and positive, and for pegs too fat for neighbouring holes.
+        For values that are not finite and positive, and for pegs too fat for neighbouring holes. Also for a
+        width of jaws without a number of columns.
 
     Examples
     --------
@@ -67,6 +73,7 @@ class FlatJaw(Toolkit):
                 "stand in the flat jaw; give the least distance from the flat jaw to that row, in mm.",
             ),
             fields.MAX_OPENING,
+            fields.JAW_WIDTH,
             fields.FLAT,
             fields.JAW_HEIGHTS,
             fields.WALL_HEIGHTS.shown(
@@ -82,7 +89,7 @@ class FlatJaw(Toolkit):
         two="two pegs",
         four="flat jaw and two pegs",
         inside="in this vise",
-        within="the jaw as asked: with the columns, rows and opening given",
+        within="the jaw as asked: with the columns, rows, opening and jaw width given",
         rules="presses the part against the flat jaw",
         backwards="the jaws are pressed apart, not when they close",
         holes="holes that the jaw does not have",
@@ -119,19 +126,38 @@ class FlatJaw(Toolkit):
     rows: int | None
     min_gap: float
     max_opening: float | None
+    jaw_width: float | None
     flat: Flat | None
     jaw_heights: Heights | None
     wall_heights: Heights | None
 
     def __attrs_post_init__(self) -> None:
         settle(self, noun="jaw", peg="peg")
+        if self.jaw_width is not None and self.columns is None:
+            raise InputError(
+                f"jaw width {self.jaw_width:g} says where the jaws end only beside a plate that ends as "
+                "well: give the number of columns, or leave the jaw width out."
+            )
+
+    @property
+    def limits(self) -> tuple[Limit, ...]:
+        """The limits of its fields; as many columns as needed leave no jaw to have a width."""
+        found = super().limits
+        if self.jaw_width is None:
+            return found
+        words = "with as many columns as needed, and a flat jaw as wide"
+        free = {fields.COLUMNS.name: None, fields.JAW_WIDTH.name: None}
+        return tuple(
+            evolve(limit, lifted=Change(words, free)) if fields.COLUMNS.name in limit.lifted.fields else limit
+            for limit in found
+        )
 
     @cached_property
     def carriers(self) -> tuple[Carrier, ...]:
         """The flat jaw, and the jaw that moves, whose travel is the jaw separation."""
         travel = Travel(pi / 2, self.min_gap, self.max_opening)
         jaw = lattice_carrier(self, "jaw", travel=travel, noun="jaw", heights=self.jaw_heights)
-        return wall_carrier(self, "flat jaw"), jaw
+        return wall_carrier(self, "flat jaw", self.jaw_width), jaw
 
     @property
     def datum(self) -> Datum:

@@ -350,10 +350,10 @@ def lattice_carrier(toolkit: Any, name: str, **others: Any) -> Carrier:
     return evolve(Carrier(name, *size, flat=toolkit.flat, blocked=blocked), **others)
 
 
-def wall_carrier(toolkit: Any, noun: str) -> Carrier:
-    """The straight wall of a toolkit, along x at y = 0."""
-    size = toolkit.pitch, toolkit.columns, toolkit.rows
-    return Carrier(WALL, *size, 0.0, 0.0, noun=noun, peg="end", is_wall=True, heights=toolkit.wall_heights)
+def wall_carrier(toolkit: Any, noun: str, width: float | None = None) -> Carrier:
+    """The straight wall of a toolkit, along x at y = 0; its width in mm is None where it is endless."""
+    size, heights = (toolkit.pitch, toolkit.columns, toolkit.rows), toolkit.wall_heights
+    return Carrier(WALL, *size, 0.0, 0.0, noun=noun, peg="end", is_wall=True, heights=heights, width=width)
 
 
 def finer(toolkit: Any) -> Iterator[Change]:

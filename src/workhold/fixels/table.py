@@ -94,7 +94,7 @@ class Lifted:
     """
 
     rule: str
-    bounds: Literal["bodies", "travel", "holes"]
+    bounds: Literal["bodies", "travel", "reach", "holes"]
     words: str
 
 

@@ -40,7 +40,7 @@ PEG_RADIUS = "peg_radius"
 # An eighth of an inch in mm.
 EIGHTH = 3.175
 # The order in which a person would ask for limits to be lifted.
-LIFTED = ("bodies", "travel", "holes")
+LIFTED = ("bodies", "travel", "reach", "holes")
 
 
 @frozen
@@ -89,12 +89,12 @@ class Limit:
     Parameters
     ----------
     rule : what it asks, in a few words, such as "rows of holes".
-    bounds : whether it is about the pegs' bodies, the travel, or the holes there are.
+    bounds : whether it is about the pegs' bodies, the travel, how far a wall reaches, or the holes there are.
     lifted : the toolkit without it.
     """
 
     rule: str
-    bounds: Literal["bodies", "travel", "holes"]
+    bounds: Literal["bodies", "travel", "reach", "holes"]
     lifted: Change
 
 
@@ -322,6 +322,11 @@ class Toolkit:
     def wall(self) -> Carrier | None:
         """The wall that the part lies flush against, where there is one."""
         return next((carrier for carrier in self.carriers if carrier.is_wall), None)
+
+    @property
+    def reaching(self) -> Carrier | None:
+        """The wall where it has ends; None of an endless one, and where there is none."""
+        return next((carrier for carrier in self.carriers if carrier.reach is not None), None)
 
     @property
     def moving(self) -> Carrier:

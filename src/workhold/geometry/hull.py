@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from workhold.conventions import LEAST_HULL_EDGE, TOUCHING
 from workhold.geometry.segment import Arc, Line, Point, Segment
 
-__all__ = ["HullEdge", "HullEnd", "convex_hull", "hull_edges"]
+__all__ = ["HullEdge", "HullEnd", "HullTouch", "convex_hull", "hull_edges", "touches_along"]
 
 
 def convex_hull(points: Iterable[Point]) -> list[Point]:
@@ -228,6 +228,70 @@ def hull_edges(segments: Sequence[Segment], counts: Sequence[int] | None = None)
             kept.append(edge)
     with_faces = [with_faces_along(edge, segments) for edge in kept]
     return tuple(sorted(with_faces, key=lambda edge: (edge.start.faces[-1], edge.end.faces)))
+
+
+@frozen
+class HullTouch:
+    """Where an outline touches the line of one of its hull edges: along a face, or in a point.
+
+    Parameters
+    ----------
+    low, high : from where to where, in mm along the edge from its start.
+    faces : indices of the face that lies along the edge, of the arc, or of the two that meet at a corner.
+    """
+
+    low: float
+    high: float
+    faces: tuple[int, ...]
+
+
+def touches_along(
+    edge: HullEdge, segments: Sequence[Segment], counts: Sequence[int] | None = None
+) -> tuple[HullTouch, ...]:
+    """Where an outline touches the line of a hull edge, from its start on; what touches alone comes last.
+
+    Parameters
+    ----------
+    edge : one of :func:`hull_edges` of these segments and counts.
+
+    Examples
+    --------
+    >>> from workhold.geometry.segment import Line
+    >>> points = [(0, 0), (2, 0), (3, 1), (5, 1), (6, 0), (9, 0), (9, 4), (0, 4)]
+    >>> outline = [Line(a, b) for a, b in zip(points, points[1:] + points[:1])]
+    >>> [(one.low, one.high, one.faces) for one in touches_along(hull_edges(outline)[0], outline)][:2]
+    [(0.0, 2.0, (0,)), (6.0, 9.0, (4,))]
+    """
+    (x, y), (tx, ty), length = edge.start.point, edge.tangent, edge.length
+    along: list[HullTouch] = []
+    alone: list[HullTouch] = []
+
+    def place(point: Point) -> float:
+        """How far along the edge a point is; on it but for rounding."""
+        return min(max((point[0] - x) * tx + (point[1] - y) * ty, 0.0), length)
+
+    first = 0
+    for count in [len(segments)] if counts is None else counts:
+        for k in range(first, first + count):
+            face, before = segments[k], first + (k - first - 1) % count
+            if isinstance(face, Line):
+                if all(abs(edge.height(point)) <= 2 * TOUCHING for point in (face.start, face.end)):
+                    along.append(HullTouch(place(face.start), place(face.end), (k,)))
+            elif face.sign > 0:
+                (cx, cy), radius = face.center, face.radius
+                foot = cx + radius * ty, cy - radius * tx
+                middle = ty * np.cos(face.mid_angle) - tx * np.sin(face.mid_angle)
+                supports = face.is_full or middle >= np.cos(face.half_sweep)
+                if supports and abs(edge.height(foot)) <= 2 * TOUCHING:
+                    alone.append(HullTouch(place(foot), place(foot), (k,)))
+            whole = isinstance(face, Arc) and face.is_full
+            if not whole and abs(edge.height(face.start)) <= 2 * TOUCHING:
+                alone.append(HullTouch(place(face.start), place(face.start), (before, k)))
+        first += count
+    return (
+        *sorted(along, key=lambda one: one.low),
+        *sorted(alone, key=lambda one: (one.low, -len(one.faces))),
+    )
 
 
 def end_of(pieces: HullPieces, number: int, normal: Array) -> HullEnd:

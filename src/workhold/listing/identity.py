@@ -243,10 +243,20 @@ class SetCount:
         return {name: sum(count for one, count in each if one.name == name) for name in toolkit.types}
 
 
-def identity_order(table: FixtureTable) -> NDArray[np.intp]:
-    """The order of fixtures by type, holes, orientation, faces and place."""
-    place = table.position @ np.array([1.0, 0.7548776662])
-    columns = [*table.column.T, *table.row.T, np.round(table.theta / SAME_POSE), *table.face.T, place]
+def identity_order(table: FixtureTable, toolkit: Toolkit | None = None) -> NDArray[np.intp]:
+    """The order of fixtures by type, holes, orientation, faces and place.
+
+    Where the toolkit has a wall with ends, columns count from the first peg's, as on an endless one.
+    """
+    position, column = table.position, table.column
+    if toolkit is not None and toolkit.reaching is not None:
+        (ends,) = toolkit.ends_on_walls
+        pegs = np.delete(np.arange(column.shape[1]), ends)
+        first = column[:, pegs].min(axis=1, keepdims=True, initial=1 << 30)
+        column = np.where(np.isin(np.arange(column.shape[1]), pegs), column - first, column)
+        position = position - np.hstack([first * toolkit.reaching.pitch[0], 0 * first])
+    place = position @ np.array([1.0, 0.7548776662])
+    columns = [*column.T, *table.row.T, np.round(table.theta / SAME_POSE), *table.face.T, place]
     return np.lexsort([*reversed(columns), table.arrangement])
 
 

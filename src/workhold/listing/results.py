@@ -244,7 +244,7 @@ class RankedTable:
         """What is kept of all that was added, in the order of identities."""
         self.measure()
         everything = FixtureTable.joined(self.tables)
-        self.tables = [everything.take(identity_order(everything))]
+        self.tables = [everything.take(identity_order(everything, self.query.toolkit))]
         return self.tables[0]
 
     def result(self, account: Account, work: Work) -> Result:

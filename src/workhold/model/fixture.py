@@ -303,7 +303,8 @@ class Fixture:
         overwrite : whether a file that workhold has not written may be replaced.
         asked : what else stands on the sheet. Words are ``paper`` ("a4" or "letter"), ``day``, ``part_name``
             and ``dowel``. Forces are ``jaw_force`` in N, ``jaw`` ("screw", "constant" or a stiffness),
-            ``friction``, and ``loads`` instead of the result's. Places are ``zero`` ("corner", "centre",
+            ``friction``, and ``loads`` instead of the result's. ``at`` is the hole of the lowest
+            column and row, such as "D4". Places are ``zero`` ("corner", "centre",
             "hole 2" or x and y of the drawing) and ``machine_position`` (x, y) of hole A1. Lengths in mm are
             ``thickness``, ``peg_length`` and ``peg_height``.
 

@@ -16,6 +16,7 @@ from workhold.model.clamps import ratios, working_forces
 from workhold.model.fixture import Fixture, Listed, Pair, Peg
 from workhold.model.pose import ENDS, Pose
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES, known_figures_of
+from workhold.model.wall_ends import wall_ends
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -176,7 +177,7 @@ def peg_places(
     """x and y (N, P) in mm of all pegs of a table; those of a wall are where the workpiece touches it."""
     x, y = toolkit.places(table.arrangement, table.column, table.row, table.jaw_separation)
     for ends in toolkit.ends_on_walls:
-        x[:, ends] = workpiece.flush.x(table.theta, table.position)
+        x[:, ends] = wall_ends(workpiece, toolkit, table.theta, table.position).x
         y[:, ends] = 0.0
     return x, y
 
@@ -223,16 +224,16 @@ def fixtures_of(
     forces, flats = table.working_force.tolist(), flat_angles(table, toolkit, workpiece)
     theta, travels = table.theta.tolist(), table.jaw_separation.reshape(len(table), -1).tolist()
     pairs = pairs_of_clamps(table) if table.force.ndim == 3 else [None] * len(table)
-    edges = workpiece.flush.number(table.theta).tolist() if toolkit.ends_on_walls else []
+    on_wall = wall_ends(workpiece, toolkit, table.theta, table.position) if toolkit.ends_on_walls else None
     for n, where in enumerate(listed):
         arrangement = toolkit.arrangements[table.arrangement[n]]
         pegs = []
         for k, number in enumerate(arrangement.carriers):
             carrier, column, row = toolkit.carriers[number], columns[n][k], rows[n][k]
             place, beside = None if carrier.has_lattice else carrier.place_name(column, row), None
-            if carrier.contact is WALL_END:
+            if on_wall is not None and carrier.contact is WALL_END:
                 end = k - arrangement.carriers.index(number)
-                place, touched = f"{carrier.noun} {ENDS[end]}", workpiece.flush.touching[edges[n]][end]
+                place, touched = f"{carrier.noun} {ENDS[end]}", on_wall.touching(n)[end]
                 beside = touched[1] if len(touched) > 1 else None
             at = across[n][k], along[n][k]
             pegs.append(

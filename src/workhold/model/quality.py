@@ -23,6 +23,7 @@ __all__ = [
     "EDGE_DISTANCE",
     "END_DISTANCE",
     "FIGURES",
+    "JAW_CONTACT",
     "JAW_FORCE_NEEDED",
     "LOAD_REACTION",
     "LOCATION_ERROR",
@@ -159,9 +160,17 @@ FIGURES = (
         "By how much the forces of two clamps may differ: 90 is any two forces.",
         1,
     ),
+    Figure(
+        "jaw_contact",
+        "mm",
+        True,
+        "How long the part lies on a flat jaw that has ends, from the first to the last point of contact.",
+    ),
 )
 CLOSURE_MARGIN, CLAMP_AMPLIFICATION, WRENCH_RADIUS, LOCATION_ERROR, END_DISTANCE, LOAD_REACTION = range(6)
-EDGE_DISTANCE, JAW_FORCE_NEEDED, TILT, SMALLEST_FACE, WARNINGS, PENALTY, CLAMP_FREEDOM = range(6, 13)
+EDGE_DISTANCE, JAW_FORCE_NEEDED, TILT, SMALLEST_FACE, WARNINGS, PENALTY, CLAMP_FREEDOM, JAW_CONTACT = range(
+    6, 14
+)
 
 # Of the fixtures whose seating is asked for (docs/seating.md).
 SEATING_FIGURES = (
@@ -204,7 +213,7 @@ def figures_in(columns: int) -> tuple[Figure, ...]:
 def known_figures_of(values: Sequence[float]) -> dict[str, float]:
     """The figures of a fixture by their keys, without those that are not known, from a row of a table.
 
-    >>> known_figures_of([0.25, *[float("nan")] * 12, 4.5])
+    >>> known_figures_of([0.25, *[float("nan")] * 13, 4.5])
     {'closure_margin': 0.25, 'program_clearance': 4.5}
     """
     named = zip(figures_in(len(values)), values, strict=True)
@@ -253,7 +262,11 @@ def listed(name: str, values: Iterable[T]) -> tuple[T, ...]:
 
 
 def chosen_ranking(
-    names: Sequence[str] | None, loaded: Loaded, pairs: bool = False, seated: bool = False
+    names: Sequence[str] | None,
+    loaded: Loaded,
+    pairs: bool = False,
+    seated: bool = False,
+    ended: bool = False,
 ) -> tuple[str, ...]:
     """Keys of the figures to rank by, from their names as a user writes them; None is the default ranking.
 
@@ -261,7 +274,8 @@ def chosen_ranking(
     ------
     InputError
         For a name that is no figure, one given twice, and none at all. Also for a figure of loads without
-        loads, of two clamps where there is one, and of seating where that is not asked for.
+        loads, of two clamps where there is one, and of seating where that is not asked for. So for one of a
+        jaw's ends, unless it is ``ended``.
     """
     if names is None:
         return for_loads(PAIR_RANKING if pairs else DEFAULT_RANKING, loaded)
@@ -284,6 +298,11 @@ def chosen_ranking(
             )
         if number == CLAMP_FREEDOM and not pairs:
             raise InputError(f"there is one clamp: nothing has a {FIGURES[number].words} to rank by.")
+        if number == JAW_CONTACT and not ended:
+            raise InputError(
+                f"there is no {FIGURES[number].words} to rank by: give the width of the jaws of a vise with "
+                "a flat one, or rank by others."
+            )
         keys.append(RANKED[number].key)
     if not keys:
         raise InputError("there is no figure to rank by: name at least one, such as closure-margin.")

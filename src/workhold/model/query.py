@@ -142,9 +142,8 @@ class Query:
         object.__setattr__(self, "arrangements", chosen_arrangements(self.arrangements, known))
         pairs = self.toolkit.travels > 1
         object.__setattr__(self, "seating", counting_number("seating", self.seating))
-        object.__setattr__(
-            self, "ranking", chosen_ranking(self.ranking, self.is_loaded, pairs, self.seating is not None)
-        )
+        asked = self.is_loaded, pairs, self.seating is not None, self.toolkit.reaching is not None
+        object.__setattr__(self, "ranking", chosen_ranking(self.ranking, *asked))
         if PROGRAM_FIGURE.key in self.ranking and self.program is None:
             raise InputError(f"there is no program to rank by the {PROGRAM_FIGURE.words}: give one.")
         if self.program is not None:

@@ -31,11 +31,23 @@ from workhold.geometry.segment import Arc, Box, Point
 from workhold.geometry.symmetry import rotated
 from workhold.model.clamps import ShownClamp, clamping_direction, shown_clamps
 from workhold.model.fixture import Fixture, Peg
+from workhold.model.pose import Pose
 from workhold.model.reach import Side, cells_in_reach, facing_gaps, held_box, reach_of, span
 from workhold.model.setup import LengthSetting, settings_of
+from workhold.model.wall_ends import standouts
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["MOST_HOLES", "Axis", "Hole", "Shown", "ShownCarrier", "placed_boxes", "shown", "shown_beside"]
+__all__ = [
+    "MOST_HOLES",
+    "Axis",
+    "Hole",
+    "Shown",
+    "ShownCarrier",
+    "placed_box",
+    "placed_boxes",
+    "shown",
+    "shown_beside",
+]
 
 Axis = tuple[Point, Point]
 
@@ -179,11 +191,13 @@ class ShownWall:
     carrier : the whole of it.
     bar : as far as it shows, the part above it.
     ends : x of the ends of the part's contact with it.
+    standouts : how far the part stands out to the left and to the right of it; None where it is endless.
     """
 
     carrier: Carrier
     bar: Box
     ends: tuple[float, float]
+    standouts: tuple[float, float] | None = None
 
 
 @frozen
@@ -223,9 +237,13 @@ class Shown:
 
 def shown(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> Shown:
     """What shows of a toolkit whose pegs hold a workpiece; raises as :func:`shown_beside`."""
-    pose = fixture.pose
+    return shown_beside(placed_box(workpiece, fixture.pose), fixture, toolkit)
+
+
+def placed_box(workpiece: Workpiece, pose: Pose) -> Box:
+    """The extent of a workpiece in a pose, in mm."""
     (box,) = placed_boxes(workpiece, *np.array([[np.radians(pose.theta_deg)], [pose.x], [pose.y]]))
-    return shown_beside(Box(*map(float, box)), fixture, toolkit)
+    return Box(*map(float, box))
 
 
 def placed_boxes(
@@ -300,19 +318,21 @@ def shown_beside(part: Box, fixture: Fixture, toolkit: Toolkit) -> Shown:
 
 
 def with_wall(seen: Shown, fixture: Fixture, carrier: Carrier) -> Shown:
-    """What shows, with a wall below the part: a bar as long as the plate.
+    """What shows, with a wall below the part: a bar as long as the plate, or as the wall where that has ends.
 
     A plate that stands still goes on below the bar.
     """
     (plate,), thick = seen.carriers, BAR * min(carrier.pitch)
     around = plate.plate.union(seen.part)
-    bar = Box(around.x0, -thick, around.x1, 0.0)
+    reach = carrier.reach
+    bar = Box(*(around.x0, -thick, around.x1, 0.0) if reach is None else (reach[0], -thick, reach[1], 0.0))
     left, right = (peg.x for peg in fixture.pegs if peg.carrier == carrier.name)
     # What stands still goes on below the bar; rows are counted from the wall, so what slides ends before the
     # first.
     low = -thick if plate.clamping is None else plate.plate.y0
     plate = evolve(plate, plate=evolve(plate.plate, y0=low), broken=plate.broken - {"bottom"})
-    return evolve(seen, carriers=(plate,), walls=(ShownWall(carrier, bar, (left, right)),))
+    beyond = None if reach is None else standouts(seen.part, reach)
+    return evolve(seen, carriers=(plate,), walls=(ShownWall(carrier, bar, (left, right), beyond),))
 
 
 def measured_between(seen: Sequence[ShownCarrier], setting: LengthSetting) -> Dimension:

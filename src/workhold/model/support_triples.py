@@ -16,7 +16,8 @@ from workhold.delegates import delegate
 from workhold.errors import InputError
 from workhold.fixels.carrier import Carrier, hole_name, letter_of
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.fixture import Fixture, Peg
+from workhold.model.fixture import Fixture
+from workhold.model.moved_setup import counted_on, middle_move, move_to
 from workhold.model.query import Query
 from workhold.model.support_request import SpatialLoad, SupportRequest
 
@@ -216,13 +217,17 @@ class Recounted:
     rows: int
 
     @property
-    def is_moved(self) -> bool:
-        """Whether holes have other names than in the list of fixtures."""
-        return (self.columns, self.rows) != (0, 0)
+    def move(self) -> Hole:
+        """The columns and the rows."""
+        return self.columns, self.rows
 
 
-def recounted(fixture: Fixture, toolkit: Toolkit, triple: Triple) -> Recounted:
-    """The set-up of a fixture and three supports in the first holes of the plates that can take it.
+def recounted(fixture: Fixture, toolkit: Toolkit, triple: Triple, start: Hole = (0, 0)) -> Recounted:
+    """The set-up of a fixture and three supports in the holes nearest to where it may stand.
+
+    Parameters
+    ----------
+    start : columns and rows by which it is to stand further on if supports have holes there.
 
     Raises
     ------
@@ -231,7 +236,7 @@ def recounted(fixture: Fixture, toolkit: Toolkit, triple: Triple) -> Recounted:
     """
     plates = [plate for plate in toolkit.carriers if plate.has_lattice]
     travel = fixture.jaw_separation if triple.travel is None else triple.travel
-    for columns, rows in moves(toolkit):
+    for columns, rows in moves(toolkit, start):
         shifts = {
             plate.name: shift_of(plate, plates[0], (columns, rows), travel - fixture.jaw_separation)
             for plate in plates
@@ -241,15 +246,15 @@ def recounted(fixture: Fixture, toolkit: Toolkit, triple: Triple) -> Recounted:
     raise InputError("the supports have no holes in the plates of the toolkit: list them again.")
 
 
-def moves(toolkit: Toolkit) -> Iterator[Hole]:
-    """Columns and rows by which part and pegs may stand further on, the fewest first."""
+def moves(toolkit: Toolkit, start: Hole) -> Iterator[Hole]:
+    """Columns and rows by which part and pegs may stand further on, the nearest to a start first."""
     # A wall stays where it is.
     most_rows = 0 if toolkit.datum.fixes_rows or toolkit.ends_on_walls else FARTHEST
     for steps in range(FARTHEST + most_rows + 1):
         for columns in range(-min(steps, FARTHEST), min(steps, FARTHEST) + 1):
             rows = steps - abs(columns)
             if rows <= most_rows:
-                yield from ((columns, row) for row in sorted({-rows, rows}))
+                yield from ((start[0] + columns, start[1] + row) for row in sorted({-rows, rows}))
 
 
 def shift_of(plate: Carrier, first: Carrier, move: Hole, opened: float) -> Hole:
@@ -308,39 +313,14 @@ def moved(
     travel: float,
 ) -> Recounted:
     """The set-up with its holes counted further on."""
-    first, (columns, rows) = next(plate for plate in toolkit.carriers if plate.has_lattice), move
-    dx, dy = columns * first.pitch[0], rows * first.pitch[1]
-
-    def counted_on(peg: Peg) -> Peg:
-        carrier = toolkit.carrier(peg.carrier)
-        if not carrier.contact.is_placed:
-            return evolve(peg, x=peg.x + dx, y=peg.y + dy)
-        by = shifts[carrier.stands_on]
-        in_column, in_row = carrier.counted
-        column, row = peg.column + in_column * by[0], peg.row + in_row * by[1]
-        place = None if peg.place is None else carrier.place_name(column, row)
-        return evolve(peg, column=column, row=row, x=peg.x + dx, y=peg.y + dy, place=place)
-
+    first = next(plate for plate in toolkit.carriers if plate.has_lattice)
+    dx, dy = move[0] * first.pitch[0], move[1] * first.pitch[1]
+    new = counted_on(fixture, toolkit, (dx, dy), shifts, travel)
     pads = tuple(
         evolve(pad, column=pad.column + shifts[pad.carrier][0], row=pad.row + shifts[pad.carrier][1])
         for pad in triple.supports
     )
-    pose = evolve(fixture.pose, x=fixture.pose.x + dx, y=fixture.pose.y + dy)
-    # A clamp of which only the line is known is measured from the first column or row.
-    further = [
-        0.0
-        if all(carrier.counted) or carrier.travel is None
-        else dx * carrier.travel.unit[0] + dy * carrier.travel.unit[1]
-        for carrier in (toolkit.carrier(peg.carrier) for peg in fixture.pegs)
-        if carrier.on is not None
-    ]
-    before = fixture.travels
-    ends = further or [0.0]
-    pair = fixture.pair and evolve(fixture.pair, travels=(before[0] + ends[0], before[-1] + ends[-1]))
-    own = travel + (further[0] if further else 0.0)
-    pegs = tuple(map(counted_on, fixture.pegs))
-    new = evolve(fixture, pegs=pegs, pose=pose, jaw_separation=own, pair=pair)
-    return Recounted(new, pads, columns, rows)
+    return Recounted(new, pads, *move)
 
 
 @frozen
@@ -370,7 +350,9 @@ class ChosenSupports:
         if not isinstance(supports, Supports):
             raise InputError("supports are what the fixture's own method of that name returns: give these.")
         triple = supports.ranked(number)
-        return cls(supports, number, recounted(supports.fixture, supports.query.toolkit, triple))
+        query = supports.query
+        start = middle_move(supports.fixture, query.toolkit, query.workpiece)
+        return cls(supports, number, recounted(supports.fixture, query.toolkit, triple, start))
 
     @classmethod
     def under(cls, fixture: Fixture, supports: Supports, number: int = 1) -> ChosenSupports:
@@ -390,6 +372,24 @@ class ChosenSupports:
                 "the supports are of another fixture: take those that this fixture's own method returns."
             )
         return chosen
+
+    def standing_at(self, name: str) -> ChosenSupports:
+        """The set with the lowest column and row of pegs and clamps at a hole's of a name, such as "D4".
+
+        Raises
+        ------
+        InputError
+            For what is no hole, and where pegs or supports have none then.
+        """
+        query, fixture = self.supports.query, self.supports.fixture
+        start = move_to(fixture, query.toolkit, name)
+        found = recounted(fixture, query.toolkit, self.triple, start)
+        if found.move != start:
+            raise InputError(
+                f"the supports have no holes with the set-up at {name.strip()[:40]}: leave the place out, or "
+                "give another one."
+            )
+        return evolve(self, recounted=found)
 
     @property
     def triple(self) -> Triple:

@@ -259,6 +259,7 @@ def explored_data(found: Iterable[Explored]) -> list[dict[str, Any]]:
             "fixtures": item.fixtures,
             "found": dict(item.found),
             "fit": bool(item.fit),
+            "held_share": round(item.held, 9),
             "figures": {key: finite(value) for key, value in item.figures.items()},
             "reason": item.reason,
         }

@@ -181,7 +181,7 @@ class LivePicture:
             draw_plate(group, carrier, view, 5.0)
             draw_holes(group, carrier, view, most_holes(view, bench.shown))
         for wall in bench.shown.walls:
-            draw_wall(scene.group("wall"), wall.bar, view)
+            draw_wall(scene.group("wall"), wall.bar, view, has_ends=wall.standouts is not None)
         for clamp in bench.shown.clamps:
             draw_clamp(self.group_for(scene, clamp.clamping), clamp, bench.shown.carriers[0], view, 1.0)
         draw_part(scene, bench, view, 1.0)

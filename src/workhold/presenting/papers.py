@@ -13,11 +13,12 @@ from workhold.drawing.fixture_pictures import best_at_a_glance, draw_fixture
 from workhold.drawing.part_pictures import draw_features
 from workhold.drawing.path_drawn import planned_path
 from workhold.drawing.render import render
-from workhold.drawing.sheet_facts import PAPERS
+from workhold.drawing.sheet_facts import PAPERS, placing_of
 from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
 from workhold.files.replacing import refuse_output
 from workhold.listing.identity import entries
+from workhold.model.moved_setup import moved_on
 from workhold.model.setup import part_zero
 from workhold.model.support_triples import ChosenSupports
 from workhold.presenting.assembly import STEP_ENDINGS, Assembly, shape_in
@@ -275,9 +276,9 @@ def write_model(
     Parameters
     ----------
     path : of a file whose name ends in .dxf, .step, .stp or .csv.
-    settings : ``unit``, ``zero``, ``dowel``, ``thickness``, ``peg_length`` and ``peg_height``, lengths in mm;
-        of a STEP file also ``supports``, a set that was chosen, their ``support_height``, and
-        the ``shape`` of the part.
+    settings : ``unit``, ``zero``, ``dowel``, ``at``, ``thickness``, ``peg_length`` and ``peg_height``.
+        Of a STEP file also ``supports``, a set that was chosen, their ``support_height``, and
+        the ``shape`` of the part. Lengths are in mm.
     clearance : how far the cutter is to keep off the pegs of a DXF, in mm; None is the usual length.
 
     Raises
@@ -295,6 +296,11 @@ def model_bytes(
     """Makes the file of a set-up for a CAM system, or of the list of its pins; see :func:`write_model`."""
     toolkit, unit = result.toolkit, settings["unit"]
     zero = part_zero(result.workpiece, settings["zero"], unit)
+    at, chosen = settings.get("at"), settings.get("supports")
+    if chosen is None:
+        fixture = moved_on(fixture, toolkit, placing_of(fixture, result, at))
+    elif at is not None:
+        chosen = chosen.standing_at(at)
     if ending == ".csv":
         from workhold.files.result.fixture_text import pin_list
         from workhold.model.dowels import fit_words
@@ -307,7 +313,7 @@ def model_bytes(
 
         keep_off = CLEARANCE if clearance is None else clearance
         return setup_dxf(fixture, result.workpiece, toolkit, zero, keep_off)
-    lengths, chosen = {name: settings[name] for name in SIZES}, settings.get("supports")
+    lengths = {name: settings[name] for name in SIZES}
     shape = settings.get("shape")
     if chosen is not None:
         lengths["support_height"] = settings.get("support_height")

@@ -31,7 +31,8 @@ from workhold.listing.results import (
     listed_result,
     stage,
 )
-from workhold.model.quality import FIGURES, asked_ranking
+from workhold.model.fixture import Fixture
+from workhold.model.quality import FIGURES, WARNINGS, asked_ranking
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Restrictions, Tolerance
 from workhold.model.result import Result
@@ -269,6 +270,10 @@ def is_round(problem: Problem) -> bool:
     return bool(arcs.all()) and len(set(center_numbers(problem.rows).tolist())) == 1
 
 
+# Of a tenth of a part's length: what is this little short of one counts as it.
+HELD_SLACK = 1e-6
+
+
 @frozen
 class Explored:
     """What one toolkit can do for a part.
@@ -279,6 +284,7 @@ class Explored:
     found : fixtures of each arrangement; empty for a toolkit that cannot be.
     figures : of the first fixture, the one to set up; empty when there is none.
     fit : whether that is a fixture for a workshop.
+    held : the share of the part's length that is between its outermost contacts, from 0 to 1.
     reason : why there is no fixture, or why the toolkit cannot be; empty otherwise.
     """
 
@@ -287,6 +293,7 @@ class Explored:
     figures: Mapping[str, float]
     reason: str = ""
     fit: bool = False
+    held: float = 0.0
 
     @property
     def fixtures(self) -> int:
@@ -319,7 +326,17 @@ def explore(
         reason = "" if len(result) else " ".join(result.reasons)
         figures = dict(result[0].quality) if len(result) else {}
         fit = bool(figures) and not unfit(result.table.quality[:1], result.query.tolerance)[0]
-        yield Explored(name, dict(result.found), figures, reason, fit)
+        held = held_share(result[0], result.workpiece) if len(result) else 0.0
+        yield Explored(name, dict(result.found), figures, reason, fit, held)
+
+
+def held_share(fixture: Fixture, workpiece: Workpiece) -> float:
+    """The share of a part's length, its longer side as drawn, that is between its outermost contacts."""
+    x0, y0, x1, y1 = workpiece.bounds
+    sides, back = (x1 - x0, y1 - y0), fixture.pose.inverse
+    longer = int(sides[1] > sides[0])
+    places = [float(back.apply(peg.x, peg.y)[longer]) for peg in fixture.pegs]
+    return min((max(places) - min(places)) / sides[longer], 1.0)
 
 
 def first_choice(
@@ -328,14 +345,19 @@ def first_choice(
     """The toolkit whose first fixture stands first among those of all; None when none has a fixture.
 
     A fixture for a workshop goes before one that is none, and what is sold, as ``is_sold`` says of a name,
-    before what nobody sells.
+    before what nobody sells. Of those without warnings, or with as many, what holds the part over more tenths
+    of its length goes first, then the figures count. In any other order that is asked for the length counts
+    last.
     """
     able = [item for item in explored if item.figures]
     if not able:
         return None
     quality = np.array([[item.figures.get(figure.key, np.nan) for figure in FIGURES] for item in able])
-    keys = [(not item.fit, not is_sold(item.name)) for item in able]
-    order = sorted(
-        range(len(able)), key=lambda k: (keys[k], *(key[k] for key in figure_keys(quality, ranking)))
-    )
-    return able[order[0]]
+    keys = [np.array([not item.fit for item in able]), np.array([not is_sold(item.name) for item in able])]
+    held = np.array([item.held for item in able])
+    figures, warned = figure_keys(quality, ranking), FIGURES[WARNINGS].key
+    first = 1 if ranking[:1] == (warned,) else len(figures)
+    tenths = -np.floor(10.0 * held + HELD_SLACK)
+    keys += [*figures[:first], tenths, *figures[first:], -held]
+    order = np.lexsort(keys[::-1])
+    return able[int(order[0])]

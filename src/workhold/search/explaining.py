@@ -70,7 +70,8 @@ def left_by_rules(query: Query, alone: bool) -> Iterator[tuple[str, int]]:
     rule."""
     toolkit, asked = query.toolkit, query.restrictions
     free = toolkit.without(toolkit.limits)
-    holes = toolkit.without([limit for limit in toolkit.limits if limit.bounds != "holes"])
+    others = [limit for limit in toolkit.limits if limit.bounds != "holes"]
+    holes = toolkit.without(others)
     bare = evolve(query.without_program, toolkit=free, restrictions=Restrictions(), contact_margin=0.0)
     passed = {"program": query.program, "peg_height": query.peg_height}
     steps: list[tuple[bool, str, dict[str, Any]]] = [
@@ -92,12 +93,9 @@ def left_by_rules(query: Query, alone: bool) -> Iterator[tuple[str, int]]:
     search = searched(bare)
     yield "closure and clamping", 0 if search is None else search.verified
     yield toolkit.wording.clear, placed(bare)
-    if toolkit.limits != holes.limits:
-        rule = next(limit.rule for limit in toolkit.limits if limit.bounds != "holes")
-        yield (
-            stroke_rule(query, rule),
-            placed(evolve(bare, toolkit=toolkit)),
-        )
+    for number, limit in enumerate(others, 1):
+        held_in = toolkit.without(others[number:])
+        yield stroke_rule(query, limit.rule), placed(evolve(bare, toolkit=held_in))
 
 
 def search_of(query: Query, explains: bool = False) -> FlushSearch | None:
@@ -159,6 +157,8 @@ def explain(query: Query, threads: int | None = None, unit: Unit = MILLIMETRE) -
     threads : how many threads share the work; None for one on each processor.
     unit : of the lengths in its words.
     """
+    # What is to come first makes no difference, and may be a figure that a changed toolkit has not.
+    query = evolve(query, ranking="warnings")
     toolkit, alone = query.toolkit, query.toolkit.travels == 1
     ways = [held_in(query, way) for way in toolkit.ways]
     if WALL_END in toolkit.contacts:

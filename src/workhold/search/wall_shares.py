@@ -17,8 +17,8 @@ from attrs import define, evolve, field
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem, Progress
-from workhold.conventions import GAP_SLACK, LEAST_SPAN
-from workhold.fixels.toolkit import Carrier
+from workhold.conventions import GAP_SLACK, LEAST_SPAN, SAME_PLACE
+from workhold.fixels.toolkit import Carrier, Toolkit
 from workhold.listing.clamp_contacts import contacts_on_wall
 from workhold.listing.clamp_placement import last_holes
 from workhold.listing.results import RankedTable, Work
@@ -27,6 +27,7 @@ from workhold.listing.wall_fixtures import WallFixtures, first_of_each, turned
 from workhold.model.fixture_table import FixtureTable, unknown_quality
 from workhold.model.query import Query
 from workhold.model.search_report import AT_AN_EDGE, Undecided, no_fixture_notes, no_pair_note, no_place_note
+from workhold.model.wall_ends import common_stretch, touches_of, wall_ends
 from workhold.proof.deciding import Account
 from workhold.search.broken_rules import line_in_the_way
 from workhold.search.flush_search import FlushSearch
@@ -38,10 +39,19 @@ __all__ = ["LatticePairSearch", "WallShares"]
 
 Array = NDArray[np.float64]
 
+# Pairs, columns of the first peg and what touches the wall that are looked at together.
+TOGETHER = 1 << 20
+
 
 @define(eq=False)
 class LatticePairSearch(FlushSearch):
     """The pairs of pegs of a sliding lattice that press a part against a wall."""
+
+    @property
+    def alone(self) -> Toolkit:
+        """The toolkit with an endless wall."""
+        toolkit = self.problem.toolkit
+        return toolkit.without([limit for limit in toolkit.limits if limit.bounds == "reach"])
 
     @property
     def touches(self) -> bool:
@@ -71,7 +81,9 @@ class LatticePairSearch(FlushSearch):
         # Forces are given per unit of the lattice's, which there has to be.
         is_none = np.abs(pairs.null[:, :2].sum(axis=1)) < LEAST_SPAN
         first = np.zeros(1, np.int64)
-        self.look_nearer(pairs.null, is_none, lambda chosen: self.table(pairs.take(chosen), edge, first))
+        self.look_nearer(
+            pairs.null, is_none, lambda chosen: self.table(pairs.take(chosen), edge, first, first)
+        )
 
     def placed(self, parts: list[LatticePairs], edge: int) -> FixtureTable:
         """Pairs as the lattice holds them, each once.
@@ -89,30 +101,76 @@ class LatticePairSearch(FlushSearch):
         fits = (separation - back * pitch >= travel.least - GAP_SLACK) & (
             np.abs(pairs.step[:, 1]) + back <= rows
         )
-        return self.table(pairs.take(fits), edge, back[fits])
+        pairs, back, first = pairs.take(fits), back[fits], np.zeros(int(fits.sum()), np.int64)
+        wall = self.problem.toolkit.reaching
+        if wall is not None and wall.reach is not None:
+            first, pairs = self.on_jaw(pairs, edge, wall.reach)
+            holds = first >= 0
+            pairs, back, first = pairs.take(holds), back[holds], first[holds]
+        return self.table(pairs, edge, back, first)
 
-    def table(self, pairs: LatticePairs, edge: int, back: NDArray[np.int64]) -> FixtureTable:
-        """The table of pairs on a hull edge, their lowest rows so far (N,) back.
+    def on_jaw(
+        self, pairs: LatticePairs, edge: int, reach: tuple[float, float]
+    ) -> tuple[NDArray[np.int64], LatticePairs]:
+        """The column of each pair's first peg in which a jaw with ends holds the part best, -1 where in none.
+
+        With it come the pairs with the forces at the ends of the common stretch. Where the wall's force acts
+        does not depend on how far it reaches, so a column holds whose stretch has that place inside.
+        """
+        flush, pitch = self.problem.workpiece.flush, self.lattice.pitch[0]
+        columns, first = self.lattice.column_count, np.full(len(pairs), -1, np.int64)
+        null, touches = pairs.null.copy(), touches_of(self.problem.workpiece, edge)
+        both, middle = null[:, :2].sum(axis=1), (reach[0] + reach[1]) / 2.0
+        acts = flush.length[edge] * null[:, 1] / both
+        together = max(TOGETHER // (columns * len(touches)), 1)
+        for begin in range(0, len(pairs), together):
+            some = slice(begin, begin + together)
+            # How far x is from u, for each column of the first peg.
+            shift = np.arange(columns) * pitch - pairs.point[some, 0, 0, None]
+            low, high = ((end - shift).ravel() for end in reach)
+            common = common_stretch(touches, low, high)
+            start, end = (values.reshape(shift.shape) for values in (common.start, common.end))
+            inside = np.minimum(acts[some, None] - start, end - acts[some, None]) > SAME_PLACE
+            inside &= np.arange(columns) + pairs.step[some, :1] < columns
+            length = np.where(inside, end - start, -np.inf)
+            longest = inside & (length >= length.max(axis=1, keepdims=True) - SAME_PLACE)
+            with np.errstate(invalid="ignore"):
+                off = np.where(longest, np.abs((start + end) / 2.0 + shift - middle), np.inf)
+            chosen = (off <= off.min(axis=1, keepdims=True) + SAME_PLACE).argmax(axis=1)
+            rows = np.arange(len(chosen))
+            held = inside[rows, chosen]
+            first[some] = np.where(held, chosen, -1)
+            start, end = start[rows, chosen], end[rows, chosen]
+            with np.errstate(divide="ignore", invalid="ignore"):
+                share = np.where(held, (acts[some] - start) / (end - start), 0.5)
+            null[some, :2] = both[some, None] * np.stack([1.0 - share, share], axis=1)
+        return first, evolve(pairs, null=null)
+
+    def table(
+        self, pairs: LatticePairs, edge: int, back: NDArray[np.int64], first: NDArray[np.int64]
+    ) -> FixtureTable:
+        """The table of pairs on a hull edge, their lowest rows so far (N,) back, first pegs in columns (N,).
 
         Only the closure margin is known.
         """
         flush, problem, count = self.problem.workpiece.flush, self.problem, len(pairs)
         column, row = np.zeros((count, 4), np.int32), np.zeros((count, 4), np.int32)
-        column[:, 3] = pairs.step[:, 0]
+        column[:, 2], column[:, 3] = first, first + pairs.step[:, 0]
         row[:, 2], row[:, 3] = np.maximum(-pairs.step[:, 1], 0) + back, np.maximum(pairs.step[:, 1], 0) + back
         theta = np.full(count, flush.theta[edge])
         start = turned(np.tile(flush.ends[edge, 0], (count, 1)), theta)
-        _, first = self.lattice.place(0, 0)
+        across, level = self.lattice.place(first, 0)
         share = pairs.null / pairs.null.sum(axis=1, keepdims=True)
-        wall = np.tile(flush.face[edge], (count, 1))
+        position = np.stack([across - pairs.point[:, 0, 0], np.zeros(count)], axis=1) - start
+        wall = wall_ends(problem.workpiece, problem.toolkit, theta, position).face
         return FixtureTable(
             arrangement=np.zeros(count, np.int8),
             column=column,
             row=row,
             face=np.concatenate([wall, problem.faces[pairs.feature]], axis=1).astype(np.int32),
             theta=theta,
-            position=np.stack([-pairs.point[:, 0, 0], np.zeros(count)], axis=1) - start,
-            jaw_separation=pairs.point[:, 0, 1] - row[:, 2] * self.lattice.pitch[1] - first,
+            position=position,
+            jaw_separation=pairs.point[:, 0, 1] - row[:, 2] * self.lattice.pitch[1] - level,
             force=share / share[:, :2].sum(axis=1, keepdims=True),
             quality=unknown_quality(share.min(axis=1, initial=1.0)),
         )

@@ -7,10 +7,11 @@ radius, over all that the program sweeps at these heights.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import inf
 
 import numpy as np
-from attrs import frozen
+from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.contact.swept import Swept, path_of, swept_below, swept_beside
@@ -21,7 +22,7 @@ from workhold.model.program import PathVertex, Program
 from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["NearestMove", "Passing", "element_name", "nearest_moves", "passing_of"]
+__all__ = ["NearestMove", "Passing", "element_name", "nearest_moves", "passing_of", "renamed"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -101,6 +102,21 @@ class Passing:
     contact: int
     path: tuple[PathVertex, ...]
     radius: float
+
+    def in_holes(self, before: Sequence[str], after: Sequence[str]) -> Passing:
+        """The passing with the holes of contacts renamed, contact by contact."""
+        return evolve(self, element=renamed(self.element, before, after))
+
+
+def renamed(element: str, before: Sequence[str], after: Sequence[str]) -> str:
+    """The name of what a contact stands on, such as "peg L-A1", with its hole renamed.
+
+    >>> renamed("peg B2", ["A1", "B2"], ["C1", "D2"]), renamed("clamp A1", ["clamp A1"], ["clamp C1"])
+    ('peg D2', 'clamp C1')
+    """
+    names = dict(zip(before, after, strict=True))
+    noun, _, hole = element.rpartition(" ")
+    return names[element] if element in names else f"{noun} {names[hole]}" if hole in names else element
 
 
 def passing_of(result: Result, index: int) -> Passing | None:

@@ -26,7 +26,7 @@ from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import ContactMatrices, Touched
 from workhold.statics.loads import jaw_stiffness, shared_forces
 from workhold.statics.path_pieces import path_forces
-from workhold.statics.program_clearance import element_name
+from workhold.statics.program_clearance import element_name, renamed
 from workhold.units import Unit
 
 __all__ = ["AskedForce", "CuttingNeed", "cutting_figures", "cutting_need_of", "cutting_needs"]
@@ -144,13 +144,11 @@ class CuttingNeed:
 
     def in_holes(self, before: Sequence[str], after: Sequence[str]) -> CuttingNeed:
         """Renames the holes, contact by contact."""
-        names = dict(zip(before, after, strict=True))
 
-        def renamed(asked: AskedForce) -> AskedForce:
-            noun, _, hole = (asked.element or "").rpartition(" ")
-            return evolve(asked, element=f"{noun} {names[hole]}") if hole in names else asked
+        def of(asked: AskedForce) -> AskedForce:
+            return evolve(asked, element=asked.element and renamed(asked.element, before, after))
 
-        return evolve(self, jaw=renamed(self.jaw), contact=renamed(self.contact))
+        return evolve(self, jaw=of(self.jaw), contact=of(self.contact))
 
     def words(self, mover: str, unit: Unit, movers: int = 1) -> list[str]:
         """What a machinist has to know, in sentences.

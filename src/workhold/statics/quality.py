@@ -31,6 +31,7 @@ from workhold.model.quality import (
     CLAMP_FREEDOM,
     CLOSURE_MARGIN,
     FIGURES,
+    JAW_CONTACT,
     JAW_FORCE_NEEDED,
     LOAD_REACTION,
     PENALTY,
@@ -41,6 +42,7 @@ from workhold.model.quality import (
 )
 from workhold.model.requirements import Load, Tolerance
 from workhold.model.result import Result
+from workhold.model.wall_ends import wall_ends
 from workhold.model.workpiece import Workpiece
 from workhold.rowwise import smallest
 from workhold.statics.contact_matrix import Touched
@@ -120,7 +122,7 @@ def quality_of(
 
     Returns
     -------
-    (N, 13) array, columns in the order of ``model.quality.FIGURES``; NaN for figures of loads without loads,
+    (N, 14) array, columns in the order of ``model.quality.FIGURES``; NaN for figures of loads without loads,
     and for pegs whose contact equations have no single solution.
     """
     tolerance = tolerance or Tolerance()
@@ -166,6 +168,10 @@ def quality_of(
         filled[:, CLAMP_FREEDOM] = np.nan
         if toolkit.tips > 1:
             filled[:, [CLOSURE_MARGIN, CLAMP_FREEDOM]] = closures(contact_matrices.closing)
+        filled[:, JAW_CONTACT] = np.nan
+        if toolkit.reaching is not None:
+            (ends,) = toolkit.ends_on_walls
+            filled[:, JAW_CONTACT] = np.diff(x[:, ends], axis=1)[:, 0]
         filled[:, TILT] = tilts(block.theta, direction)
         filled[:, SMALLEST_FACE] = smallest(touched_sizes(block, toolkit, workpiece, sizes))
         filled[:, WARNINGS] = judging.warnings(filled, contact_matrices.edges)
@@ -200,7 +206,7 @@ def shared_faces(block: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) ->
     """Numbers (N, 4), equal for pegs that an error of one face moves alike; one for a corner on a wall."""
     faces = block.face.astype(np.int64)
     for ends in toolkit.ends_on_walls:
-        faces[:, ends] = workpiece.flush.shared[workpiece.flush.number(block.theta)]
+        faces[:, ends] = wall_ends(workpiece, toolkit, block.theta, block.position).shared
     return faces
 
 
@@ -208,8 +214,7 @@ def touched_sizes(block: FixtureTable, toolkit: Toolkit, workpiece: Workpiece, s
     """Sizes (N, 4) in mm of what is touched, from the faces' (S,); on a wall the length that lies on it."""
     out = sizes.take(block.face)
     for ends in toolkit.ends_on_walls:
-        flush = workpiece.flush
-        out[:, ends] = flush.length[flush.number(block.theta)][:, None]
+        out[:, ends] = wall_ends(workpiece, toolkit, block.theta, block.position).length[:, None]
     return np.asarray(out)
 
 

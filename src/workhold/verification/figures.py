@@ -23,7 +23,7 @@ from attrs import field, frozen
 from flint import arb, arb_mat
 
 from workhold.model.fixture import Fixture
-from workhold.model.quality import CLAMP_FREEDOM, FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION
+from workhold.model.quality import CLAMP_FREEDOM, FIGURES, JAW_CONTACT, JAW_FORCE_NEEDED, LOAD_REACTION
 from workhold.model.query import Query
 from workhold.model.requirements import Load
 from workhold.verification.ball_geometry import (
@@ -127,6 +127,7 @@ class Measure:
     walk : along the program, where that has forces.
     direction : main direction of the part in degrees (``verification.judging``).
     jaw_force : in N, None where none was said.
+    has_ends : whether the part lies on a wall that has ends.
     beside : the barriers on the contact feature of each face and radius, as far as known
         (``verification.touching``).
     """
@@ -144,6 +145,7 @@ class Measure:
     walk: ForceWalk | None
     direction: arb
     jaw_force: float | None
+    has_ends: bool
     beside: dict[tuple[int, float, float], list[Barrier]] = field(factory=dict, init=False)
 
     @classmethod
@@ -167,6 +169,7 @@ class Measure:
             None if query.program is None else force_walk_of(query.program),
             main_direction([side for face, side in outline.faces.items() if face < len(outline.segments)]),
             query.jaw_force,
+            has_ends(query),
         )
 
     def figures(
@@ -199,6 +202,8 @@ class Measure:
             "tilt": tilt(pose, self.direction),
             "smallest_face": least([contact.size for contact in contacts]),
         }
+        if self.has_ends:
+            out["jaw_contact"] = next(contact.size for contact in contacts if contact.is_flush)
         if self.loads or self.walk is not None:
             out["load_reaction"] = self.load_reaction(balance)
             out["jaw_force_needed"] = self.jaw_force_needed(balance)
@@ -353,9 +358,16 @@ def figure_missing(fixture: Fixture, query: Query) -> str:
         wanted, why = query.is_loaded or not of_loads, "no loads"
         if figure is FIGURES[CLAMP_FREEDOM]:
             wanted, why = len(fixture.travels) > 1, "no two clamps"
+        if figure is FIGURES[JAW_CONTACT]:
+            wanted, why = has_ends(query), "no ends of a jaw"
         if wanted != (figure.key in fixture.quality):
             return f"its {figure.words} is " + ("missing" if wanted else f"given, and there are {why}")
     return ""
+
+
+def has_ends(query: Query) -> bool:
+    """Whether the part lies on a wall that has ends."""
+    return any(carrier.width is not None for carrier in query.toolkit.carriers)
 
 
 def written_numbers(

@@ -253,6 +253,9 @@ def rank(fixture: Fixture, hardware: ToolkitRules) -> Rank:
             pegs += sorted(there, key=hole_and_face) if carrier in hardware.lattices else there
         placed = [peg for peg in pegs if hardware.carriers[peg.carrier].contact.is_placed]
         holes = [[getattr(peg, noun) for peg in placed] for noun in ("column", "row")]
+        if hardware.jaw is not None:
+            # Where along a jaw with ends the pegs stand makes no difference.
+            holes[0] = [column - min(holes[0]) for column in holes[0]]
         return [*numbers, *holes[0], *holes[1]], (theta + SAME) % tau - SAME, [peg.face for peg in pegs]
     groups = [[peg for peg in fixture.pegs if peg.carrier == one.name] for one in hardware.lattices]
     clamps = [peg for peg in fixture.pegs if direction_of(peg)]

@@ -78,6 +78,9 @@ FLUSH, LEAST_FLUSH = 1e-7, 1e-6
 # Radians and mm. Fixtures in the same holes with orientations and places nearer than this are the same.
 SAME = 1e-6
 
+# mm. Of lengths that differ by ``SAME`` but for this, either may be said to be the longer one.
+SPARE = 1e-8
+
 # No unit. A bulge below this in size is a line: a convention of the file's form.
 STRAIGHT = 2e-6
 # Radians. Arcs of one face that lack less than this of half a turn of half sweep are a whole circle.

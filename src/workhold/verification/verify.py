@@ -173,8 +173,14 @@ class Judge:
             balance = Balance.of(contacts, pose, self.query.toolkit.clamping)
             loose = list(closure_findings(balance, self.wrench_length, hardware.names, hardware.slack_words))
             yield from loose
-            if not (loose and is_proven):
-                yield from self.figure_findings(fixture, contacts, pose, measure, balance)
+            if loose and is_proven:
+                return
+            outline = measure.outline
+            yield from hardware.reach_findings(fixture, contacts, pose, outline, balance.shares)
+            pressed = hardware.pressed(fixture, contacts, pose, outline)
+            if hardware.jaw is not None:
+                balance = Balance.of(pressed, pose, self.query.toolkit.clamping)
+            yield from self.figure_findings(fixture, pressed, pose, measure, balance)
             return
         seat = SeatBalance.of(contacts, pose)
         yield from seat.push_findings(self.wrench_length)

@@ -20,6 +20,7 @@ from workhold.geometry.segment import Arc, Box, Segment
 from workhold.model.clamps import ShownClamp, order_words
 from workhold.model.fixture import Fixture
 from workhold.model.fixture_table import FixtureTable, fixture_at
+from workhold.model.moved_setup import middle_move, moved_on, overhangs
 from workhold.model.quality import FIGURES
 from workhold.model.search_report import Explanation, Proof
 from workhold.model.setup import settings_of
@@ -262,19 +263,28 @@ def arrangements_answer(toolkit: Toolkit) -> list[dict[str, str]]:
 
 
 def fixture_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> dict[str, Any]:
-    """Describes a fixture, without its rank."""
+    """Describes a fixture, without its rank, on its plate as it stands in the middle of that.
+
+    Holes are named so, and plates lie so under the part. All places are in the frame of the fixture as it is
+    listed; ``placed`` is by how much it stands further on.
+    """
+    move = middle_move(fixture, toolkit, workpiece)
+    stands = moved_on(fixture, toolkit, move)
+    placed = [steps * pitch for steps, pitch in zip(move, toolkit.plates[0].pitch, strict=True)]
     return {
         "type": fixture.type,
         "title": toolkit.arrangement(fixture.type, fixture.direction).heading,
         "settings": [
-            {"sign": one.sign, "name": one.name, "length": one.length}
-            for one in settings_of(fixture, toolkit)
+            {"sign": one.sign, "name": one.name, "length": one.length} for one in settings_of(stands, toolkit)
         ],
-        "order": order_words(fixture),
+        "order": order_words(stands),
         "pairs": fixture.pair and fixture.pair.count,
         "mover": toolkit.moving.noun,
         "origin": toolkit.datum.name,
-        "holes": [peg.hole for peg in fixture.pegs],
+        "placed": placed,
+        "hangs_over": {one.side: one.length for one in overhangs(stands, toolkit, workpiece)},
+        "stands_out_of": toolkit.reaching and toolkit.reaching.noun,
+        "holes": [peg.hole for peg in stands.pegs],
         "faces": [peg.face for peg in fixture.pegs],
         "touched": [peg.touched for peg in fixture.pegs],
         "corners": [number for number, peg in enumerate(fixture.pegs) if peg.beside is not None],
@@ -285,9 +295,29 @@ def fixture_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> 
         "jaw_separation": fixture.jaw_separation,
         "pegs": [[peg.x, peg.y] for peg in fixture.pegs],
         "forces": [finite(peg.force) for peg in fixture.pegs],
-        "carriers": carriers_answer(shown(fixture, toolkit, workpiece)),
+        "carriers": moved_back(carriers_answer(shown(stands, toolkit, workpiece)), placed),
         "quality": {key: finite(value) for key, value in fixture.quality.items()},
     }
+
+
+def moved_back(carriers: list[dict[str, Any]], by: Sequence[float]) -> list[dict[str, Any]]:
+    """Carriers with their places moved back by x and y in mm, to where the fixture is listed."""
+    dx, dy = by
+    if dx == dy == 0.0:
+        return carriers
+
+    def back(place: Sequence[float]) -> list[float]:
+        """Coordinates x, y, and perhaps those of a further corner."""
+        return [value - (dx, dy)[k % 2] for k, value in enumerate(place)]
+
+    for carrier in carriers:
+        carrier["origin"], carrier["plate"] = back(carrier["origin"]), back(carrier["plate"])
+        if carrier["measured"] is not None:
+            carrier["measured"] = [back(place) for place in carrier["measured"]]
+        if clamp := carrier["clamp"]:
+            clamp["tip"], clamp["line"] = back(clamp["tip"]), back(clamp["line"])
+            clamp["hole"] = clamp["hole"] and back(clamp["hole"])
+    return carriers
 
 
 def contact_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> dict[str, Any]:

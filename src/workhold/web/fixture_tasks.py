@@ -13,7 +13,7 @@ from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from attrs import frozen
+from attrs import evolve, frozen
 from pydantic import Field
 
 from workhold.drawing.scene import LengthUnit
@@ -191,11 +191,17 @@ def picture(order: PaperOrder) -> tuple[bytes, str | None]:
     """Draws the picture to set the vise from."""
     from workhold.drawing.fixture_pictures import draw_fixture
     from workhold.drawing.path_drawn import planned_path
+    from workhold.model.moved_setup import middle_move, moved_on
 
     result = order.result
     title = f"Fixture {order.rank} of {order.count}"
-    path = planned_path(result, order.index)
-    svg = draw_fixture(order.fixture, result.workpiece, result.toolkit, title=title, path=path)
+    path, move = (
+        planned_path(result, order.index),
+        middle_move(order.fixture, result.toolkit, result.workpiece),
+    )
+    fixture = moved_on(order.fixture, result.toolkit, move)
+    path = None if path is None else evolve(path, fixture=fixture)
+    svg = draw_fixture(fixture, result.workpiece, result.toolkit, title=title, path=path)
     return svg.encode("utf-8"), None
 
 

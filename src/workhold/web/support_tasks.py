@@ -12,12 +12,13 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from attrs import frozen
+from attrs import evolve, frozen
 
 from workhold.errors import InputError
 from workhold.geometry.segment import bounding_box
 from workhold.model.bodies import BodySizes
 from workhold.model.fixture import Fixture
+from workhold.model.moved_setup import middle_move, moved_on
 from workhold.model.query import Query
 from workhold.model.requirements import zone_of
 from workhold.model.support_bodies import bodies_on_supports, supported_sizes
@@ -126,7 +127,7 @@ def set_answer(found: Supports, triple: Triple) -> dict[str, Any]:
         return [float(value) for value in fixture.pose.apply(x, y)]
 
     return {
-        "holes": [pad.hole for pad in triple.supports],
+        "holes": standing_holes(found, triple)[1],
         "carriers": found.query.toolkit.carrier_numbers(pad.carrier for pad in triple.supports),
         "pads": [placed(pad.x, pad.y) for pad in triple.supports],
         "at": placed(*clamp.at),
@@ -144,16 +145,26 @@ def set_answer(found: Supports, triple: Triple) -> dict[str, Any]:
     }
 
 
+def standing_holes(found: Supports, triple: Triple) -> tuple[list[str], list[str]]:
+    """The holes of pegs, and of supports, as the page names them: in the middle of the plate."""
+    query = found.query
+    move = middle_move(found.fixture, query.toolkit, query.workpiece)
+    pegs = [peg.hole for peg in moved_on(found.fixture, query.toolkit, move).pegs]
+    pads = [evolve(pad, column=pad.column + move[0], row=pad.row + move[1]) for pad in triple.supports]
+    return pegs, [pad.hole for pad in pads]
+
+
 def built_answer(found: Supports, triple: Triple) -> dict[str, list[str]] | None:
-    """Names the holes in which a set is built where they are not those of the list; None where they are."""
+    """Names the holes in which a set is built where the page names others; None where it does not."""
+    query = found.query
+    start = middle_move(found.fixture, query.toolkit, query.workpiece)
     try:
-        anew = recounted(found.fixture, found.query.toolkit, triple)
+        anew = recounted(found.fixture, query.toolkit, triple, start)
     except InputError:
         return None
     pegs = [peg.hole for peg in anew.fixture.pegs]
     pads = [pad.hole for pad in anew.supports]
-    listed = [peg.hole for peg in found.fixture.pegs], [pad.hole for pad in triple.supports]
-    if (pegs, pads) == listed:
+    if (pegs, pads) == standing_holes(found, triple):
         return None
     return {"pegs": pegs, "supports": pads}
 

@@ -40,7 +40,7 @@ from workhold.model.quality import FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION, PRO
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.model.seating import Seating
-from workhold.model.workpiece import Workpiece
+from workhold.model.wall_ends import wall_ends
 
 __all__ = ["read_result"]
 
@@ -251,7 +251,7 @@ def checked_table(columns: Columns, query: Query, path: Path) -> FixtureTable:
     column, row, face = (np.ascontiguousarray(hole[:, :, k]) for k in range(3))
     theta_deg, x, y, separation, pairs = columns.placing.T
     for ends in toolkit.ends_on_walls:
-        face[:, ends] = faces_on_wall(query.workpiece, np.radians(theta_deg), path)
+        face[:, ends] = faces_on_wall(query, np.radians(theta_deg), np.stack([x, y], axis=1), path)
     tips = range(toolkit.peg_count - toolkit.tips, toolkit.peg_count)
     strokes = [clamp_travel(toolkit, jaw[:, k], hole[:, k], contact[:, k]) for k in tips]
     travels, force = strokes or [separation], contact[:, :, 2 : 2 + toolkit.travels]
@@ -282,14 +282,17 @@ def checked_table(columns: Columns, query: Query, path: Path) -> FixtureTable:
     return table
 
 
-def faces_on_wall(workpiece: Workpiece, theta: NDArray[np.float64], path: Path) -> NDArray[np.int32]:
-    """The faces (N, 2) at the ends of the contact with a wall, in orientations (N,) in radians.
+def faces_on_wall(
+    query: Query, theta: NDArray[np.float64], position: NDArray[np.float64], path: Path
+) -> NDArray[np.int64]:
+    """The faces (N, 2) at the ends of the contact with a wall, in poses (N,) in radians and (N, 2) in mm.
 
     Refuses a workpiece that cannot lie flush on a wall, where there are fixtures.
     """
+    workpiece = query.workpiece
     if len(theta) and len(workpiece.hull_edges) == 0:
         raise InputError(f"{path}: fixture 1 lies flush on a wall, which {workpiece.name} cannot.")
-    return workpiece.flush.face[workpiece.flush.number(theta)]
+    return wall_ends(workpiece, query.toolkit, theta, position).face
 
 
 def clamp_travel(

@@ -37,7 +37,7 @@ from workhold.verification.rules.travel import (
     opening_findings,
     travelled,
 )
-from workhold.verification.rules.wall import WallContact, flush_findings, wall_contacts
+from workhold.verification.rules.wall import Jaw, WallContact, flush_findings, wall_contacts
 from workhold.verification.tolerances import AGREEMENT, Finding, number, rule
 
 __all__ = ["ToolkitRules"]
@@ -88,6 +88,15 @@ class ToolkitRules:
         """What the wall is called; empty where there is none."""
         return next((one.noun for one in self.walls), "")
 
+    @cached_property
+    def jaw(self) -> Jaw | None:
+        """The wall where it has ends, in the middle of the columns beside it; None of an endless one."""
+        for wall in self.walls:
+            columns = self.lattices[0].columns
+            if wall.width is not None and columns is not None:
+                return Jaw(wall.noun, wall.width, self.lattices[0].pitch[0], columns)
+        return None
+
     @property
     def half_turns(self) -> bool:
         """Whether half a turn leaves the toolkit as it is.
@@ -123,7 +132,7 @@ class ToolkitRules:
     def from_lowest(self) -> tuple[str, ...]:
         """Which of columns and rows count from the lowest in use; rows beside a wall count from the wall."""
         if self.walls:
-            return ("column",)
+            return () if self.jaw is not None else ("column",)
         return ("column", "row") if self.tips else ()
 
     @cached_property
@@ -260,6 +269,42 @@ class ToolkitRules:
             out[-1] = evolve(out[-1], travel=1)
         return out
 
+    def pressed(
+        self, fixture: Fixture, contacts: Sequence[BallContact], pose: BallPose, outline: BallOutline
+    ) -> list[BallContact]:
+        """The contacts at a pose that take up the forces: on a jaw with ends those of the common stretch."""
+        if self.jaw is None:
+            return [*contacts]
+        ends = [contact for contact in contacts if isinstance(contact, WallContact)]
+        found = iter(self.jaw.contacts(ends, met_by(outline, WALL), pose))
+        return [next(found) if isinstance(contact, WallContact) else contact for contact in contacts]
+
+    def reach_findings(
+        self,
+        fixture: Fixture,
+        contacts: Sequence[BallContact],
+        pose: BallPose,
+        outline: BallOutline,
+        shares: Sequence[arb],
+    ) -> Iterator[Finding]:
+        """Whether a jaw with ends reaches the part where it is pressed, and the pegs' columns are the best.
+
+        Parameters
+        ----------
+        contacts, shares : those of an endless wall, and their null vector.
+        """
+        if self.jaw is None:
+            return
+        ends = [
+            (share, contact.place(pose)[0])
+            for contact, share in zip(contacts, shares, strict=True)
+            if isinstance(contact, WallContact)
+        ]
+        (one, left), (other, right) = ends
+        columns = [peg.column for _, peg in self.placed(fixture)]
+        force_at = (one * left + other * right) / (one + other)
+        yield from self.jaw.findings(columns, force_at, met_by(outline, WALL), pose)
+
     def shared_faces(self, fixture: Fixture, contacts: Sequence[BallContact]) -> list[int]:
         """Numbers of what the pegs touch: the same for those that an error of a face moves alike.
 
@@ -353,7 +398,9 @@ class ToolkitRules:
         named = list(zip(self.names, fixture.pegs, contacts, strict=True))
         if self.walls:
             ends = [(name, peg, end) for name, peg, end in named if isinstance(end, WallContact)]
-            yield from flush_findings(self.wall_noun, ends, pose, met_by(outline, WALL))
+            met, said = met_by(outline, WALL), self.pressed(fixture, contacts, pose, outline)
+            written = [end for end in said if isinstance(end, WallContact)]
+            yield from flush_findings(self.wall_noun, ends, pose, met, written)
         for jaw in self.lattices:
             if jaw.travel is not None:
                 yield from opening_findings(jaw, pose.travels[0])

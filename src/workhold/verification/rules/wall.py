@@ -1,5 +1,9 @@
 """A straight wall that the part lies flush on, as two contacts at the ends of a hull edge.
 
+A wall that has ends, such as a flat jaw, reaches over some x. What the part touches of its line, faces along
+it, joints and arcs, is met there from the first point to the last, the common stretch. The wall pushes at the
+ends of that. Where its force acts follows from the pegs alone, however far the wall reaches.
+
 The wall runs along x at y = 0 with the part above it. What touches it is derived from the outline at the
 written pose: the lowest joints and convex arcs. The two ends are contacts like any other, each with an
 equation of its own: its lowest point is at y = 0.
@@ -11,7 +15,7 @@ from collections.abc import Iterator, Sequence
 from math import isnan
 from typing import ClassVar
 
-from attrs import frozen
+from attrs import evolve, frozen
 from flint import arb
 
 from workhold.model.fixture import Peg
@@ -26,9 +30,19 @@ from workhold.verification.ball_geometry import (
     turned,
 )
 from workhold.verification.contacts import BallContact, BallPose
-from workhold.verification.tolerances import AGREEMENT, FLUSH, LEAST_FLUSH, Finding, number, rule
+from workhold.verification.tolerances import (
+    AGREEMENT,
+    FLUSH,
+    HAIR,
+    LEAST_FLUSH,
+    SAME,
+    SPARE,
+    Finding,
+    number,
+    rule,
+)
 
-__all__ = ["WallContact", "flush_findings", "wall_contacts"]
+__all__ = ["Jaw", "WallContact", "flush_findings", "wall_contacts"]
 
 
 @frozen(eq=False)
@@ -143,11 +157,163 @@ def along_wall(end: Support, outline: BallOutline, pose: BallPose) -> tuple[int,
     return end.faces
 
 
+@frozen(eq=False)
+class Stretch:
+    """What a part and a jaw have in common.
+
+    Parameters
+    ----------
+    left, right : x of its ends in mm.
+    faces : numbers of what touches at each.
+    """
+
+    left: arb
+    right: arb
+    faces: tuple[tuple[int, ...], tuple[int, ...]]
+
+    @property
+    def length(self) -> arb:
+        """The length in mm."""
+        return self.right - self.left
+
+
+@frozen(eq=False)
+class Jaw:
+    """A wall that has ends, beside a lattice of holes whose middle column is over its middle.
+
+    Parameters
+    ----------
+    noun : what it is called.
+    width : in mm.
+    pitch : distance in mm between columns.
+    columns : how many there are.
+    """
+
+    noun: str
+    width: float
+    pitch: float
+    columns: int
+
+    @property
+    def middle(self) -> arb:
+        """x of its middle in mm."""
+        return arb(self.columns - 1) * self.pitch / 2
+
+    def stretch(self, outline: BallOutline, pose: BallPose, shift: arb) -> Stretch | None:
+        """What a part has in common with the jaw once it is shifted along x in mm; None for nothing."""
+        first, last = self.middle - arb(self.width) / 2 - shift, self.middle + arb(self.width) / 2 - shift
+        lefts: list[tuple[arb, int, tuple[int, ...]]] = []
+        rights: list[tuple[arb, int, tuple[int, ...]]] = []
+        for low, high, faces in on_line(outline, pose):
+            if float((low - last).mid()) > HAIR or float((first - high).mid()) > HAIR:
+                continue
+            # What lies along the jaw comes before a joint, and that before an arc.
+            order = 0 if float((high - low).mid()) > SAME else 3 - len(faces)
+            lefts.append((low.max(first), order, faces))
+            rights.append((high.min(last), order, faces))
+        if not lefts:
+            return None
+        left, right = (
+            min(ends, key=lambda end: sign * float(end[0].mid())) for ends, sign in ((lefts, 1), (rights, -1))
+        )
+        faces = tuple(
+            min((e for e in ends if abs(float((e[0] - at[0]).mid())) <= SAME), key=lambda end: end[1])[2]
+            for ends, at in ((lefts, left), (rights, right))
+        )
+        return Stretch(left[0] + shift, right[0] + shift, (faces[0], faces[1]))
+
+    def contacts(
+        self, ends: Sequence[WallContact], outline: BallOutline, pose: BallPose
+    ) -> list[WallContact]:
+        """The ends of the common stretch at a pose instead of those of the whole contact; these if none."""
+        found = self.stretch(outline, pose, arb(0))
+        if found is None:
+            return [*ends]
+        out = []
+        for end, x, faces in zip(ends, (found.left, found.right), found.faces, strict=True):
+            point = turned((x - pose.x, -pose.y), pose.cosine, -pose.sine)
+            piece = Support(point, arb(0), faces)
+            out.append(evolve(end, piece=piece, faces=faces, length=found.length))
+        return out
+
+    def findings(
+        self, columns: Sequence[int], force_at: arb, outline: BallOutline, pose: BallPose
+    ) -> Iterator[Finding]:
+        """Whether the jaw holds the part where its force acts, and no other columns do so better.
+
+        Parameters
+        ----------
+        columns : those in which the pegs stand.
+        force_at : x in mm at which the force of the wall acts.
+        """
+        first, found = min(columns), dict[int, tuple[Stretch, arb]]()
+        for column in range(self.columns - (max(columns) - first)):
+            shift = arb(column - first) * self.pitch
+            stretch = self.stretch(outline, pose, shift)
+            if stretch is not None:
+                at = force_at + shift
+                found[column] = stretch, (at - stretch.left).min(stretch.right - at)
+        if first not in found:
+            yield Finding(True, f"the part does not lie on the {self.noun} between its ends")
+            return
+        own, inside = found[first]
+        if not -SPARE < inside - SAME < SPARE:
+            yield from rule(
+                inside - SAME,
+                f"the force of the {self.noun} acts {number(-inside)} mm beyond where both touch",
+            )
+        # What is this near to holding, or to being as long, may count or not.
+        held = {k: stretch for k, (stretch, inside) in found.items() if inside > SAME + SPARE or k == first}
+        longest = max(float(stretch.length.mid()) for stretch in held.values())
+        words = f"its pegs would stand better from column {{}} on: the {self.noun} holds "
+        if float(own.length.mid()) < longest - SAME - SPARE:
+            best = next(k for k, one in held.items() if float(one.length.mid()) == longest)
+            yield Finding(True, f"{words.format(best)}{longest:.6g} mm of the part there")
+            return
+        equal = {
+            k: abs(float(((one.left + one.right) / 2 - self.middle).mid()))
+            for k, one in held.items()
+            if k == first or float(one.length.mid()) >= longest - SAME + SPARE
+        }
+        nearest = min(equal.values())
+        if equal[first] > nearest + SAME + SPARE:
+            best = next(k for k, off in equal.items() if off == nearest)
+            yield Finding(True, f"{words.format(best)}it nearer to its middle there")
+        for k, off in equal.items():
+            if k < first and off <= nearest + SAME - SPARE:
+                yield Finding(True, f"{words.format(k)}it as well there")
+                return
+
+
+def on_line(outline: BallOutline, pose: BallPose) -> Iterator[tuple[arb, arb, tuple[int, ...]]]:
+    """The x in mm between which a part touches the line of a wall, and the numbers of what touches."""
+    for face, side in outline.faces.items():
+        if isinstance(side, LineSide):
+            ends = [turned(point, pose.cosine, pose.sine) for point in (side.start, side.end)]
+            if all(abs(float((y + pose.y).mid())) <= 3 * FLUSH for _, y in ends):
+                low, high = sorted((x + pose.x for x, _ in ends), key=lambda x: float(x.mid()))
+                yield low, high, (face,)
+    for piece in pieces(outline, pose):
+        x, y = piece.lowest(pose)
+        if abs(float(y.mid())) <= 3 * FLUSH:
+            yield x, x, piece.faces
+
+
 def flush_findings(
-    noun: str, ends: Sequence[tuple[str, Peg, WallContact]], pose: BallPose, outline: BallOutline
+    noun: str,
+    ends: Sequence[tuple[str, Peg, WallContact]],
+    pose: BallPose,
+    outline: BallOutline,
+    written: Sequence[WallContact] | None = None,
 ) -> Iterator[Finding]:
-    """Whether the part lies flush on a wall called ``noun``, its two named ends where they are written."""
-    (left, _), (right, _) = places = [contact.place(pose) for _, _, contact in ends]
+    """Whether the part lies flush on a wall called ``noun``, its two named ends where they are written.
+
+    Parameters
+    ----------
+    ends : those of the whole contact.
+    written : those that the file says, the ends of what the wall reaches of it; the same if None.
+    """
+    (left, _), (right, _) = [contact.place(pose) for _, _, contact in ends]
     yield from rule(right - left - LEAST_FLUSH, f"the part does not lie flush on the {noun}")
     for piece in pieces(outline, pose):
         (x, low), face = piece.lowest(pose), piece.faces[0]
@@ -156,7 +322,9 @@ def flush_findings(
         if not (low > FLUSH / 2 or beyond < 0):
             words = f"the part lies on the {noun} at face {face}, beyond its stated ends"
             yield Finding(bool(low < -FLUSH), words)
-    for (name, peg, contact), place in zip(ends, places, strict=True):
+    said = [contact for *_, contact in ends] if written is None else written
+    for (name, peg, _), contact in zip(ends, said, strict=True):
+        place = contact.place(pose)
         if peg.face != min(contact.faces):
             yield Finding(True, f"{name} touches face {min(contact.faces)}, and not {peg.face}")
         for axis, written, derived in zip("xy", (peg.x, peg.y), place, strict=True):

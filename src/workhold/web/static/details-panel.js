@@ -40,14 +40,21 @@ function writePegs(row) {
     ...row.holes.map((hole, k) =>
       make("tr", {},
         make("td", {}, hole), make("td", {}, row.touched[k]),
-        make("td.number", {}, bareLength(row.pegs[k][0])), make("td.number", {}, bareLength(row.pegs[k][1])),
+        make("td.number", {}, bareLength(row.pegs[k][0] + row.placed[0])), make("td.number", {}, bareLength(row.pegs[k][1] + row.placed[1])),
         make("td.number", {}, loaded ? number(loaded[k], 0) : number(row.forces[k], 3)),
       ),
     ),
   );
   byId("pose-words").textContent =
     `${settingWords(row).map(capital).join(", ")}. ${row.order ? `${row.order} ` : ""}Part turned by ${number(writtenTurn(row), 3)}°, its zero at ` +
-    `${bareLength(row.x)}, ${length(row.y)} from ${row.flush.length ? "" : "hole "}${row.origin}. ` + (loaded ? "" : `Forces are for each newton of ${forceOf(row)}.`);
+    `${bareLength(row.x + row.placed[0])}, ${length(row.y + row.placed[1])} from ${row.flush.length ? "" : "hole "}${row.origin}. ` + overhangWords(row) + (loaded ? "" : `Forces are for each newton of ${forceOf(row)}.`);
+}
+
+/** How far the part stands out beyond a jaw, or hangs over its plates. */
+function overhangWords({ hangs_over, stands_out_of: wall }) {
+  const sides = Object.entries(hangs_over).map(([side, by]) => `${length(by)} at the ${side}${side.endsWith("er") ? " side" : ""}`);
+  if (!sides.length) return "";
+  return `The part ${wall ? `stands out beyond the ${wall}` : "hangs over the plate"}: ${sides.join(", ")}. `;
 }
 
 /** What there is to set, with its length; of several clamps with the name of each. */

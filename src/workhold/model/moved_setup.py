@@ -1,0 +1,271 @@
+"""Where on the shop's plate a set-up stands: in its middle, or where somebody says, and what hangs over.
+
+A fixture is listed in the lowest columns and rows. Part, pegs and clamps may stand in others together: so
+many columns and rows further on. Where the plate's columns and rows are known, sheet and page show all of it
+in the middle of the plate. Jaws of a vise keep their columns, which are nearest to the opening, and what
+counts from a wall its rows. Where a flat jaw has ends its columns are listed as it holds best.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from math import inf
+
+from attrs import evolve, frozen
+
+from workhold.conventions import AGREEMENT
+from workhold.errors import InputError, listed
+from workhold.fixels.carrier import column_letters
+from workhold.fixels.toolkit import Toolkit
+from workhold.geometry.segment import Box
+from workhold.model.clamps import shown_clamps
+from workhold.model.fixture import Fixture, Peg
+from workhold.model.reach import held_box
+from workhold.model.shown import placed_box
+from workhold.model.workpiece import Workpiece
+
+__all__ = [
+    "Overhang",
+    "counted_on",
+    "middle_move",
+    "move_to",
+    "moved_on",
+    "overhang_words",
+    "overhangs",
+    "spare_holes",
+]
+
+Hole = tuple[int, int]
+NAME = re.compile(r"(?:[A-Z]-)?([A-Z]{1,3})([1-9][0-9]{0,5})")
+REMEDY = "give a column letter and a row of the plate, such as D4"
+
+
+def counted_on(
+    fixture: Fixture,
+    toolkit: Toolkit,
+    move: tuple[float, float],
+    shifts: Mapping[str, Hole],
+    travel: float,
+) -> Fixture:
+    """A fixture with its holes counted further on.
+
+    Parameters
+    ----------
+    move : by how much part and pegs stand further on, x and y in mm.
+    shifts : by how many columns and rows the holes of each plate count further on, by its name.
+    travel : of what moves, in mm, before the move.
+    """
+    dx, dy = move
+
+    def further(peg: Peg) -> Peg:
+        carrier = toolkit.carrier(peg.carrier)
+        if not carrier.contact.is_placed:
+            return evolve(peg, x=peg.x + dx, y=peg.y + dy)
+        by = shifts[carrier.stands_on]
+        in_column, in_row = carrier.counted
+        column, row = peg.column + in_column * by[0], peg.row + in_row * by[1]
+        place = None if peg.place is None else carrier.place_name(column, row)
+        return evolve(peg, column=column, row=row, x=peg.x + dx, y=peg.y + dy, place=place)
+
+    pose = evolve(fixture.pose, x=fixture.pose.x + dx, y=fixture.pose.y + dy)
+    # A clamp of which only the line is known is measured from the first column or row.
+    ahead = [
+        0.0
+        if all(carrier.counted) or carrier.travel is None
+        else dx * carrier.travel.unit[0] + dy * carrier.travel.unit[1]
+        for carrier in (toolkit.carrier(peg.carrier) for peg in fixture.pegs)
+        if carrier.on is not None
+    ]
+    before = fixture.travels
+    ends = ahead or [0.0]
+    pair = fixture.pair and evolve(fixture.pair, travels=(before[0] + ends[0], before[-1] + ends[-1]))
+    own = travel + (ahead[0] if ahead else 0.0)
+    return evolve(fixture, pegs=tuple(map(further, fixture.pegs)), pose=pose, jaw_separation=own, pair=pair)
+
+
+def used_holes(fixture: Fixture, toolkit: Toolkit) -> tuple[list[int], list[int]]:
+    """The columns and the rows that pegs and clamps take up."""
+    counted = [(peg, toolkit.carrier(peg.carrier).counted) for peg in fixture.pegs]
+    return (
+        [peg.column for peg, (in_column, _) in counted if in_column],
+        [peg.row for peg, (_, in_row) in counted if in_row],
+    )
+
+
+def spare_holes(fixture: Fixture, toolkit: Toolkit) -> tuple[tuple[int, int | None], tuple[int, int | None]]:
+    """How many columns a set-up may be moved left and right, and how many rows down and up.
+
+    None stands for any number, where the plate has no end. What cannot be moved has zeros.
+    """
+    plate = toolkit.plates[0]
+    along, across = (
+        (min(used), None if count is None else count - 1 - max(used))
+        for used, count in zip(used_holes(fixture, toolkit), (plate.columns, plate.rows), strict=True)
+    )
+    # Jaws hold in the columns nearest to the opening, and a jaw with ends where it reaches the part best.
+    if len(toolkit.plates) > 1 or toolkit.reaching is not None:
+        along = 0, 0
+    return along, (0, 0) if toolkit.datum.fixes_rows else across
+
+
+def middle_move(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> Hole:
+    """Columns and rows by which all of a set-up stands further on in the middle of its plate.
+
+    The extent of part, pegs and clamps is then as near to the middle as holes allow; of two places the lower
+    one counts. It is 0 along what has no end, and where all may stand in one place only. Rows of jaws are
+    listed in the middle.
+    """
+    plate = toolkit.plates[0]
+    held = held_box(placed_box(workpiece, fixture.pose), fixture, tuple(shown_clamps(fixture, toolkit)))
+    centers = (held.x0 + held.x1) / 2, (held.y0 + held.y1) / 2
+    found = []
+    for center, (back, ahead), count, pitch, first in zip(
+        centers,
+        spare_holes(fixture, toolkit),
+        (plate.columns, plate.rows),
+        plate.pitch,
+        plate.offset,
+        strict=True,
+    ):
+        if count is None or ahead is None or len(toolkit.plates) > 1:
+            found.append(0)
+            continue
+        off = center - first - (count - 1) * pitch / 2
+        steps = range(-back, ahead + 1)
+        found.append(min(steps, key=lambda step: (round(abs(off + step * pitch), 6), step)))
+    return found[0], found[1]
+
+
+def move_to(fixture: Fixture, toolkit: Toolkit, name: str) -> Hole:
+    """Columns and rows by which all of a set-up stands further on with its lowest ones at a hole's.
+
+    Parameters
+    ----------
+    name : of the hole in which its lowest column and its lowest row meet, such as "D4".
+
+    Raises
+    ------
+    InputError
+        For what is no hole, and for a place in which the set-up cannot stand.
+    """
+    match = NAME.fullmatch(name.strip().upper())
+    if match is None:
+        raise InputError(f"{name[:40]!r} names no hole to stand at: {REMEDY}.")
+    column = 0
+    for letter in match[1]:
+        column = 26 * column + ord(letter) - ord("A") + 1
+    wanted, lowest = (column - 1, int(match[2]) - 1), [*map(min, used_holes(fixture, toolkit))]
+    if toolkit.datum.fixes_rows:
+        # Rows beside a wall, or of a jaw that slides toward one, are where they are.
+        wanted = wanted[0], lowest[1]
+    if len(toolkit.plates) > 1:
+        # So are the columns of two jaws, nearest to the opening.
+        wanted = lowest[0], wanted[1]
+    move = wanted[0] - lowest[0], wanted[1] - lowest[1]
+    for number, (steps, (back, ahead), noun) in enumerate(
+        zip(move, spare_holes(fixture, toolkit), ("column", "row"), strict=True)
+    ):
+        if not -back <= steps <= (inf if ahead is None else ahead):
+            least = lowest[number] - back
+            most = None if ahead is None else lowest[number] + ahead
+            named = [column_letters, lambda row: str(row + 1)][number]
+            may = named(least)
+            if most is None:
+                may += " or farther"
+            elif most > least:
+                may = f"one of {may} to {named(most)}"
+            raise InputError(
+                f"the set-up cannot stand at {name.strip()[:40]}: its lowest {noun} can be {may}; {REMEDY}."
+            )
+    for peg in moved_on(fixture, toolkit, move).pegs:
+        if toolkit.carrier(peg.carrier).is_blocked(peg.column, peg.row):
+            raise InputError(
+                f"the set-up cannot stand at {name.strip()[:40]}: hole {peg.hole} is blocked; {REMEDY}."
+            )
+    return move
+
+
+def moved_on(fixture: Fixture, toolkit: Toolkit, move: Hole) -> Fixture:
+    """A fixture so many columns and rows of its first plate further on."""
+    if move == (0, 0):
+        return fixture
+    pitch = toolkit.plates[0].pitch
+    by, shifts = (move[0] * pitch[0], move[1] * pitch[1]), {plate.name: move for plate in toolkit.plates}
+    return counted_on(fixture, toolkit, by, shifts, fixture.jaw_separation)
+
+
+@frozen
+class Overhang:
+    """A side over which the part hangs.
+
+    Parameters
+    ----------
+    side : "left", "right", "lower" or "upper".
+    length : by how much, in mm.
+    """
+
+    side: str
+    length: float
+
+
+def overhangs(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> Iterator[Overhang]:
+    """The sides over which the part hangs: of a wall with ends, else of plates.
+
+    A plate ends half a pitch beyond its holes.
+    """
+    part, wall = placed_box(workpiece, fixture.pose), toolkit.reaching
+    edge = plates_box(fixture, toolkit)
+    if wall is not None and wall.reach is not None:
+        edge = Box(wall.reach[0], -inf, wall.reach[1], inf)
+    sides = {
+        "left": edge.x0 - part.x0,
+        "right": part.x1 - edge.x1,
+        "lower": edge.y0 - part.y0,
+        "upper": part.y1 - edge.y1,
+    }
+    yield from (Overhang(side, length) for side, length in sides.items() if length > AGREEMENT)
+
+
+# What the sides of a plate are called after "at the".
+SIDES = {"left": "left", "right": "right", "lower": "lower side", "upper": "upper side"}
+
+
+def overhang_words(
+    fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece, text: Callable[[float], str]
+) -> str:
+    """How far the part hangs over the plates, or stands out beyond a jaw; nothing where it does not.
+
+    Parameters
+    ----------
+    text : writes a length in mm.
+    """
+    found, wall = list(overhangs(fixture, toolkit, workpiece)), toolkit.reaching
+    if not found:
+        return ""
+    sides = listed([f"{text(one.length)} at the {SIDES[one.side]}" for one in found])
+    if wall is not None:
+        return f"The part stands out beyond the {wall.noun}: {sides}."
+    nouns = listed([plate.title for plate in toolkit.plates])
+    edges = "edge is" if len(toolkit.plates) == 1 else "edges are"
+    return f"The part hangs over the {nouns}: {sides} (the {edges} taken half a pitch beyond the last holes)."
+
+
+def plates_box(fixture: Fixture, toolkit: Toolkit) -> Box:
+    """The box of all plates, half a pitch beyond their holes; infinite where one has no end."""
+    boxes = []
+    for plate in toolkit.plates:
+        travelled = 0.0 if plate.travel is None else fixture.jaw_separation
+        (x0, y0), half_x, half_y = plate.place(0, 0, travelled), plate.pitch[0] / 2, plate.pitch[1] / 2
+        right = inf if plate.columns is None else x0 + (2 * plate.columns - 1) * half_x
+        upper = inf if plate.rows is None else y0 + (2 * plate.rows - 1) * half_y
+        left, lower = (
+            -inf if end == inf else first for end, first in ((right, x0 - half_x), (upper, y0 - half_y))
+        )
+        # What counts from a wall goes on below its first row, and a plate that slides leaves the rows open.
+        is_open = toolkit.datum.fixes_rows
+        boxes.append(Box(left, -inf if is_open else lower, right, inf if is_open and plate.travel else upper))
+    box = boxes[0]
+    for other in boxes[1:]:
+        box = box.union(other)
+    return box

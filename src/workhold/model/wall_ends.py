@@ -1,0 +1,141 @@
+"""The ends of the contact with a wall: of an endless one those of a hull edge, else of the common stretch.
+
+Where a wall has ends, such as a flat jaw of a vise, it reaches over some x of its own frame. The part touches
+the wall's line at the points K of a hull edge, which may bridge gaps. Of them the wall reaches those on it,
+whose convex hull is the common stretch. Its ends take up the wall's force, so they are the contacts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.conventions import GAP_SLACK, SAME_PLACE
+from workhold.fixels.carrier import WALL
+from workhold.fixels.toolkit import Toolkit
+from workhold.geometry.hull import HullTouch, touches_along
+from workhold.geometry.segment import Box
+from workhold.model.workpiece import Workpiece
+
+__all__ = ["CommonStretch", "WallEnds", "common_stretch", "standouts", "touches_of", "wall_ends"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+def touches_of(workpiece: Workpiece, edge: int) -> tuple[HullTouch, ...]:
+    """Where a workpiece touches the line of a hull edge, by the edge's number; see :func:`touches_along`."""
+    own, _ = workpiece.outline_of(WALL)
+    segments = [face.segment for face in own.outer_faces]
+    return touches_along(workpiece.hull_edges[edge], segments, own.outer_face_counts)
+
+
+@frozen(eq=False)
+class CommonStretch:
+    """What a part and walls at N places along a hull edge have in common, in mm from the edge's start.
+
+    Parameters
+    ----------
+    start, end : (N,) of the stretch; infinite where there is none, the end below the start.
+    first, last : (N,) numbers of what touches at the start and at the end.
+    """
+
+    start: Array
+    end: Array
+    first: IntArray
+    last: IntArray
+
+    @property
+    def length(self) -> Array:
+        """Lengths (N,); minus infinity where there is no stretch."""
+        return self.end - self.start
+
+
+def common_stretch(touches: Sequence[HullTouch], low: Array, high: Array) -> CommonStretch:
+    """The common stretch of what touches along a hull edge and walls from ``low`` to ``high`` (N,)."""
+    ends = np.array([(one.low, one.high) for one in touches])
+    start, end = np.maximum(ends[:, 0], low[:, None]), np.minimum(ends[:, 1], high[:, None])
+    inside = start <= end + GAP_SLACK
+    start, end = np.where(inside, start, np.inf), np.where(inside, end, -np.inf)
+    least, most = start.min(axis=1), end.max(axis=1)
+    # What lies along the edge stands before what touches in a point.
+    first = (start <= least[:, None] + SAME_PLACE).argmax(axis=1)
+    last = (end >= most[:, None] - SAME_PLACE).argmax(axis=1)
+    return CommonStretch(least, most, first, last)
+
+
+@frozen(eq=False)
+class WallEnds:
+    """The two ends of the contact with a wall of N fixtures.
+
+    Parameters
+    ----------
+    x : (N, 2) in mm.
+    length : (N,) of what lies on the wall, in mm.
+    named : the numbers of the faces of everything that may touch there.
+    which : (N, 2) what of it does.
+    """
+
+    x: Array
+    length: Array
+    named: tuple[tuple[int, ...], ...]
+    which: IntArray
+
+    @property
+    def face(self) -> IntArray:
+        """The number (N, 2) of the face that touches, of a corner the lower one."""
+        lower = np.array([faces[0] for faces in self.named], np.int64)
+        return np.asarray(lower[self.which])
+
+    @property
+    def shared(self) -> IntArray:
+        """Numbers (N, 2) that are equal where one face's error moves both ends alike.
+
+        That is the face's number; for a corner a number below zero of its own.
+        """
+        is_corner = np.array([len(faces) > 1 for faces in self.named])
+        return np.where(is_corner[self.which], np.array([-1, -2]), self.face)
+
+    def touching(self, row: int) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        """The numbers of the faces that touch at both ends of a fixture; of a corner two, the lower first."""
+        one, other = self.which[row].tolist()
+        return self.named[one], self.named[other]
+
+
+def wall_ends(workpiece: Workpiece, toolkit: Toolkit, theta: Array, position: Array) -> WallEnds:
+    """The ends of the contact with the wall of a toolkit of N fixtures.
+
+    Where the wall does not reach the part, they are those of an endless one.
+
+    Parameters
+    ----------
+    theta, position : (N,) in radians and (N, 2) in mm, of the poses.
+    """
+    flush, reach = workpiece.flush, toolkit.reaching and toolkit.reaching.reach
+    edge, x = flush.number(theta), flush.x(theta, position)
+    named = [faces for pair in flush.touching for faces in pair]
+    which = 2 * edge[:, None] + np.arange(2)
+    if reach is None or len(flush.theta) == 0:
+        return WallEnds(x, flush.length[edge], tuple(named), which)
+    length = flush.length[edge].copy()
+    numbers = [face.number for face in workpiece.outline_of(WALL)[0].faces]
+    first = workpiece.outline_of(WALL)[1]
+    for number in np.unique(edge).tolist():
+        rows = np.flatnonzero(edge == number)
+        touches, start = touches_of(workpiece, number), x[rows, 0].copy()
+        common = common_stretch(touches, reach[0] - start, reach[1] - start)
+        there = np.isfinite(common.start)
+        rows, start = rows[there], start[there]
+        x[rows] = start[:, None] + np.stack([common.start, common.end], axis=1)[there]
+        length[rows] = common.length[there]
+        which[rows] = len(named) + np.stack([common.first, common.last], axis=1)[there]
+        named += [tuple(sorted(first + numbers[index] for index in one.faces)) for one in touches]
+    return WallEnds(x, length, tuple(named), which)
+
+
+def standouts(part: Box, reach: tuple[float, float]) -> tuple[float, float]:
+    """How far a part of an extent stands out to the left and to the right of a wall, in mm; 0 where not."""
+    return max(reach[0] - part.x0, 0.0), max(part.x1 - reach[1], 0.0)
