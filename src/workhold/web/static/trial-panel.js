@@ -9,7 +9,7 @@ import { fixtureDrawing } from "./stage-panel.js";
 import { change, on, state } from "./state.js";
 import { kindOf } from "./toolkits.js";
 import { TrialDrawing } from "./trial-drawing.js";
-import { armOf, entered, inFence, lyingOf, offsetsOf, pegsCaught } from "./trial.js";
+import { armOf, entered, inFence, lyingOf, offsetsOf, openingBeside, pegsCaught } from "./trial.js";
 import { fieldLength, length, readLength, readNumber } from "./units.js";
 
 /** Fields of what is off, by their keys in the trial. */
@@ -51,7 +51,7 @@ export function trialPanel() {
 export function toggleTrial() {
   if (!state.selected) return;
   if (state.trial) return leaveTrial();
-  change({ force: null, view: "fixture", trial: { x: 0, y: 0, turn: 0, over: false, opening: OPEN * 2 * armOf(state.part) } });
+  change({ force: null, view: "fixture", trial: { x: 0, y: 0, turn: 0, over: false, opening: openingBeside(state.part, state.selected, OPEN * 2 * armOf(state.part)) } });
   look(true);
   // Nothing but what is below the drawing is scrolled.
   byId("below").scrollTop += byId("seating").getBoundingClientRect().top - byId("below").getBoundingClientRect().top;
@@ -139,7 +139,7 @@ async function learn() {
     writeSeats();
     if (!state.trial) return;
     const opening = Math.max(state.trial.opening, CAUGHT * Math.min(answer.capture_opening ?? 0, armOf(state.part)));
-    place(first ? { ...state.trial, opening } : state.trial);
+    place(first ? { ...state.trial, opening: openingBeside(state.part, state.selected, opening) } : state.trial);
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
     if (known !== mine) return;

@@ -12,6 +12,8 @@ const STEP = Math.PI / 24;
 const NEARER = 1.15;
 /** The first look: from the front right, above. */
 const FIRST = { around: -0.6, above: 0.75 };
+/** What is seen whole is this much smaller than the canvas. */
+const ROOM = 1.06;
 const HIGHEST = Math.PI / 2 - 0.001;
 
 /** Half the height that is seen at a distance of 1. */
@@ -27,6 +29,8 @@ export class Orbit {
     /** Extent and middle of all bodies, in metres. */
     this.size = 1;
     this.middle = [0, 0, 0];
+    /** Corners of the box about all bodies, in metres. @type {number[][]} */
+    this.corners = [];
     this.target = [0, 0, 0];
     this.far = 1;
     this.waiting = false;
@@ -65,18 +69,23 @@ export class Orbit {
    */
   frame(bodies, still) {
     const [low, high] = boxAbout(bodies);
+    this.corners = Array.from({ length: 8 }, (_, k) => low.map((value, axis) => ((k >> axis) & 1 ? high[axis] : value)));
     this.middle = low.map((value, k) => (value + high[k]) / 2);
     this.size = Math.hypot(...low.map((value, k) => high[k] - value)) || 1;
     if (still) this.draw();
     else this.fit();
   }
 
-  /** See everything from where it is seen first. */
-  fit() {
-    this.look(FIRST.around, FIRST.above);
+  /** See everything, from where it is seen first or from angles in radians, as large as the canvas has room for. */
+  fit(around = FIRST.around, above = FIRST.above) {
+    this.look(around, above);
     this.target = [...this.middle];
-    const narrow = Math.min(1, this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight));
-    this.far = (0.5 * this.size) / HALF_FIELD / (narrow || 1);
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    const [right, up, out] = this.axes();
+    const along = (axis, corner) => axis.reduce((sum, value, k) => sum + value * (corner[k] - this.middle[k]), 0);
+    const needed = this.corners.map((corner) =>
+      along(out, corner) + (ROOM / HALF_FIELD) * Math.max(Math.abs(along(up, corner)), (Math.abs(along(right, corner)) * height) / (width || 1)));
+    this.far = Math.max(0.05 * this.size, ...needed);
     this.draw();
   }
 
