@@ -27,8 +27,8 @@ from workhold.web.families import FamilyFound
 from workhold.web.guard import ServerLimits
 from workhold.web.part_tasks import shape_size
 from workhold.web.pool import BusyError, FailedError, Pool, PoolTask, StoppedError
-from workhold.web.selection import Selection
 from workhold.web.searching import Found
+from workhold.web.selection import Selection
 from workhold.web.tasks import NamedQuery
 from workhold.web.worker import return_memory
 
