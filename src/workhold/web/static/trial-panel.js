@@ -123,6 +123,7 @@ async function learn() {
   if ((!first && known?.unit === unit) || !job?.job || !selected?.rank) return;
   const mine = (known = { key, unit, told: null });
   for (const id of ["seating-answer", "seating-trouble"]) show(byId(id), false);
+  byId("try-close").toggleAttribute("disabled", false);
   say("Working it out \u2026");
   try {
     const answer = await ask(`jobs/${encodeURIComponent(job.job)}/fixtures/${selected.rank}/seating?unit=${unit}`);
@@ -145,8 +146,9 @@ async function learn() {
     if (known !== mine) return;
     byId("seating-trouble").textContent = error.message;
     show(byId("seating-trouble"), true);
-    say("");
-    drawing.show(state.part, null, 0, false);
+    // What comes of closing is not known, but where the pegs stand is: the part can be moved between them.
+    byId("try-close").toggleAttribute("disabled", true);
+    if (state.trial) place(state.trial);
   }
 }
 
@@ -209,7 +211,7 @@ function tellEntered(lying, opening) {
   const holes = pegs.map((k) => selected.holes[k]).join(" and ");
   if (pegs.length) say(`The peg${pegs.length > 1 ? "s" : ""} in ${holes} ${pegs.length > 1 ? "stand" : "stands"} in the part here.`, "bad");
   else if (inFence(part, selected, lying)) say("The part lies in the fence here.", "bad");
-  else say(`${told()?.done ?? "Opened"} by ${length(opening, 2)}${caughtWords(opening)}. Drag the part and let go.`);
+  else say(`${told()?.done ?? "Opened"} by ${length(opening, 2)}${caughtWords(opening)}. ${told() ? "Drag the part and let go." : "Drag the part to see where it has room."}`);
 }
 
 /** Whether a part in its place is caught so far open, in words that go on. */

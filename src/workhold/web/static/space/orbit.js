@@ -14,6 +14,8 @@ const NEARER = 1.15;
 const FIRST = { around: -0.6, above: 0.75 };
 /** What is seen whole is this much smaller than the canvas. */
 const ROOM = 1.06;
+/** How often the middle of what is seen whole is sought. */
+const ROUNDS = 8;
 const HIGHEST = Math.PI / 2 - 0.001;
 
 /** Half the height that is seen at a distance of 1. */
@@ -81,11 +83,18 @@ export class Orbit {
     this.look(around, above);
     this.target = [...this.middle];
     const { clientWidth: width, clientHeight: height } = this.canvas;
-    const [right, up, out] = this.axes();
-    const along = (axis, corner) => axis.reduce((sum, value, k) => sum + value * (corner[k] - this.middle[k]), 0);
-    const needed = this.corners.map((corner) =>
-      along(out, corner) + (ROOM / HALF_FIELD) * Math.max(Math.abs(along(up, corner)), (Math.abs(along(right, corner)) * height) / (width || 1)));
-    this.far = Math.max(0.05 * this.size, ...needed);
+    const aspect = width && height ? width / height : 1;
+    for (let round = 0; round < ROUNDS; round += 1) {
+      const seen = this.corners.map((corner) => this.axes().map((axis) => axis.reduce((sum, value, k) => sum + value * (corner[k] - this.target[k]), 0)));
+      this.far = Math.max(0.05 * this.size, ...seen.map(([right, up, out]) => out + (ROOM / HALF_FIELD) * Math.max(Math.abs(up), Math.abs(right) / aspect)));
+      // What is nearer looks larger, so the middle of what is seen is not that of the bodies.
+      const middle = [0, 1].map((k) => {
+        const places = seen.map((at) => at[k] / (this.far - at[2]));
+        return (this.far * (Math.min(...places) + Math.max(...places))) / 2;
+      });
+      const [right, up] = this.axes();
+      this.target = this.target.map((value, k) => value + middle[0] * right[k] + middle[1] * up[k]);
+    }
     this.draw();
   }
 
