@@ -71,7 +71,7 @@ def test_a_search_ends_when_the_workbench_does(monkeypatch: pytest.MonkeyPatch) 
 
 def test_bodies_are_prisms_with_their_holes() -> None:
     """A line by its ends, an arc by its centre, radius and angles, counted counter-clockwise however it runs."""
-    square = Workpiece.from_points("plate", [(0, 0), (30, 0), (30, 20), (0, 20)]).loops[0]
+    square = Workpiece.from_points("plate", [(0, 0), (30, 0), (30, 20), (0, 20)]).loop_segments[0]
     hole = (Arc((10.0, 8.0), 2.0, 0.5, 0.25, -1.0),)
     body = FixtureBody("plate", BodyKind.PLATE, (Slab(square, (hole,), -10.0, 0.0),))  # type: ignore[arg-type]
     data = body_data(body)

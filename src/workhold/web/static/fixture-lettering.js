@@ -19,12 +19,13 @@ export function drawLettering(drawing) {
   const { overlay } = drawing.view;
   const closed = drawing.open === 0 && drawing.lying === null;
   const axes = [...columnNames(drawing), ...rowNames(drawing)];
-  const parts = [...axes.map(({ text, x, y, kind, anchor }) => word(text, [x, y], kind, anchor)), ...travels(drawing)];
+  const dimensions = travels(drawing);
+  const parts = [...axes.map(({ text, x, y, kind, anchor }) => word(text, [x, y], kind, anchor)), ...dimensions.flatMap(({ nodes }) => nodes)];
   if (closed) {
     parts.push(...forces(drawing).map(({ tail, tip, kind }) => arrow(tail, tip, kind)));
     if (drawing.load) parts.push(...loadArrow(drawing));
   }
-  parts.push(...labels(drawing, closed, axes.filter(({ kind }) => kind === USED)));
+  parts.push(...labels(drawing, closed, [...axes.filter(({ kind }) => kind === USED), ...dimensions]));
   overlay.replaceChildren(...parts, ...programLabel(drawing), ...drawing.extras());
 }
 
@@ -139,7 +140,8 @@ function travels(drawing) {
     // Along its line, as on a drawing: beside it there may be no room.
     if (upright) words.setAttribute("transform", `rotate(-90 ${x} ${y})`);
     const back = above ? [] : [draw("rect.label-back", { x: x - wide / 2, y: y - 9, width: wide, height: 18 })];
-    return [line(a, rim - 5, a, rim + 12), line(b, rim - 5, b, rim + 12), line(a, rim, b, rim), ...heads, ...back, words];
+    const room = upright ? { x, y, w: 18, h: wide } : { x, y, w: wide, h: 18 };
+    return [{ room, nodes: [line(a, rim - 5, a, rim + 12), line(b, rim - 5, b, rim + 12), line(a, rim, b, rim), ...heads, ...back, words] }];
   });
 }
 

@@ -10,7 +10,7 @@ import { change, on, state } from "./state.js";
 import { kindOf } from "./toolkits.js";
 import { TrialDrawing } from "./trial-drawing.js";
 import { armOf, entered, inFence, lyingOf, offsetsOf, openingBeside, pegsCaught } from "./trial.js";
-import { fieldLength, length, readLength, readNumber } from "./units.js";
+import { fieldLength, length, readLength, readNumber, scale } from "./units.js";
 
 /** Fields of what is off, by their keys in the trial. */
 const FIELDS = { opening: "try-opening", x: "try-x", y: "try-y", turn: "try-turn" };
@@ -269,7 +269,8 @@ function writeFields() {
   field("try-over").checked = trial.over;
   for (const [key, id] of Object.entries(FIELDS)) {
     if (field(id) === document.activeElement) continue;
-    const value = Math.round(trial[key] * 1000) / 1000;
+    const [unit, fine] = key === "turn" || state.unit === "mm" ? [1, 1e3] : [scale(), 1e4];
+    const value = (Math.round((trial[key] / unit) * fine) / fine) * unit;
     field(id).value = key === "turn" ? String(value) : fieldLength(value);
     field(id).setAttribute("aria-invalid", "false");
   }
