@@ -90,6 +90,23 @@ def test_only_the_best_are_sought_where_only_they_are_asked_for(
     assert not any(kind == "first" for kind, *_ in reports)
 
 
+def test_a_search_that_is_stopped_among_the_best_keeps_those_found(
+    query: Query, asked: list[int | None]
+) -> None:
+    """No search for all begins, which would find nothing in no time."""
+    cancel = Event()
+    reports: list[Any] = []
+
+    def report(value: Any) -> None:
+        reports.append(value)
+        if value[0] == "progress" and value[2] > FIRST:
+            cancel.set()
+
+    found = search((query, 10_000), Order(report, cancel, SECONDS))
+    assert asked == [FIRST] and not found.result.complete
+    assert 0 < len(found.result) <= FIRST and found.result.query == query
+
+
 def test_a_search_that_is_stopped_keeps_the_best_first(whole: Result) -> None:
     """Before what else was found, each once, and it is not whole all the same."""
     best = evolve(whole.part(slice(0, 5)), distinct=dict.fromkeys(whole.distinct, 1))

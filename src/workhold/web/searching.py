@@ -50,8 +50,8 @@ def search(payload: tuple[Query, int], order: Order) -> Found:
     first = None
     if query.best is None and query.seating is None:
         first = best_of(query, order)
-        if first.complete and not len(first):
-            return Found(evolve(first, query=query), 0)
+        if order.cancel.is_set() or (first.complete and not len(first)):
+            return Found(evolve(first, query=query, complete=first.complete and not len(first)), 0)
     known = first if first is not None and first.complete else None
     if known is not None:
         order.report(("first", known))
@@ -110,7 +110,7 @@ def best_of(query: Query, order: Order) -> Result:
             evolve(query, best=FIRST),
             progress=Reporter(order, 0.0, SHARE),
             cancel=enough,
-            preview=lambda result: order.report(("preview", evolve(result, query=query))),
+            preview=lambda result: order.report(("preview", result.part(slice(0, FIRST)))),
         )
     finally:
         done.set()

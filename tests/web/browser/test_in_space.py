@@ -262,7 +262,8 @@ WHOLE = """async ([low, high, width, height, around, above]) => {
   const seen = view.corners.map((corner) => view.axes().map((axis) =>
     axis.reduce((sum, value, k) => sum + value * (corner[k] - view.target[k]), 0)));
   const places = seen.map(([x, y, out]) => [x, y].map((value) => value / (view.far - out) / HALF_FIELD));
-  return [places.map(([x]) => (x * height) / width), places.map(([, y]) => y)].flatMap((all) => [Math.min(...all), Math.max(...all)]);
+  const across = places.map(([x]) => (x * height) / width);
+  return [across, places.map(([, y]) => y)].flatMap((all) => [Math.min(...all), Math.max(...all)]);
 }"""
 
 

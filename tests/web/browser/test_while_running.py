@@ -140,8 +140,10 @@ def test_what_is_searched_is_never_said_to_be_all(walk: Walk) -> None:
     """What is known by then is said instead: that it is put in order, or that the best are found."""
     title, words = walk.page.evaluate(STAGE, {"state": "listing", "fraction": 1.0})
     assert title == "Looking for the best" and words == "What was found is being put in order."
-    title, words = walk.page.evaluate(STAGE, {"fraction": 0.999})
-    assert "fixture" not in title and "99 % searched" in words
+    title, words = walk.page.evaluate(STAGE, {"fraction": 0.7})
+    assert title == "Looking for the best" and words == "70 % searched."
+    title, words = walk.page.evaluate(STAGE, {"fraction": 1.0, "found": 7})
+    assert title == "7 fixtures so far" and words == "99 % searched."
     title, words = walk.page.evaluate(STAGE, {"fraction": 0.431, "found": 1234, "best": 20})
     assert title == "The best 20" and "43 % searched; 1,234 fixtures so far" in words.replace("\u202f", ",")
 

@@ -22,9 +22,31 @@ const NEAR = 1e-6;
  * @param {number[]} numbers faces of the other
  */
 export function sameFaces(part, other, numbers) {
-  const solidFaces = (of, face) => of.segments.filter((segment) => segment.face === face).flatMap(({ number }) => of.solid.faces[number]);
-  const same = new Set(numbers.flatMap((face) => solidFaces(other, face)));
-  return part.faces.map(({ number }) => number).filter((face) => solidFaces(part, face).some((one) => same.has(one)));
+  return facesOver(part, new Set(numbers.flatMap((face) => solidFaces(other, face))));
+}
+
+/** Faces of the solid over a face of an outline of it. */
+function solidFaces(part, face) {
+  return part.segments.filter((segment) => segment.face === face).flatMap(({ number }) => part.solid.faces[number]);
+}
+
+/** Faces of an outline that some faces of the solid are over. @param {any} part @param {Set<number>} over */
+function facesOver(part, over) {
+  return part.faces.map(({ number }) => number).filter((face) => solidFaces(part, face).some((one) => over.has(one)));
+}
+
+/** Faces of the solid that the first side cuts, whether the outline of the second shows them or not. @type {number[]} */
+let cutBefore = [];
+
+/** Remember what a set-up cuts, for its other side. @param {any} part @param {number[]} cut */
+export function rememberCut(part, cut) {
+  cutBefore = cut.flatMap((face) => solidFaces(part, face));
+}
+
+/** What must not be touched of another outline: faces ruled out on the one shown, and those that the first side cuts. */
+function ruledOut(other, part) {
+  const shown = state.avoid.flatMap((face) => solidFaces(part, face));
+  return facesOver(other, new Set([...shown, ...(state.sides?.shown ? cutBefore : [])]));
 }
 
 /**
@@ -83,7 +105,7 @@ async function tried(part, height, gone) {
   const read = await readOver({ peg_height: height });
   const other = read.survey.part;
   if (!other?.solid?.faces?.length || gone()) return null;
-  const avoid = sameFaces(other, part, state.avoid);
+  const avoid = ruledOut(other, part);
   if (avoid.length === other.faces.length) return null;
   const asked = request();
   const body = { ...asked, workpiece: workpieceForm(other), restrictions: { ...asked.restrictions, avoid }, best: 1 };
@@ -102,7 +124,7 @@ async function tried(part, height, gone) {
 
 /** Go on with pegs of a height that holds the part; what was ruled out stays so. */
 function take({ read, other }, part) {
-  const avoid = sameFaces(other, part, state.avoid);
+  const avoid = ruledOut(other, part);
   resumeFile(read);
   usePart(other, { ...read.survey, chosen: read.how.part ?? null });
   change({ cut: state.sides?.shown ? [] : null, avoid });

@@ -3,7 +3,7 @@
  */
 import { ApiError, send } from "./api.js";
 import { byId, field, make, show } from "./dom.js";
-import { sameFaces } from "./height-help.js";
+import { rememberCut, sameFaces } from "./height-help.js";
 import { snapshot } from "./link.js";
 import { isNever } from "./part-drawing.js";
 import { fileRead, readOver, resumeFile, usePart } from "./part-panel.js";
@@ -114,6 +114,7 @@ async function turnOver() {
     const other = read.survey.part;
     if (!other?.solid?.faces?.length) throw new ApiError(read.survey.error ?? "The other side has no upright faces to locate on.", 400);
     files = [file, read];
+    rememberCut(part, cut);
     change({ sides: { shown: 1, kept: [{ ...first, known: { ...first.known, cut } }, null] } });
     resumeFile(read);
     usePart(other, { ...read.survey, chosen: read.how.part ?? null });
