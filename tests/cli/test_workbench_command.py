@@ -11,7 +11,14 @@ from typing import Any
 import pytest
 
 from workhold import Workpiece, errors
-from workhold.cli.workbench_command import Order, avoided, body_data, hear_the_end, marks_of, rank_in
+from workhold.cli.workbench_command import (
+    WorkbenchOrder,
+    avoided,
+    body_data,
+    hear_the_end,
+    marks_of,
+    rank_in,
+)
 from workhold.geometry.segment import Arc
 from workhold.model.bodies import BodyKind, FixtureBody, Slab
 
@@ -42,20 +49,20 @@ def test_a_fixture_is_known_by_its_holes_and_how_the_part_lies() -> None:
 
 def test_an_order_of_another_version_is_a_sentence(tmp_path: Path) -> None:
     with pytest.raises(errors.InputError, match="install the add-on that came with workhold"):
-        Order.read(tmp_path)
+        WorkbenchOrder.read(tmp_path)
     (tmp_path / "order.json").write_text(json.dumps({"part": "part.step", "colour": "red"}))
     with pytest.raises(errors.InputError, match="no order of this version"):
-        Order.read(tmp_path)
+        WorkbenchOrder.read(tmp_path)
     (tmp_path / "order.json").write_text(json.dumps({"part": "part.step", "best": 3}))
-    order = Order.read(tmp_path)
+    order = WorkbenchOrder.read(tmp_path)
     assert (order.part, order.best, order.supports) == ("part.step", 3, False)
 
 
 def test_faces_of_no_solid_cannot_be_named() -> None:
     plate = Workpiece.from_points("plate", [(0, 0), (30, 0), (30, 20), (0, 20)])
-    assert avoided(Order(), plate) == []
+    assert avoided(WorkbenchOrder(), plate) == []
     with pytest.raises(errors.InputError, match="has no faces of its solid"):
-        avoided(Order(avoid={"Face1": 0}), plate)
+        avoided(WorkbenchOrder(avoid={"Face1": 0}), plate)
 
 
 def test_a_search_ends_when_the_workbench_does(monkeypatch: pytest.MonkeyPatch) -> None:

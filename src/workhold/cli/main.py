@@ -92,8 +92,7 @@ COMMANDS = {
         "Offer load, design, show, sheet and explain as tools to an agent, over the Model Context Protocol."
     ),
     "workbench": (
-        "Answer FreeCAD's workbench: design, and the chosen fixture's bodies and pictures, for the order in "
-        "FOLDER."
+        "Answer FreeCAD's workbench: design, and the bodies and pictures of the fixture that is put in."
     ),
     "doctor": "Report what is installed, what is missing, and what each would be good for.",
     "completion": "Print the script that lets a shell complete the commands and options of workhold.",

@@ -58,7 +58,7 @@ MOST_TURNED = 45.0
 
 
 @frozen(kw_only=True)
-class Order:
+class WorkbenchOrder:
     """What is asked.
 
     Parameters
@@ -91,7 +91,7 @@ class Order:
     chosen: int = 1
 
     @classmethod
-    def read(cls, folder: Path) -> Order:
+    def read(cls, folder: Path) -> WorkbenchOrder:
         """The order in a folder.
 
         Raises
@@ -114,12 +114,12 @@ def workbench(
         typer.Argument(metavar="FOLDER", help="The folder with order.json, where the answer goes as well."),
     ],
 ) -> None:
-    """Answer FreeCAD's workbench: design, and the chosen fixture's bodies and pictures, for the order in FOLDER.
+    """Answer FreeCAD's workbench: design, and the bodies and pictures of the fixture that is put in.
 
     Example: workhold workbench /tmp/order
     """
     place = Path(folder)
-    order = Order.read(place)
+    order = WorkbenchOrder.read(place)
     if order.part is None:
         from workhold.files.result.reader import read_result
 
@@ -145,7 +145,7 @@ def hear_the_end(cancel: Event) -> None:
     cancel.set()
 
 
-def asked(order: Order, part: str) -> Query:
+def asked(order: WorkbenchOrder, part: str) -> Query:
     """The query of an order; the words are those of ``design``, so that both list the same.
 
     Raises
@@ -177,7 +177,7 @@ def asked(order: Order, part: str) -> Query:
     return Query(workpiece, toolkit, best=order.best, **wishes)
 
 
-def avoided(order: Order, workpiece: Workpiece) -> list[int]:
+def avoided(order: WorkbenchOrder, workpiece: Workpiece) -> list[int]:
     """Numbers of the outline's faces that nothing may touch, from those of the document that are named.
 
     Raises
@@ -208,7 +208,7 @@ def avoided(order: Order, workpiece: Workpiece) -> list[int]:
     return sorted(avoid)
 
 
-def design_data(result: Result, order: Order, folder: Path, cancel: Event) -> dict[str, Any]:
+def design_data(result: Result, order: WorkbenchOrder, folder: Path, cancel: Event) -> dict[str, Any]:
     """What there is to say of a search, with the fixture put in that was chosen before, or else the first."""
     from workhold.listing.identity import entries
 
@@ -274,7 +274,7 @@ def marks_of(fixture: Mapping[str, Any]) -> str:
     return json.dumps([[fixture["type"], directions, pegs], fixture["pose"]["theta_deg"]])
 
 
-def put_in(result: Result, rank: int, order: Order, folder: Path) -> dict[str, Any]:
+def put_in(result: Result, rank: int, order: WorkbenchOrder, folder: Path) -> dict[str, Any]:
     """A fixture's bodies but for the part's, and the pose of the part among them; its picture if wanted."""
     from workhold.presenting.assembly import Assembly
 

@@ -214,7 +214,10 @@ class SearchForm(Form):
 
 
 class JobForm(SearchForm):
-    """A search for every fixture or only the best, of how many first ones the seating is worked out, and by which rules."""
+    """A search for every fixture or only the best.
+
+    It says, too, of how many first ones the seating is worked out, and by which rules.
+    """
 
     toolkit: HeldIn
     best: int | None = Field(default=None, ge=1, le=MOST_BEST)

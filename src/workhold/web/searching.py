@@ -1,4 +1,4 @@
-"""The task of a search: the best fixtures first, as ``design`` finds them where only those are asked for; then all.
+"""The task of a search: the best fixtures first, as where only those are asked for; then all.
 
 A search for everything may take minutes before it can put anything in order. Whoever waits at the page sees
 the best fixtures within seconds, and looks at them while the rest is searched.
