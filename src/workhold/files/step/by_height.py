@@ -290,7 +290,7 @@ def drawn(
     found = evolve(found, runs=outline.runs)
     own = tuple(own_drawings(solid, view.heights, found))
     plain_prism = view.peg_height is None and is_prism(solid)
-    rows = height_table(solid, room, least) if has_table and not plain_prism else []
+    rows = height_table(solid, room, least, outline) if has_table and not plain_prism else []
     remarks = [] if plain_prism else height_remarks(outline, found, rows)
     if any(band is None for band in outline.bands):
         remarks += other_axis_remarks(shape, axis)
