@@ -156,7 +156,6 @@ def test_the_best_are_on_show_before_all_are_found(walk: Walk) -> None:
     walk.until("state.selected?.rank === 1")
     first = walk.shown()["holes"]
     if page.get_attribute("body", "data-search") != "done":
-        assert page.inner_text("#count") == "The best 20"
         page.click("#cancel")
         page.wait_for_selector("#progress-row", state="hidden", timeout=SEARCH_PATIENCE)
         # What was found when it was stopped comes after them.
