@@ -6,18 +6,16 @@ design finds the same fixture again or says why it is none any more.
 """
 
 import json
-import re
 import tempfile
 from pathlib import Path
 
 import FreeCAD as App
-import Part
 
-from .child import Refusal, answer, run
+from .bodies import solids_of
+from .child import STOPPED, Refusal, ordered, run
 from .compat import paint
-from .recognition import marks_of, rank_in
-from .solid import export, face_numbers, foot_height, placing, shape_of, signature
-from .thumbnails import MOST_DRAWN, keep_thumbnails
+from .solid import export, face_places, foot_height, placing, shape_of, signature
+from .thumbnails import keep_thumbnails
 
 __all__ = ["Fixture", "choose", "design", "fixture_of", "make", "rows", "save_picture", "save_sheet"]
 
@@ -34,8 +32,6 @@ COLOURS = {
 PLATE = (0.72, 0.74, 0.76)
 # Of plates, in per cent, so that the part below them is seen.
 SEEN_THROUGH = 60
-# The uses of bodies in a STEP assembly, in their order, with their names.
-USES = re.compile(r"NEXT_ASSEMBLY_USAGE_OCCURRENCE\('\d+','((?:[^']|'')*)'")
 PROPERTIES = (
     ("App::PropertyLink", "HeldPart", "Part", "The part that is held"),
     ("App::PropertyEnumeration", "Up", "Part", "The axis of the document that points up"),
@@ -65,11 +61,13 @@ PROPERTIES = (
     ("App::PropertyString", "Signature", "Hidden", "Numbers that change when the part does"),
     ("App::PropertyFileIncluded", "Glance", "Hidden", "Thumbnails of the first choices, or the nearest miss"),
     ("App::PropertyString", "Glanced", "Hidden", "Which choices these are, and where they stand"),
+    ("App::PropertyFileIncluded", "Page", "Hidden", "The picture of the fixture that stands in the document"),
+    ("App::PropertyInteger", "Paged", "Hidden", "Which fixture this is the picture of; 0 for none"),
 )
 HIDDEN = tuple(name for _, name, group, _ in PROPERTIES if group == "Hidden")
+# Files of an order's folder: the result of the search, and the picture of the fixture that is put in.
+RESULT, PAGE = "result.json", "chosen.png"
 AXIS_NAMES = ["z", "-z", "x", "-x", "y", "-y"]
-# How far down the list a fixture that was chosen before is looked for.
-MOST_SEARCHED = 5000
 LOST = "in these holes nothing holds the part as it is now"
 LOST_BY_WISH = "in these holes nothing holds the part with what is asked now"
 CHANGED = "The part has changed: design again."
@@ -143,33 +141,35 @@ def fixture_of(objects):
 
 
 def asked(obj, path, shape):
-    """The words of the command that the object's properties make."""
-    reading = ["--peg-height={:.6f}mm".format(obj.PegHeight.Value)] if obj.PegHeight.Value > 0 else []
-    words = ["--axis=" + obj.Up, *reading, "--toolkit", obj.Toolkit]
-    avoided = set()
-    if obj.Avoid:
-        avoided |= set(face_numbers(path, shape, obj.Avoid, obj.Up, reading)[0])
-    if obj.Only:
-        only, every = face_numbers(path, shape, obj.Only, obj.Up, reading)
-        avoided |= set(every) - set(only)
-    if avoided:
-        words += ["--avoid", ",".join(map(str, sorted(avoided)))]
+    """The order of a design that the object's properties make."""
+    order = {
+        "part": str(path),
+        "name": obj.HeldPart.Label,
+        "axis": obj.Up,
+        "peg_height": obj.PegHeight.Value if obj.PegHeight.Value > 0 else None,
+        "toolkit": obj.Toolkit,
+        "best": obj.Best,
+        "avoid": face_places(path, shape, obj.Avoid),
+        "only": face_places(path, shape, obj.Only),
+        "supports": obj.Supports,
+    }
     if obj.Program:
         if obj.Up != "z":
             raise Refusal("A program of a job is written with z up: choose z, or leave the program out.")
         # A job's zero is the document's origin, in height too.
-        zero = "--z-zero={:.6f}mm".format(0.0 - foot_height(shape, obj.Up))
-        words += ["--program", obj.Program, zero, *(["--tools", obj.Tools] if obj.Tools else [])]
-    return words
+        order.update(program=obj.Program, tools=obj.Tools or None, z_zero=0.0 - foot_height(shape, obj.Up))
+    return order
 
 
 def design(obj, cancel=None, wait=None, pictures=False):
     """Searches for fixtures, and puts the one that was chosen before, or else the first, into the document.
 
+    All of it is one process of the command, which reads the part once.
+
     Parameters
     ----------
     cancel, wait : as of :func:`workhold_workbench.child.run`.
-    pictures : whether the first choices are drawn, too.
+    pictures : whether the first choices and the one that is put in are drawn, too.
 
     Returns
     -------
@@ -178,45 +178,38 @@ def design(obj, cancel=None, wait=None, pictures=False):
     Raises
     ------
     Refusal
-        For a part or a wish that cannot be used.
+        For a part or a wish that cannot be used, and a search that was stopped before it had found anything.
     """
     if obj.HeldPart is None:
         raise Refusal("The fixture holds no part: choose one.")
     held_by = "{} {}".format(obj.Toolkit, obj.Up)
     marks = obj.Marks if obj.HeldBy == held_by else ""
     shape = shape_of(obj.HeldPart)
-    lost = ""
-    with tempfile.TemporaryDirectory() as folder:
-        path = export(shape, folder, obj.HeldPart.Label)
-        result = Path(folder) / "result.json"
-        words = asked(obj, path, shape)
-        drawing = ("--list", MOST_DRAWN, "--draw", folder) if pictures else ()
-        wanted = (*words, "--best", obj.Best, "--out", result, *drawing)
-        seen = answer("design", path, *wanted, cancel=cancel, wait=wait)
-        obj.ResultText = result.read_text(encoding="utf-8")
-        keep_thumbnails(obj, Path(folder), seen["fixtures"])
-        fixtures = json.loads(obj.ResultText)["fixtures"]
-        rank = rank_in(fixtures, marks) if marks else None
-        if marks and fixtures and rank is None:
-            more = ("--best", MOST_SEARCHED, "--out", result, "--force")
-            answer("design", path, *words, *more, cancel=cancel, wait=wait)
-            lower = rank_in(json.loads(result.read_text(encoding="utf-8"))["fixtures"], marks)
-            gone = LOST_BY_WISH if signature(shape) == obj.Signature else LOST
-            lost = gone if lower is None else "it is number {} now".format(lower)
-    obj.Signature, obj.HeldBy = signature(shape), held_by
-    if not fixtures:
-        clear(obj)
-        obj.Marks = marks
-        obj.State = "No fixture. {}".format(" ".join(seen["notes"]) or "nothing holds the part.")
-        return obj.State
-    choose(obj, rank or 1)
-    if lost:
-        names = " ".join(peg["hole"] for peg in seen["fixtures"][0]["pegs"])
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        order = asked(obj, export(shape, folder, obj.HeldPart.Label), shape)
+        seen = ordered(folder, cancel, wait, marks=marks, pictures=pictures, **order)
+        found = (folder / RESULT).read_text(encoding="utf-8")
+        count = len(json.loads(found)["fixtures"])
+        if not count and not seen["complete"]:
+            raise Refusal(STOPPED)
+        obj.ResultText, obj.Paged = found, 0
+        keep_thumbnails(obj, folder, seen["first"])
+        gone = LOST_BY_WISH if signature(shape) == obj.Signature else LOST
+        obj.Signature, obj.HeldBy = signature(shape), held_by
+        if not count:
+            clear(obj)
+            obj.Marks = marks
+            obj.State = "No fixture. {}".format(" ".join(seen["notes"]) or "nothing holds the part.")
+            return obj.State
+        put_in(obj, shape, seen, folder)
+    if marks and not seen["found"]:
+        lower = gone if seen["lower"] is None else "it is number {} now".format(seen["lower"])
         obj.State = (
             "The fixture that was chosen is not among the best {} any more: {}. "
-            "The first of them is put in its place: {}.".format(len(fixtures), lost, names)
+            "The first of them is put in its place: {}.".format(count, lower, " ".join(seen["holes"]))
         )
-    if not json.loads(obj.ResultText)["complete"]:
+    if not seen["complete"]:
         obj.State += " The search was stopped before its end: there may be better ones."
     return obj.State
 
@@ -246,56 +239,29 @@ def choose(obj, rank):
     Refusal
         For a rank that is not in the list.
     """
-    fixtures = json.loads(obj.ResultText)["fixtures"] if obj.ResultText else []
-    if not 1 <= rank <= len(fixtures):
+    if not 1 <= rank <= len(rows(obj)):
         raise Refusal("There is no fixture {} in the list: design first.".format(rank))
-    shape = shape_of(obj.HeldPart)
-    chosen = fixtures[rank - 1]
-    with tempfile.TemporaryDirectory() as folder:
-        result, assembly = Path(folder) / "result.json", Path(folder) / "setup.step"
-        result.write_text(obj.ResultText, encoding="utf-8")
-        note = ""
-        if obj.Supports:
-            try:
-                run("supports", result, rank, "--step", assembly)
-            except Refusal as refusal:
-                note = " {}".format(refusal)
-        if not assembly.exists():
-            run("sheet", result, rank, "-o", assembly)
-        bodies = read_bodies(assembly)
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / RESULT).write_text(obj.ResultText, encoding="utf-8")
+        seen = ordered(folder, chosen=rank, supports=obj.Supports)
+        put_in(obj, shape_of(obj.HeldPart), seen, folder)
+
+
+def put_in(obj, shape, seen, folder):
+    """Puts the fixture that the command has answered into the document as bodies, about the part."""
     clear(obj)
-    dx, dy = moved_on(chosen["pegs"], bodies)
-    pose = {**chosen["pose"], "x": chosen["pose"]["x"] + dx, "y": chosen["pose"]["y"] + dy}
-    place = placing(shape, obj.Up, pose)
-    # The first body is the part as a prism; the document has the part itself.
-    for name, body in bodies[1:]:
+    place = placing(shape, obj.Up, seen["pose"])
+    for name, body in solids_of(seen["bodies"]):
         body.Placement = place.multiply(body.Placement)
         add_body(obj, name, body)
-    obj.Chosen, obj.Marks = rank, marks_of(chosen)
-    obj.State = "Fixture {} of {}.{}".format(rank, len(fixtures), note)
+    obj.Chosen, obj.Marks = seen["rank"], seen["marks"]
+    note = " {}".format(seen["note"]) if seen["note"] else ""
+    obj.State = "Fixture {} of {}.{}".format(seen["rank"], len(rows(obj)), note)
+    page = folder / PAGE
+    if page.exists():
+        obj.Page, obj.Paged = str(page), seen["rank"]
     obj.purgeTouched()
-
-
-def moved_on(pegs, bodies):
-    """How far in mm the set-up of an assembly stands from that of the list, along x and y of the toolkit.
-
-    With supports all may stand a few holes further on, so that each hole is there.
-    """
-    peg = next((one for one in pegs if "column" in one and "row" in one), None)
-    body = next((body for name, body in bodies if name.startswith(("peg ", "locator "))), None)
-    if peg is None or body is None:
-        return 0.0, 0.0
-    center = body.BoundBox.Center
-    # In whole micrometres: a box of a round body is a little off.
-    return round(center.x - peg["x"], 3), round(center.y - peg["y"], 3)
-
-
-def read_bodies(path):
-    """The solids of an assembly with their names, in the order of the file."""
-    shape = Part.Shape()
-    shape.read(str(path))
-    names = USES.findall(path.read_text(encoding="utf-8"))
-    return list(zip(names, shape.Solids))
 
 
 def add_body(obj, name, shape):

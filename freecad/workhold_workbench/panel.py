@@ -243,6 +243,9 @@ class Panel:
         if rank is None:
             return
         self.first.mark(rank)
+        if rank == self.obj.Paged:
+            self.show_page(rank, self.obj.Page)
+            return
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "fixture.png"
             try:
@@ -250,7 +253,11 @@ class Panel:
             except Refusal as refusal:
                 self.state.setText(str(refusal))
                 return
-            self.picture.fill(str(path))
+            self.show_page(rank, str(path))
+
+    def show_page(self, rank, path):
+        """Shows the picture of the fixture of a rank."""
+        self.picture.fill(path)
         self.picture.setToolTip(tr("Fixture {}: click to see the whole picture").format(rank))
 
     def put_in(self):

@@ -6,14 +6,14 @@ from pathlib import Path
 import FreeCAD as App
 import Part
 
-from .child import Refusal, answer
+from .child import Refusal
 
 __all__ = [
     "AXES",
     "axis_of_face",
     "body_of",
     "export",
-    "face_numbers",
+    "face_places",
     "foot_height",
     "placing",
     "shape_of",
@@ -126,35 +126,24 @@ def foot_height(shape, axis):
     return low if low - bounds < NEAR_HEIGHT else bounds
 
 
-def face_numbers(path, shape, names, axis, words):
-    """Workhold's numbers of faces of the document.
+def face_places(path, shape, names):
+    """The places of faces of the document in the file that the solid was exported into, by their names.
 
     Parameters
     ----------
     path : the exported solid.
     shape : the solid of the document.
     names : such as ``Face5``.
-    axis, words : how the part is read: its axis and further words of the command.
-
-    Returns
-    -------
-    numbers of the outline's faces over these, and of all faces of the outline.
 
     Raises
     ------
     Refusal
-        For a face that nothing touches.
+        For a face that the part does not have any more.
     """
     read = Part.Shape()
-    read.read(str(path))
-    seen = answer("features", path, "--axis=" + axis, *words)
-    if "solid" not in seen:
-        raise Refusal(
-            "The outline of this part has no faces of its solid: choose another axis or peg height."
-        )
-    over = seen["solid"]["faces"]
-    every = sorted({face["number"] for face in seen["faces"]})
-    numbers = set()
+    if names:
+        read.read(str(path))
+    places = {}
     for name in names:
         try:
             face = shape.getElement(name)
@@ -163,12 +152,7 @@ def face_numbers(path, shape, names, axis, words):
             face = None
         if not isinstance(face, Part.Face):
             raise Refusal("The part has no face {} as it is now: choose the faces again.".format(name))
-        index = min(
+        places[name] = min(
             range(len(read.Faces)), key=lambda k: (read.Faces[k].CenterOfMass - face.CenterOfMass).Length
         )
-        touched = {k for k, faces in enumerate(over) if faces and index in faces}
-        if not touched:
-            raise Refusal("{} is not upright where pegs reach, so nothing touches it anyway.".format(name))
-        # A face that is drawn in pieces has the number of its first piece.
-        numbers |= {max(number for number in every if number <= k) for k in touched}
-    return sorted(numbers), every
+    return places

@@ -3,10 +3,8 @@
 import json
 import re
 
-__all__ = ["MOST_DRAWN", "cells_of", "keep_thumbnails"]
+__all__ = ["cells_of", "keep_thumbnails"]
 
-# How many of the first choices are drawn at most.
-MOST_DRAWN = 12
 # The frame of a thumbnail in the SVG text of a sheet, and the height of the caption in it.
 CELL = re.compile(
     r'<g class="thumbnail">\s*<rect x="([\d.]+)" y="([\d.]+)" width="([\d.]+)" height="([\d.]+)"'
@@ -16,7 +14,7 @@ CAPTION = 44.0
 LINE = 3.0
 
 
-def keep_thumbnails(obj, folder, listed):
+def keep_thumbnails(obj, folder, first):
     """Keeps the sheet of thumbnails in the document, and which fixture each of them is.
 
     Where nothing holds the part it is the picture of the nearest miss, if there is one.
@@ -24,14 +22,13 @@ def keep_thumbnails(obj, folder, listed):
     Parameters
     ----------
     folder : into which the command has drawn.
-    listed : the entries of its list, in the order of the thumbnails.
+    first : the first choices that differ, in the order of the thumbnails: rank, and how many are like it.
     """
     sheet, miss = folder / "thumbnails.png", folder / "nearest-miss.png"
     choices = []
     if sheet.exists():
         boxes = cells_of(sheet.with_suffix(".svg").read_text(encoding="utf-8"))
-        for one, box in zip(listed, boxes):
-            choices.append({"rank": one["rank"], "like": one["like_it"], "box": box})
+        choices = [{**one, "box": box} for one, box in zip(first, boxes)]
     drawn = next((path for path in (sheet, miss) if path.exists()), None)
     if drawn is not None:
         obj.Glance = str(drawn)

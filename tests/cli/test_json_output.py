@@ -17,7 +17,7 @@ from workhold.files.result.writer import write_result
 from workhold.presenting.data import part_data
 
 # Commands whose only output is a text for another program, or a page.
-NO_TABLES = {"completion", "mcp", "serve"}
+NO_TABLES = {"completion", "mcp", "serve", "workbench"}
 WEDGE = '{"name": "wedge", "units": "mm", "loops": [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]]}'
 VISE = ("--pitch", 15, "--columns", 1, "--peg-radius", 2)
 

@@ -56,7 +56,7 @@ def test_a_plate_without_limits_lies_under_the_whole_part(held: Held) -> None:
         for hole in each.holes():
             assert hole.center == pytest.approx((x + hole.column * PITCH[0], y + hole.row * PITCH[1]))
         assert each.named_rows[0] == (0, pytest.approx(y)) and each.named_columns[0][0] >= 0
-    answers = [each for each in carriers_answer(seen) if each["clamp"] is None]
+    answers = [each for each in carriers_answer(seen, held.fixture) if each["clamp"] is None]
     for answer, each in zip(answers, seen.carriers, strict=False):
         assert (answer["columns"][0], answer["rows"][0]) == (each.columns[0], each.rows[0])
 

@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import json
 from itertools import groupby
+from pathlib import Path
 from typing import Any
 
 import pytest
 from attrs import asdict, fields_dict
 from running_server import WIDGET, RunningServer, request
 
-from workhold.files.toolkit_file import load_toolkit, preset_names
+from workhold.files.part.load import load
+from workhold.files.toolkit_file import load_toolkit, preset, preset_names
 from workhold.fixels.contacts import DIRECTIONS
 from workhold.fixels.kinds import ALIASES, KINDS, kind_of, toolkit_of
 from workhold.fixels.plate import Plate
 from workhold.fixels.support_hardware import HARDWARE
+from workhold.search.design import design
+from workhold.web.answers import fixture_answer
 from workhold.web.forms import JobForm
 from workhold.web.toolkits import DESCRIBED, Described, kinds_answer, page_kind
 
@@ -184,3 +188,21 @@ def test_a_fence_is_answered_with_its_bar_and_the_contacts_on_it(server: Running
     square = server.done(request(workpiece=RECTANGLE, toolkit=vise))
     assert "three directions beside" in " ".join(server.client.get(square).json()["notes"])
     assert server.client.get(f"{square}/explanation").json()["removals"]
+
+
+@pytest.mark.parametrize("name", ["machine-vise-6-inch", "fence-20mm", "clamp-plate-20mm", "plate-20mm"])
+def test_each_carrier_has_its_own_pegs(name: str) -> None:
+    """By the numbers that they have in the fixture, also where the wall comes first; walls have what lies flush."""
+    toolkit = preset(name).toolkit
+    workpiece = load(Path(__file__).parents[2] / "examples" / "bracket.dxf")
+    fixture = design(workpiece, toolkit, best=1)[0]
+    row = fixture_answer(fixture, workpiece, toolkit)
+    told = {number: each for each in row["carriers"] for number in each["pegs"]}
+    assert sorted(told) == list(range(len(fixture.pegs)))
+    for number, peg in enumerate(fixture.pegs):
+        carrier = toolkit.carrier(peg.carrier)
+        assert told[number]["peg_radius"] == carrier.peg_radius
+        # A hole that a peg stands in is one of its plate's; a wall has none.
+        if told[number]["columns"][1] >= 0:
+            assert peg.column in told[number]["used_columns"] and peg.row in told[number]["used_rows"]
+        assert (number in row["flush"]) == (told[number]["columns"][1] < 0 and told[number]["clamp"] is None)

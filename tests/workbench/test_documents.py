@@ -294,25 +294,51 @@ answered(first=first, killed=len(killed), said=said, kept=kept, again=again)
     assert answer["again"] == answer["first"]
 
 
+def test_a_design_is_one_child_and_speaks_the_words_of_the_panel(scripted: Scripted) -> None:
+    """With faces named, supports and pictures, too; what is said of the reading names no option."""
+    answer = scripted(
+        """
+import types
+said, started = [], []
+child.App = types.SimpleNamespace(
+    ParamGet=App.ParamGet, Console=types.SimpleNamespace(PrintMessage=said.append)
+)
+begin = child.subprocess.Popen
+child.subprocess.Popen = lambda words, **more: started.append(words[1:]) or begin(words, **more)
+held = fixture.make(document, block, "z", "two-clamp-plate-20mm")
+held.PegHeight, held.Supports, held.Best = 8, True, 20
+fixture.design(held, pictures=True)
+plain = len(started)
+fixture.choose(held, 2)
+chosen, pages = marks(held), [held.Paged]
+names = ["Face%d" % k for k, face in enumerate(block.Shape.Faces, 1) if abs(face.normalAt(0, 0).z) < 0.5]
+started.clear()
+held.Only = names
+again = fixture.design(held, pictures=True)
+answered(plain=plain, started=len(started), said=said, again=again, same=marks(held) == chosen,
+         pages=[*pages, held.Paged], size=len(open(held.Page, "rb").read()))
+"""
+    )
+    assert (answer["plain"], answer["started"]) == (1, 1)
+    assert answer["again"].startswith("Fixture 2 of 20.") and answer["same"]
+    # The picture is of what stands in the document, as long as it does.
+    assert answer["pages"] == [1, 2] and answer["size"] > 10_000
+    assert answer["said"] and not any("--" in one or one.startswith("workhold:") for one in answer["said"])
+    assert answer["said"][0].startswith("The part is 12 mm high along z; the outline is what pegs of 8 mm")
+
+
 def test_a_search_that_is_stopped_says_so(scripted_as_installed: Scripted) -> None:
     """At once nothing is found, and the fixture that there was stays; of a list that is not whole the state says so."""
     answer = scripted_as_installed(
         HELD
         + """
-import json, threading
+import threading
 first = fixture.design(held)
 stop = threading.Event()
 said = said_by(lambda: fixture.design(held, cancel=stop, wait=stop.set))
 bodies = len(held.Group)
-whole = fixture.answer
-def partly(*words, **more):
-    seen = whole(*words, **more)
-    path = words[words.index("--out") + 1]
-    told = json.loads(path.read_text(encoding="utf-8"))
-    told["complete"] = False
-    path.write_text(json.dumps(told), encoding="utf-8")
-    return seen
-fixture.answer = partly
+whole = fixture.ordered
+fixture.ordered = lambda *words, **order: {**whole(*words, **order), "complete": False}
 answered(first=first, said=said, bodies=bodies, partly=fixture.design(held))
 """
     )

@@ -112,19 +112,28 @@ def test_only_one_file_asks_for_the_version() -> None:
         assert "int(QtGui" not in text, path
 
 
-def test_a_fixture_is_known_by_its_holes_and_how_the_part_lies(compat: Any) -> None:
-    """Turned by half a turn in the same holes is another one; a few degrees are not."""
-    recognition = importlib.import_module("workhold_workbench.recognition")
-
-    def one(
-        angle: float, row: int = 1, kind: str = "clamp2", ways: tuple[str, str] = ("-x", "-y")
-    ) -> dict[str, Any]:
-        pegs = [{"column": 0, "row": row}, {"jaw": "left", "column": 1, "row": 0}]
-        return {"type": kind, "directions": list(ways), "pegs": pegs, "pose": {"theta_deg": angle}}
-
-    marks = recognition.marks_of(one(178.0))
-    listed = [one(357.0), one(190.0), one(-179.0), one(178.0, row=2), one(178.0, ways=("-x", "y"))]
-    assert recognition.rank_in(listed, marks) == 3
-    assert recognition.rank_in(listed[:2], marks) == 2
-    assert recognition.rank_in([one(357.0), *listed[3:], one(178.0, kind="clamp")], marks) is None
-    assert recognition.rank_in([], marks) is None
+@pytest.mark.parametrize(
+    "sentence, words",
+    [
+        (
+            "how thick the part is, is not known: give --thickness.",
+            "How thick the part is, is not known: give the thickness.",
+        ),
+        (
+            "give its --thickness, and --peg-height where pegs are not as high.",
+            "Give the thickness, and the peg height where pegs are not as high.",
+        ),
+        (
+            "the vise's pitch is not given: add --pitch, or name a vise with --toolkit (see workhold toolkits).",
+            "The vise's pitch is not given: add the pitch, or name a vise with the toolkit.",
+        ),
+        (
+            "this is not known: give --start X,Y,Z.",
+            "This is not known: give the place of the tip at its start.",
+        ),
+        ("No such option: -x; see workhold workbench --help.", "No such option: -x."),
+    ],
+)
+def test_no_option_of_the_command_reaches_the_report_view(compat: Any, sentence: str, words: str) -> None:
+    child = importlib.import_module("workhold_workbench.child")
+    assert child.in_words_of_the_panel(sentence) == words

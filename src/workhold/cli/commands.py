@@ -12,7 +12,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from functools import partial, wraps
 from inspect import Parameter, Signature, cleandoc, signature
-from typing import Any, TextIO, get_type_hints
+from typing import Any, TextIO, TypeVar, get_type_hints
 
 import typer
 from attrs import fields, resolve_types
@@ -21,7 +21,7 @@ from typer.core import TyperCommand, TyperGroup
 from workhold.cli.table import sentence_lines, width_of
 from workhold.errors import NO_ROOM, plain, shortened
 
-__all__ = ["PlainCommand", "PlainGroup", "flag", "forget", "option", "print_remark", "spread"]
+__all__ = ["PlainCommand", "PlainGroup", "flag", "forget", "option", "print_remark", "spread", "untyped"]
 
 
 def print_remark(message: str) -> None:
@@ -51,6 +51,8 @@ def forget(stream: TextIO) -> None:
 
 BAD_INPUT = 2
 ARGUMENTS, OPTIONS, COMMANDS = "Arguments", "Options", "Commands"
+# A group of options.
+Words = TypeVar("Words")
 # Columns of a help's left side; longer entries have a line of their own.
 WIDEST_ENTRY = 27
 
@@ -92,6 +94,12 @@ def spread(command: Callable[..., None]) -> Callable[..., None]:
     spread_out.__dict__["__signature__"] = Signature(parameters)
     spread_out.__annotations__ = {one.name: one.annotation for one in parameters}
     return spread_out
+
+
+def untyped(kind: type[Words], **typed: Any) -> Words:
+    """A group of options as it is where none is typed but these."""
+    usual = {name: one.default.default for name, one in signature(kind).parameters.items()}
+    return kind(**usual | typed)
 
 
 class PlainCommand(TyperCommand):

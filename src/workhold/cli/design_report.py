@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from workhold.model.search_report import Explanation
     from workhold.units import Unit
 
-__all__ = ["NEAREST_MISS", "draw_best", "draw_one", "explain_none", "picture_names"]
+__all__ = ["NEAREST_MISS", "THUMBNAILS", "draw_best", "draw_one", "explain_none", "picture_names"]
 
 BEST_DRAWN = 12
 ENDINGS = (".svg", ".png")

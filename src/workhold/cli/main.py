@@ -91,6 +91,9 @@ COMMANDS = {
     "mcp": (
         "Offer load, design, show, sheet and explain as tools to an agent, over the Model Context Protocol."
     ),
+    "workbench": (
+        "Answer FreeCAD's workbench: design, and the bodies and pictures of the fixture that is put in."
+    ),
     "doctor": "Report what is installed, what is missing, and what each would be good for.",
     "completion": "Print the script that lets a shell complete the commands and options of workhold.",
 }

@@ -7,13 +7,12 @@ from __future__ import annotations
 
 import re
 from functools import cache
-from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from attrs import evolve, fields, frozen
 
-from workhold.cli.commands import option, print_remark
+from workhold.cli.commands import option, print_remark, untyped
 from workhold.cli.options import PartWords
 from workhold.cli.values import (
     choice,
@@ -136,13 +135,6 @@ class ProgramWords:
         "How thick the part is; that of its solid if not given. Pegs are as high, or as --peg-height says.",
     )
 
-    @classmethod
-    def untyped(cls) -> ProgramWords:
-        """The options as they are where none is typed."""
-        return cls(
-            **{name: parameter.default.default for name, parameter in signature(cls).parameters.items()}
-        )
-
     @property
     def files(self) -> tuple[str | None, ...]:
         """The files that are read."""
@@ -189,7 +181,7 @@ class ProgramWords:
         """
         if self.program is None:
             # Of a thickness other options make use as well.
-            usual = evolve(ProgramWords.untyped(), thickness=self.thickness)
+            usual = untyped(ProgramWords, thickness=self.thickness)
             given = [
                 one.name
                 for one in fields(ProgramWords)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from itertools import count
 from math import hypot
 from typing import Any
 
@@ -139,8 +138,8 @@ def rows_answer(
     ]
 
 
-def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
-    """Describes what is shown of each carrier, then of each wall and each clamp.
+def carriers_answer(seen: Shown, fixture: Fixture) -> list[dict[str, Any]]:
+    """Describes what is shown of a fixture's carriers, then of each wall and each clamp.
 
     ``origin`` is the hole in column 0 and row 0, and ``pegs`` are the numbers of the pegs. ``used_columns``
     and ``used_rows`` are those of the pegs and of clamps. ``measured`` are the upper or right ends of the
@@ -149,7 +148,11 @@ def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
     ends = [(one.setting, [list(high) for _, high in one.axes]) for one in seen.measured]
     measured = {setting.carrier.name: axes for setting, axes in ends if setting.tip is None}
     of_clamps = [axes for setting, axes in ends if setting.tip is not None]
-    numbers = count()
+    names = [peg.carrier for peg in fixture.pegs]
+
+    def numbers_on(carrier: Carrier) -> list[int]:
+        return [number for number, name in enumerate(names) if name == carrier.name]
+
     lattices: list[dict[str, Any]] = [
         {
             "letter": each.carrier.letter,
@@ -160,7 +163,7 @@ def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
             **body_answer(each.plate),
             "hole_radius": each.hole_radius,
             "names_at": each.names_at,
-            "pegs": [next(numbers) for _ in each.pegs],
+            "pegs": numbers_on(each.carrier),
             "peg_radius": each.carrier.peg_radius,
             "flat": None if each.carrier.flat is None else each.carrier.flat.distance,
             "flats": [peg.flat_deg for peg in each.pegs],
@@ -177,7 +180,7 @@ def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
         {
             **lattice_of_none(each.carrier),
             **body_answer(each.bar),
-            "pegs": [next(numbers) for _ in each.ends],
+            "pegs": numbers_on(each.carrier),
             "peg_radius": 0.0,
             "clamping": None,
             "measured": None,
@@ -189,7 +192,7 @@ def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
         {
             **lattice_of_none(each.carrier),
             **body_answer(each.room),
-            "pegs": [next(numbers)],
+            "pegs": numbers_on(each.carrier),
             "peg_radius": each.carrier.peg_radius,
             "clamping": each.clamping,
             "measured": axes if is_reached(each) else None,
@@ -295,7 +298,7 @@ def fixture_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> 
         "jaw_separation": fixture.jaw_separation,
         "pegs": [[peg.x, peg.y] for peg in fixture.pegs],
         "forces": [finite(peg.force) for peg in fixture.pegs],
-        "carriers": moved_back(carriers_answer(shown(stands, toolkit, workpiece)), placed),
+        "carriers": moved_back(carriers_answer(shown(stands, toolkit, workpiece), stands), placed),
         "quality": {key: finite(value) for key, value in fixture.quality.items()},
     }
 

@@ -47,6 +47,8 @@ __all__ = [
 MOST_NAMES, MOST_TOOLKITS = 500, 60
 # Fixtures whose seating is worked out in one search.
 MOST_SEATED = 1_000
+# Best fixtures that may be asked for instead of all.
+MOST_BEST = 10_000
 
 DirectionPair = Annotated[list[Name], Field(min_length=2, max_length=2)]
 
@@ -212,9 +214,13 @@ class SearchForm(Form):
 
 
 class JobForm(SearchForm):
-    """A search for every fixture, of how many first ones the seating is worked out, and by which rules."""
+    """A search for every fixture or only the best.
+
+    It says, too, of how many first ones the seating is worked out, and by which rules.
+    """
 
     toolkit: HeldIn
+    best: int | None = Field(default=None, ge=1, le=MOST_BEST)
     seating: int | None = Field(default=None, ge=1, le=MOST_SEATED)
     opening: Annotated[float, Field(gt=0, le=LARGEST)] | None = None
     foolproof: bool = False
@@ -228,6 +234,7 @@ class JobForm(SearchForm):
             For the first value that cannot be.
         """
         query = self.query(self.toolkit.toolkit(), most_segments)
+        query = evolve(query, best=self.best)
         return (("", evolve(query, seating=self.seating, opening=self.opening, foolproof=self.foolproof)),)
 
 

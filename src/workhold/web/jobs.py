@@ -27,8 +27,9 @@ from workhold.web.families import FamilyFound
 from workhold.web.guard import ServerLimits
 from workhold.web.part_tasks import shape_size
 from workhold.web.pool import BusyError, FailedError, Pool, PoolTask, StoppedError
+from workhold.web.searching import Found
 from workhold.web.selection import Selection
-from workhold.web.tasks import Found, NamedQuery
+from workhold.web.tasks import NamedQuery
 from workhold.web.worker import return_memory
 
 if TYPE_CHECKING:
@@ -66,6 +67,7 @@ class ServerJob:
     weight : about how many bytes of memory the request takes.
     stops_when_left : whether the job is cancelled once nobody has asked for it or followed it for some time.
     shape : of the part, where its file was sent for it.
+    best : how many of the fixtures listed are known to be the best of all, while the others are searched.
     """
 
     name: str
@@ -78,6 +80,7 @@ class ServerJob:
     state: str = "queued"
     fraction: float = 0.0
     found: int = 0
+    best: int = 0
     began: float | None = None
     ended: float | None = None
     result: Result | None = None
@@ -140,6 +143,7 @@ class ServerJob:
             "seconds": 0.0 if self.began is None else round(end - self.began, 3),
             "counts": None if listed is None else dict(listed.found),
             "distinct": None if listed is None else dict(listed.distinct),
+            "best": 0 if over else self.best,
             "listed": 0 if result is None else len(result),
             "arrangements": [] if self.kind != "design" else arrangements_answer(self.queries[0][1].toolkit),
             "ranking": None if result is None else list(result.query.ranking),
@@ -306,11 +310,13 @@ class Jobs:
         """Applies a report of a worker."""
         match value:
             case ("progress", fraction, found):
-                job.fraction, job.found = max(float(fraction), job.fraction), int(found)
+                job.fraction, job.found = max(float(fraction), job.fraction), max(int(found), job.best)
                 if job.fraction >= LISTING and job.kind == "design":
                     job.state = "listing"
-            case ("preview", Result() as result):
-                job.result = evolve(result, query=job.queries[0][1])
+            case ("preview" | "first" as kind, Result() as result):
+                job.result = evolve(result, query=job.queries[0][1], complete=False)
+                if kind == "first":
+                    job.best, job.found = len(result), max(job.found, len(result))
                 job.revision += 1
                 job.orders.clear()
             case ("row", row):

@@ -9,10 +9,7 @@ from __future__ import annotations
 
 from functools import partial
 from multiprocessing.connection import Connection
-from time import perf_counter
 from typing import TYPE_CHECKING, Any
-
-from attrs import frozen
 
 from workhold.model.query import Query
 from workhold.model.result import Result
@@ -23,6 +20,7 @@ from workhold.web.fixture_tasks import close, find_seating, make_paper
 from workhold.web.part_tasks import builtin_part, check_part, find_shape, read_part, survey_part
 from workhold.web.program_forms import look_at_program
 from workhold.web.request_forms import check_body
+from workhold.web.searching import search
 from workhold.web.support_tasks import find_supports
 from workhold.web.worker import Order, Tasks, worker_main
 
@@ -33,23 +31,13 @@ if TYPE_CHECKING:
     from workhold.web.forms import ExploreForm, JobForm, LoadsForm
     from workhold.web.request_forms import WorkpieceForm
 
-__all__ = ["TASKS", "Found", "NamedQuery", "warm_up", "work"]
+__all__ = ["TASKS", "NamedQuery", "warm_up", "work"]
 
 # What a toolkit is called, and the query for it.
 NamedQuery = tuple[str, Query]
 
-# Seconds between reports of progress.
-PAUSE = 0.1
 # Best fixtures listed when loads are asked for over all of them.
 MOST_RESISTING = 10
-
-
-@frozen(eq=False)
-class Found:
-    """The outcome of a search; ``left_out`` fixtures were found but not kept."""
-
-    result: Result
-    left_out: int
 
 
 def warm_up(kind: str) -> None:
@@ -67,32 +55,6 @@ def warm_up(kind: str) -> None:
     import workhold.files.svg.reader
     import workhold.statics.loads
     import workhold.web.forms  # noqa: F401
-
-
-def search(payload: tuple[Query, int], order: Order) -> Found:
-    """Searches; reports are ("progress", fraction, found) and ("preview", result)."""
-    from workhold.search.design import answer
-
-    query, most = payload
-    last = 0.0
-
-    def progress(fraction: float, found: int) -> None:
-        nonlocal last
-        now = perf_counter()
-        if now >= last + PAUSE or fraction >= 1.0:
-            last = now
-            order.report(("progress", fraction, found))
-
-    result = answer(
-        query,
-        progress=progress,
-        cancel=order.cancel,
-        preview=lambda result: order.report(("preview", result)),
-    )
-    left_out = max(len(result) - most, 0)
-    if left_out:
-        result = result.part(slice(0, most))
-    return Found(result, left_out)
 
 
 def explore(payload: tuple[NamedQuery, ...], order: Order) -> None:

@@ -249,3 +249,32 @@ def test_both_ways_of_drawing_show_the_same(carded: Walk) -> None:
     """With and without WebGL the bodies cover the same pixels, but for their rims, in nearly the same colours."""
     differ = carded.page.evaluate(BOTH)
     assert differ["covered"] < 0.01 and differ["colour"] < 0.12, differ
+
+
+# How much of the canvas all bodies take, across and down, when they are seen whole from angles: 1 is all of it.
+WHOLE = """async ([low, high, width, height, around, above]) => {
+  const { HALF_FIELD, Orbit } = await import("/static/space/orbit.js");
+  const canvas = document.createElement("canvas");
+  Object.defineProperties(canvas, { clientWidth: { value: width }, clientHeight: { value: height } });
+  const view = new Orbit(canvas);
+  view.frame([{ positions: [...low, ...high] }], false);
+  view.fit(around, above);
+  const seen = view.corners.map((corner) => view.axes().map((axis) =>
+    axis.reduce((sum, value, k) => sum + value * (corner[k] - view.target[k]), 0)));
+  const places = seen.map(([x, y, out]) => [x, y].map((value) => value / (view.far - out) / HALF_FIELD));
+  const across = places.map(([x]) => (x * height) / width);
+  return [across, places.map(([, y]) => y)].flatMap((all) => [Math.min(...all), Math.max(...all)]);
+}"""
+
+
+@pytest.mark.parametrize("canvas", [(960, 480), (330, 440), (330, 200)], ids=str)
+@pytest.mark.parametrize("look", [(-0.6, 0.75), (0.0, 1.57), (0.0, 0.0)], ids=str)
+def test_a_long_bar_is_seen_whole_and_large(
+    walk: Walk, canvas: tuple[int, int], look: tuple[float, float]
+) -> None:
+    """On a wide window and on a phone, from each side: nothing is cut off, and one side of the canvas is filled."""
+    bar = [[-0.2, 0.0, -0.015], [0.2, 0.025, 0.015]]
+    left, right, low, high = walk.page.evaluate(WHOLE, [*bar, *canvas, *look])
+    assert -0.98 < left < right < 0.98 and -0.98 < low < high < 0.98
+    assert max(right - left, high - low) > 2 * 0.85
+    assert abs(left + right) < 0.1 and abs(low + high) < 0.1

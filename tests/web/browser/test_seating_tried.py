@@ -211,3 +211,44 @@ def test_a_search_asks_for_seating(walk: Walk) -> None:
     walk.reload()
     assert (page.input_value("#seated-first"), page.input_value("#seated-opening")) == ("6", "1")
     assert page.is_checked("#seated-foolproof")
+
+
+# Which pegs stand in the part, at the openings that were wished for and that a trial begins with.
+BEGINS = """async ([part, row, wish]) => {
+  const { entered, lyingOf, openingBeside } = await import("/static/trial.js");
+  const opening = openingBeside(part, row, wish);
+  const lying = lyingOf(part, row, { x: 0, y: 0, turn: 0, over: false, opening: 0 });
+  return [opening, entered(part, row, lying, wish), entered(part, row, lying, opening)];
+}"""
+LOOP = [[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]]
+HOLE = [[30, 24, -1], [30, 16, -1]]
+
+
+def test_a_trial_begins_with_every_peg_beside_the_part(walk: Walk) -> None:
+    """A peg in a hole opens no farther than into its wall; one that is a point, as of a flat jaw, stands on its face."""
+    segments = [{"loop": 0, "face": k, "number": k} for k in range(4)]
+    segments += [{"loop": 1, "face": 4, "number": k} for k in (4, 5)]
+    part = {"bounds": [0, 0, 60, 40], "loops": [LOOP, HOLE], "segments": segments}
+    still = {"clamping": None, "pegs": [0, 1], "peg_radius": 0}
+    moves = {"clamping": [-1, 0], "pegs": [2], "peg_radius": 2}
+    # Two points on the left side, off it by rounding, and a peg at the right side of the hole.
+    row = {"theta_deg": 0, "x": 0, "y": 0, "flush": [], "carriers": [still, moves]}
+    row |= {"pegs": [[1e-9, 10], [0, 30], [28, 20]]}
+    opening, wished, begun = walk.page.evaluate(BEGINS, [part, row, 20])
+    assert wished == [2] and begun == [] and 0 < opening < 5
+    outside = {**row, "pegs": [[0, 10], [0, 30], [62, 20]]}
+    opening, wished, begun = walk.page.evaluate(BEGINS, [part, outside, 20])
+    assert (opening, wished, begun) == (20, [], [])
+
+
+def test_pegs_are_drawn_at_their_radius(walk: Walk) -> None:
+    """Also thin ones on a coarse pitch: a thicker circle would stand in the part."""
+    page = walk.page
+    walk.take()
+    page.fill("#peg-radius", "0.4")
+    page.press("#peg-radius", "Tab")
+    walk.search()
+    radii = page.eval_on_selector_all(
+        "#drawing-fixture .peg-body", "all => all.map(one => one.r.baseVal.value)"
+    )
+    assert len(radii) == 4 and all(abs(radius - 0.4) < 1e-6 for radius in radii)

@@ -307,6 +307,27 @@ def test_a_side_that_cannot_be_held_is_told(walk: Walk, tmp_path: Path) -> None:
     assert state(walk)["part"]["solid"]["peg_height"] == 30
 
 
+def test_heights_that_help_are_offered_where_nothing_holds(walk: Walk, tmp_path: Path) -> None:
+    """On the second side the part lies on a round boss; pegs that reach the base hold it, and faces cut stay ruled out."""
+    page = walk.page
+    base = filleted(box(100, 70, 12), 8, upright)
+    held(walk, str(write_step(tmp_path / "boss.step", fused(base, cylinder(25, 10, (50, 35, 12))))))
+    first = state(walk)
+    touched = set(first["selected"]["faces"])
+    cut_face = next(face["number"] for face in first["part"]["faces"] if face["number"] not in touched)
+    page.click(f"#turn-faces [data-face='{cut_face}']")
+    page.click("#second-side")
+    walk.until("state.sides?.shown === 1 && state.job?.state === 'done' && state.job.found === 0")
+    helping = walk.seen("#height-help button")
+    assert helping.inner_text() == "Pegs of 22.00 mm hold it"
+    walk.seen("#height-words:has-text('there are fixtures')")
+    helping.click()
+    walk.searched()
+    second = state(walk)
+    assert second["part"]["solid"]["peg_height"] == 22 and second["sides"]["shown"] == 1
+    assert len(second["avoid"]) == 1 and not set(second["selected"]["faces"]) & set(second["avoid"])
+
+
 def test_another_file_has_no_second_side(walk: Walk, block: str) -> None:
     """The sides belong to one part: a new one is alone."""
     page = walk.page

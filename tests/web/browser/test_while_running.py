@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from walking import SEARCH_PATIENCE, Walk
+from pathlib import Path
+
+from walking import EXAMPLES, SEARCH_PATIENCE, Walk
 
 NEW_SEARCH = "state.job?.job && state.job.job !== given"
 SAME_FORCE = (
@@ -82,3 +84,80 @@ def test_a_search_that_the_server_has_not_taken_yet_can_be_cancelled(walk: Walk)
     with page.expect_response(lambda response: response.request.method == "DELETE"):
         page.evaluate("() => window.answer()")
     assert page.inner_text("#count") == "Search cancelled"
+
+
+# The file is read once the test says so.
+HELD_BACK = """() => {
+  const real = window.fetch;
+  window.fetch = async (address, options) => {
+    if (String(address).includes("parts/survey")) await new Promise((go) => { window.read = go; });
+    return real(address, options);
+  };
+}"""
+
+
+def test_a_search_waits_for_the_part_that_is_read(walk: Walk) -> None:
+    """Pressed while the file is being read, it begins when it is; it can be cancelled before."""
+    page = walk.page
+    page.select_option("#preset", "plate-20mm")
+    page.evaluate(HELD_BACK)
+    page.set_input_files("#file", EXAMPLES / "bracket.dxf")
+    page.wait_for_function("() => Boolean(window.read)")
+    page.click("#search")
+    assert page.get_attribute("body", "data-search") == "waiting"
+    assert "bracket.dxf is being read" in page.inner_text("#count-words")
+    page.click("#cancel")
+    assert page.inner_text("#count") == "Search cancelled"
+    page.click("#search")
+    page.evaluate("() => window.read()")
+    walk.searched()
+    assert walk.count() > 0 and walk.page.inner_text("#part-words").startswith("bracket")
+
+
+def test_a_search_that_waits_for_a_file_that_is_none_is_left(walk: Walk, tmp_path: Path) -> None:
+    page, broken = walk.page, tmp_path / "broken.dxf"
+    broken.write_text("no drawing")
+    page.evaluate(HELD_BACK)
+    page.set_input_files("#file", broken)
+    page.wait_for_function("() => Boolean(window.read)")
+    page.click("#search")
+    page.evaluate("() => window.read()")
+    walk.seen("#part-trouble")
+    walk.until("state.reading === '' && state.job === null")
+    assert page.get_attribute("body", "data-search") == "none"
+
+
+# A search as the server tells it, in a stage of its own.
+STAGE = """async (more) => {
+  const { change } = await import("/static/state.js");
+  const job = { job: null, state: "running", fraction: 0, found: 0, best: 0, revision: 0, notes: [] };
+  change({ job: { ...job, ...more } });
+  return ["#count", "#count-words"].map((id) => document.querySelector(id).textContent);
+}"""
+
+
+def test_what_is_searched_is_never_said_to_be_all(walk: Walk) -> None:
+    """What is known by then is said instead: that it is put in order, or that the best are found."""
+    title, words = walk.page.evaluate(STAGE, {"state": "listing", "fraction": 1.0})
+    assert title == "Looking for the best" and words == "What was found is being put in order."
+    title, words = walk.page.evaluate(STAGE, {"fraction": 0.7})
+    assert title == "Looking for the best" and words == "70 % searched."
+    title, words = walk.page.evaluate(STAGE, {"fraction": 1.0, "found": 7})
+    assert title == "7 fixtures so far" and words == "99 % searched."
+    title, words = walk.page.evaluate(STAGE, {"fraction": 0.431, "found": 1234, "best": 20})
+    assert title == "The best 20" and "43 % searched; 1,234 fixtures so far" in words.replace("\u202f", ",")
+
+
+def test_the_best_are_on_show_before_all_are_found(walk: Walk) -> None:
+    """The first row of the list is then the first of all, and stays it."""
+    page = walk.page
+    search_for_long(walk)
+    walk.until("state.job?.best === 20 || state.job?.state === 'done'")
+    walk.until("state.selected?.rank === 1")
+    first = walk.shown()["holes"]
+    if page.get_attribute("body", "data-search") != "done":
+        page.click("#cancel")
+        page.wait_for_selector("#progress-row", state="hidden", timeout=SEARCH_PATIENCE)
+        # What was found when it was stopped comes after them.
+        walk.until("state.selected?.rank === 1")
+        assert walk.shown()["holes"] == first

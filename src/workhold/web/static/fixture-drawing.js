@@ -187,7 +187,7 @@ export class FixtureDrawing {
   clamp({ clamp, clamping: [dx], pitch, peg_radius: size }) {
     const { hole, tip, bolt_radius: bolt } = clamp;
     const [x0, y0, x1, y1] = clamp.line;
-    const radius = Math.max(size, (dx ? pitch[0] : pitch[1]) / 12);
+    const radius = size || (dx ? pitch[0] : pitch[1]) / 12;
     if (!hole) return [draw("path.clamp-line", { d: dx ? `M${x0} ${tip[1]}H${x1}` : `M${tip[0]} ${y0}V${y1}` })];
     const ends = { x1: hole[0], y1: hole[1], x2: tip[0], y2: tip[1] };
     return [
@@ -210,7 +210,7 @@ export class FixtureDrawing {
 
   /** A peg that can be pointed at and focused. */
   peg([x, y], k, { peg_radius: size, flat }, looks) {
-    const radius = Math.max(size, Math.min(...this.toolkit.pitch) / 12);
+    const radius = size || Math.min(...this.toolkit.pitch) / 12;
     const { row, clearance } = this;
     const where = row.flush.includes(k) ? "Contact with" : "Peg in";
     const words = `${where} ${row.holes[k]}, on face ${row.touched[k]}, presses with ${row.forces[k].toFixed(3)} N for each N of ${forceOf(row)}`;

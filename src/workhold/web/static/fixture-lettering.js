@@ -19,12 +19,13 @@ export function drawLettering(drawing) {
   const { overlay } = drawing.view;
   const closed = drawing.open === 0 && drawing.lying === null;
   const axes = [...columnNames(drawing), ...rowNames(drawing)];
-  const parts = [...axes.map(({ text, x, y, kind, anchor }) => word(text, [x, y], kind, anchor)), ...travels(drawing)];
+  const dimensions = travels(drawing);
+  const parts = [...axes.map(({ text, x, y, kind, anchor }) => word(text, [x, y], kind, anchor)), ...dimensions.flatMap(({ nodes }) => nodes)];
   if (closed) {
     parts.push(...forces(drawing).map(({ tail, tip, kind }) => arrow(tail, tip, kind)));
     if (drawing.load) parts.push(...loadArrow(drawing));
   }
-  parts.push(...labels(drawing, closed, axes.filter(({ kind }) => kind === USED)));
+  parts.push(...labels(drawing, closed, [...axes.filter(({ kind }) => kind === USED), ...dimensions]));
   overlay.replaceChildren(...parts, ...programLabel(drawing), ...drawing.extras());
 }
 
@@ -100,27 +101,38 @@ function rowNames(drawing) {
   });
 }
 
+/** Whether a carrier slides up or down rather than across. */
+const runsUp = ({ clamping }) => Math.abs(clamping[1]) > Math.abs(clamping[0]);
+
+/** A value between two limits; nearer to the lower one where they leave no room. */
+const between = (value, low, high) => Math.max(low, Math.min(value, high));
+
 /** How far a carrier has slid, as a dimension above the plates, or at their right when it slides upward. */
 function travels(drawing) {
   const { view, row } = drawing;
+  const [width, height] = view.size;
   const plates = row.carriers.map(({ plate }) => plate);
   const [right, top] = view.page([2, 3].map((side) => Math.max(...plates.map((plate) => plate[side]))));
   const sliding = row.carriers.filter((carrier) => carrier.clamping);
   return sliding.flatMap((carrier, number) => {
     if (!carrier.measured) return [];
     const setting = row.settings[number];
-    const upright = Math.abs(carrier.clamping[1]) > Math.abs(carrier.clamping[0]);
+    const upright = runsUp(carrier);
     const [dx, dy] = drawing.shift(carrier);
     const [start, end] = carrier.measured;
     const [a, b] = [view.page(start), view.page([end[0] + dx, end[1] + dy])].map((p) => p[upright ? 1 : 0]).sort((p, q) => p - q);
     // Of two along the same way the second stands farther out.
-    const nearer = sliding.slice(0, number).filter((each) => each.measured && (Math.abs(each.clamping[1]) > Math.abs(each.clamping[0])) === upright).length;
+    const nearer = sliding.slice(0, number).filter((each) => each.measured && runsUp(each) === upright).length;
     const rim = upright ? right + 16 + NEXT_LINE * nearer : top - 30 - NEXT_LINE * nearer;
     const line = (x1, y1, x2, y2) => draw("line.dimension", upright ? { x1: y1, y1: x1, x2: y2, y2: x2 } : { x1, y1, x2, y2 });
     const text = `${setting.sign} = ${length(drawing.open ? (b - a) / view.k : setting.length)}`;
     const wide = 8.2 * text.length + 10;
     const above = upright || b - a < wide + 24;
-    const [x, y] = upright ? [rim + 15, (a + b) / 2] : [(a + b) / 2, rim - (above ? 13 : 0)];
+    // A long word stays in the drawing, and off one that runs upward beside it.
+    const beside = !upright && above && sliding.some((each) => each.measured && runsUp(each)) ? right + 12 : width;
+    const [x, y] = upright
+      ? [rim + 15, between((a + b) / 2, wide / 2, height - wide / 2)]
+      : [between((a + b) / 2, wide / 2, beside - wide / 2), rim - (above ? 13 : 0)];
     const heads = [[a, 1], [b, -1]].map(([at, way]) =>
       draw("path.dimension-head", { d: upright ? `M${rim} ${at}l-3.2 ${way * 9}h6.4Z` : `M${at} ${rim}l${way * 9} -3.2v6.4Z` }),
     );
@@ -128,7 +140,8 @@ function travels(drawing) {
     // Along its line, as on a drawing: beside it there may be no room.
     if (upright) words.setAttribute("transform", `rotate(-90 ${x} ${y})`);
     const back = above ? [] : [draw("rect.label-back", { x: x - wide / 2, y: y - 9, width: wide, height: 18 })];
-    return [line(a, rim - 5, a, rim + 12), line(b, rim - 5, b, rim + 12), line(a, rim, b, rim), ...heads, ...back, words];
+    const room = upright ? { x, y, w: 18, h: wide } : { x, y, w: wide, h: 18 };
+    return [{ room, nodes: [line(a, rim - 5, a, rim + 12), line(b, rim - 5, b, rim + 12), line(a, rim, b, rim), ...heads, ...back, words] }];
   });
 }
 
@@ -214,6 +227,11 @@ function faceLabels({ row, view, contacts }) {
   });
 }
 
+/** Whether a label is to be seen whole; what it is of may have been moved out of sight. */
+function isWithin({ x, y, w, h }, [width, height]) {
+  return x - w / 2 >= 1 && x + w / 2 <= width - 1 && y - h / 2 >= 1 && y + h / 2 <= height - 1;
+}
+
 /** Names of holes, numbers of faces and the size of the load, none on another, on a peg or on an arrow. */
 function labels(drawing, closed, axes) {
   const radius = pegSize(drawing);
@@ -228,8 +246,9 @@ function labels(drawing, closed, axes) {
   // Where there is room for none they are pushed apart at last.
   const crowded = [];
   for (const label of [...load, ...holes, ...faces]) {
-    const free = label.places.find((place) => isFree({ ...label, ...place }, taken));
-    Object.assign(label, free ?? label.places[0]);
+    const inside = label.places.filter((place) => isWithin({ ...label, ...place }, drawing.view.size));
+    const free = inside.find((place) => isFree({ ...label, ...place }, taken));
+    Object.assign(label, free ?? inside[0] ?? label.places[0]);
     if (free) taken.push(label);
     else crowded.push(label);
   }

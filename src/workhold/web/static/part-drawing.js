@@ -11,6 +11,11 @@ import { bareLength, length, unitWord } from "./units.js";
 import { Viewport } from "./viewport.js";
 
 const MARGINS = [40, 40, 46, 46];
+/** A number farther than this from its face, in pixels, has a line to it. */
+const LEAD = 11;
+/** Holes of less than this many pixels have their numbers so many pixels beside them. */
+const SMALL = 34;
+const BESIDE = 17;
 
 /** The drawing of the part. */
 export class PartDrawing {
@@ -115,9 +120,7 @@ export class PartDrawing {
     const seen = draw("path.face", { d });
     const hit = draw("path.face-hit", { d, "data-face": number });
     hit.append(draw("title", {}, `Face ${number}${bandWords(state.part, number)}`));
-    hit.addEventListener("click", () => {
-      if (!this.view.tool) toggleFace(number);
-    });
+    hit.addEventListener("click", () => this.click(number));
     hit.addEventListener("pointerenter", () => this.point(number));
     hit.addEventListener("pointerleave", () => this.point(null));
     this.faces.set(number, { seen, hit });
@@ -170,18 +173,30 @@ export class PartDrawing {
     const labels = [...seen].flatMap(([face, { segment, long }]) => {
       const asked = state.avoid.includes(face) || face === this.pointed;
       if (long < 24 && !asked && !alone.has(face)) return [];
-      const [x, y] = this.view.page(pointAt(segment, 0.5));
-      const [nx, ny] = normalAt(segment, 0.5);
-      return [{ face, x: x - 16 * nx, y: y + 16 * ny, w: 19, h: 19 }];
+      const on = this.view.page(pointAt(segment, 0.5));
+      // Beside a small hole, which a number on it would cover.
+      const [nx, ny] = alone.has(face) && long < SMALL ? normalAt(segment, 0.5) : [0, 0];
+      return [{ face, x: on[0] - BESIDE * nx, y: on[1] + BESIDE * ny, w: 19, h: 19, on }];
     });
     apart(labels);
-    return labels.flatMap(({ face, x, y }) => {
-      const kind = `${state.avoid.includes(face) ? " forbidden" : ""}${face === this.pointed ? " pointed" : ""}`;
-      return [
-        draw(`circle`, { class: `face-label${kind}`, cx: x, cy: y, r: 10 }),
-        draw("text", { class: `face-name${kind}`, x, y, dy: "0.36em", "text-anchor": "middle" }, String(face)),
-      ];
-    });
+    return labels.flatMap((label) => this.number(label));
+  }
+
+  /** The number of a face, which stands on it and can be clicked as it can; one that was pushed away has a lead. */
+  number({ face, x, y, on }) {
+    const kind = `${state.avoid.includes(face) ? " forbidden" : ""}${face === this.pointed ? " pointed" : ""}`;
+    const lead = Math.hypot(x - on[0], y - on[1]) > LEAD ? [draw("path.face-lead", { d: `M${on[0]} ${on[1]}L${x} ${y}` })] : [];
+    const name = draw("g.face-number", { "data-face": face },
+      draw("title", {}, `Face ${face}${bandWords(state.part, face)}`),
+      draw("circle", { class: `face-label${kind}`, cx: x, cy: y, r: 10 }),
+      draw("text", { class: `face-name${kind}`, x, y, dy: "0.36em", "text-anchor": "middle" }, String(face)));
+    name.addEventListener("click", () => this.click(face));
+    return [...lead, name];
+  }
+
+  /** A face was clicked, or its number. */
+  click(face) {
+    if (!this.view.tool) toggleFace(face);
   }
 
   /** Width and height of the part along its sides. */

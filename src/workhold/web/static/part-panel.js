@@ -74,6 +74,7 @@ async function readFile() {
   choice("builtin").value = "";
   const mine = ++reading;
   say(`Reading ${chosen.name} …`);
+  change({ reading: chosen.name });
   try {
     const survey = await surveyPart(chosen, how);
     if (mine !== reading) return;
@@ -85,7 +86,14 @@ async function readFile() {
     if (askQuestions(survey, how, answered)) showSection("stage");
   } catch (error) {
     if (mine === reading) await trouble(error, chosen);
+  } finally {
+    isRead(mine);
   }
+}
+
+/** What was read under a number is read, well or badly; a search that waits for it begins. @param {number} mine */
+function isRead(mine) {
+  if (mine === reading) change({ reading: "" });
 }
 
 /** Whether a file holds solids. @param {File} file */
@@ -107,6 +115,7 @@ export async function readOver(more) {
 /** Go on with a file as it was read; with none where it is not at hand. @param {ReturnType<typeof fileRead>} read */
 export function resumeFile(read) {
   reading += 1;
+  change({ reading: "" });
   lastFile = read?.file ?? null;
   how = read?.how ?? {};
   lastSurvey = read?.survey ?? null;
@@ -143,11 +152,14 @@ async function takeBuiltin() {
   change({ sides: null, cut: null });
   const mine = ++reading;
   noQuestions();
+  change({ reading: value });
   try {
     const part = await ask(`parts/${encodeURIComponent(value)}`);
     if (mine === reading) usePart(part, { name: value });
   } catch (error) {
     if (mine === reading) await trouble(error, new File([], value));
+  } finally {
+    isRead(mine);
   }
 }
 
@@ -161,6 +173,7 @@ async function takeExample() {
   const example = await (await fetch("static/example.json")).json();
   const part = await send("parts/check", example);
   if (mine !== reading) return;
+  change({ reading: "" });
   usePreset(EXAMPLE_IN);
   usePart(part);
   start();

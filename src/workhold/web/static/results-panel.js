@@ -18,6 +18,9 @@ const SHORT = {
   end_distance: "to end", load_reaction: "load", edge_distance: "to edge", jaw_force_needed: "needs", smallest_face: "face",
 };
 
+/** The part of a search after which what it found is put in order. */
+const LISTING = 0.9;
+
 /** @type {FixtureList} */
 let list;
 /** @type {Rows|null} */
@@ -65,8 +68,8 @@ export function resultsPanel(figures) {
     list.clear();
     list.paint();
   });
-  on(["part", "job"], () => {
-    byId("search").toggleAttribute("disabled", state.part === null);
+  on(["part", "job", "reading"], () => {
+    byId("search").toggleAttribute("disabled", state.part === null && !state.reading);
     show(byId("search-there"), state.part !== null && state.job === null);
     byId("search").textContent = state.job ? "Search again" : "Find every fixture";
   });
@@ -253,7 +256,8 @@ function writeSummary() {
 function summary(job, busy) {
   if (!job) return ["No search yet", "Fixtures appear here, the best first."];
   const many = job.found === 1 ? "1 fixture" : `${countText(job.found)} fixtures`;
-  if (busy) return [`${many} so far`, job.state === "queued" ? "Waiting for its turn." : `${Math.round(100 * job.fraction)} % searched`];
+  if (job.state === "waiting") return ["The part first", `${state.reading || "The part"} is being read; the search begins as soon as it is.`];
+  if (busy) return underWay(job, many);
   if (job.state === "failed") return ["The search failed", ""];
   if (job.state === "cancelled") return [job.found ? `${many}, not all` : "Search cancelled", job.found ? "The search was cancelled; what it had found is valid." : "Press Search again to start anew."];
   if (job.found === 0 && job.complete) return ["There is no fixture", "Every place was searched; below is why."];
@@ -263,6 +267,16 @@ function summary(job, busy) {
   const seconds = typeof job.seconds === "number" ? [`found in ${job.seconds.toFixed(job.seconds < 10 ? 1 : 0)} s`] : [];
   const found = sentence([...types, ...seconds].join(", "));
   return [many, [...(found ? [`${found}.`] : []), ...(job.notes ?? [])].join(" ")];
+}
+
+/** The summary of a search that is not over yet; what is searched is never all of it. */
+function underWay({ state: stage, fraction, found, best }, many) {
+  if (stage === "queued") return ["Searching", "Waiting for its turn."];
+  const share = `${Math.min(99, Math.floor(100 * fraction))} % searched`;
+  if (!found) return ["Looking for the best", fraction >= LISTING ? "What was found is being put in order." : `${share}.`];
+  if (!best) return [`${many} so far`, `${share}.`];
+  const others = found > best ? `; ${many} so far` : "";
+  return [best > 1 ? `The best ${countText(best)}` : "The best one", `No other fixture is better. The rest is searched meanwhile: ${share}${others}.`];
 }
 
 /** Words with a capital letter. */

@@ -1,6 +1,8 @@
 /**
  * One search at a time: submit, follow, cancel, and forget what settings have overtaken.
  *
+ * A search that is asked for while the part is being read waits for it.
+ *
  * Every search has a token; an answer that comes under an old one is dropped, and its job is deleted at the server.
  */
 import { ApiError, ask, send } from "./api.js";
@@ -18,6 +20,8 @@ let events = null;
 let live = false;
 /** Whether settings have changed since a search was begun with them. */
 let changedSince = false;
+/** Whether a search was asked for that waits for the part to be read. */
+let waiting = false;
 
 /** Whether a search is under way. */
 export function searching() {
@@ -37,10 +41,15 @@ export function leave() {
   change({ job: null, selected: null, pinned: null, index: -1 });
 }
 
-/** Search with the settings as they are. */
+/** Search with the settings as they are; while a part is being read, as soon as it is. */
 export async function start() {
   leave();
   changedSince = false;
+  waiting = state.reading !== "";
+  if (waiting) {
+    change({ job: withoutServer("waiting") });
+    return;
+  }
   if (!state.part) return;
   live = true;
   const mine = token;
@@ -80,6 +89,7 @@ export async function cancel() {
   const job = state.job?.job;
   if (!searching()) return;
   live = false;
+  waiting = false;
   if (!job) return cancelled();
   const mine = token;
   try {
@@ -145,6 +155,13 @@ function failed(error) {
 
 /** A search that was begun by hand meanwhile stays, and what its user has chosen there. */
 const again = quiet(() => changedSince && live && state.part && start(), 350);
+
+on(["reading"], () => {
+  if (state.reading || !waiting) return;
+  waiting = false;
+  if (state.part) start();
+  else leave();
+});
 
 on(SETTINGS, (changed) => {
   leave();

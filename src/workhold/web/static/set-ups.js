@@ -3,6 +3,7 @@
  */
 import { ApiError, send } from "./api.js";
 import { byId, field, make, show } from "./dom.js";
+import { rememberCut, sameFaces } from "./height-help.js";
 import { snapshot } from "./link.js";
 import { isNever } from "./part-drawing.js";
 import { fileRead, readOver, resumeFile, usePart } from "./part-panel.js";
@@ -92,18 +93,6 @@ function toggleCut(face) {
   change({ cut: cut.includes(face) ? cut.filter((one) => one !== face) : [...cut, face].sort((a, b) => a - b) });
 }
 
-/**
- * Faces of a part that are of the same faces of its solid as some of another outline of it.
- * @param {any} part
- * @param {any} other
- * @param {number[]} numbers faces of the other
- */
-export function sameFaces(part, other, numbers) {
-  const solidFaces = (of, face) => of.segments.filter((segment) => segment.face === face).flatMap(({ number }) => of.solid.faces[number]);
-  const cut = new Set(numbers.flatMap((face) => solidFaces(other, face)));
-  return part.faces.map(({ number }) => number).filter((face) => solidFaces(part, face).some((one) => cut.has(one)));
-}
-
 /** How far pegs reach on the second side, in mm; as on the first where nobody says. */
 function pegHeight(file) {
   const value = readLength(field("turn-height").value);
@@ -125,6 +114,7 @@ async function turnOver() {
     const other = read.survey.part;
     if (!other?.solid?.faces?.length) throw new ApiError(read.survey.error ?? "The other side has no upright faces to locate on.", 400);
     files = [file, read];
+    rememberCut(part, cut);
     change({ sides: { shown: 1, kept: [{ ...first, known: { ...first.known, cut } }, null] } });
     resumeFile(read);
     usePart(other, { ...read.survey, chosen: read.how.part ?? null });

@@ -34,8 +34,8 @@ export function spaceDialog() {
   });
   byId("space-play").addEventListener("click", play);
   byId("space-first").addEventListener("click", () => view?.fit());
-  byId("space-above").addEventListener("click", () => view?.look(0, Math.PI / 2));
-  byId("space-front").addEventListener("click", () => view?.look(0, 0));
+  byId("space-above").addEventListener("click", () => view?.fit(0, Math.PI / 2));
+  byId("space-front").addEventListener("click", () => view?.fit(0, 0));
   for (const number of SIDES.keys()) byId(`space-side-${number}`).addEventListener("click", () => chooseSide(number));
   dialog.addEventListener("close", () => {
     latest += 1;

@@ -12,6 +12,7 @@ export const SETTINGS = [
 /**
  * @typedef {Object} State
  * @property {any} part the part as the server tells it, or null
+ * @property {string} reading what the part is being read from; empty where none is read
  * @property {string} toolkitName the preset chosen; "own" for own values
  * @property {any} toolkit kind and fields of the toolkit in mm
  * @property {string} unit "mm" or "inch", for reading and typing only
@@ -46,6 +47,7 @@ export const SETTINGS = [
 /** @type {State} */
 export const state = {
   part: null,
+  reading: "",
   toolkitName: "",
   toolkit: { pitch: [10, 10], columns: 2, peg_radius: 3 },
   unit: "mm",

@@ -9,8 +9,8 @@ import { fixtureDrawing } from "./stage-panel.js";
 import { change, on, state } from "./state.js";
 import { kindOf } from "./toolkits.js";
 import { TrialDrawing } from "./trial-drawing.js";
-import { armOf, entered, inFence, lyingOf, offsetsOf, pegsCaught } from "./trial.js";
-import { fieldLength, length, readLength, readNumber } from "./units.js";
+import { armOf, entered, inFence, lyingOf, offsetsOf, openingBeside, pegsCaught } from "./trial.js";
+import { fieldLength, length, readLength, readNumber, scale } from "./units.js";
 
 /** Fields of what is off, by their keys in the trial. */
 const FIELDS = { opening: "try-opening", x: "try-x", y: "try-y", turn: "try-turn" };
@@ -51,7 +51,7 @@ export function trialPanel() {
 export function toggleTrial() {
   if (!state.selected) return;
   if (state.trial) return leaveTrial();
-  change({ force: null, view: "fixture", trial: { x: 0, y: 0, turn: 0, over: false, opening: OPEN * 2 * armOf(state.part) } });
+  change({ force: null, view: "fixture", trial: { x: 0, y: 0, turn: 0, over: false, opening: openingBeside(state.part, state.selected, OPEN * 2 * armOf(state.part)) } });
   look(true);
   // Nothing but what is below the drawing is scrolled.
   byId("below").scrollTop += byId("seating").getBoundingClientRect().top - byId("below").getBoundingClientRect().top;
@@ -123,6 +123,7 @@ async function learn() {
   if ((!first && known?.unit === unit) || !job?.job || !selected?.rank) return;
   const mine = (known = { key, unit, told: null });
   for (const id of ["seating-answer", "seating-trouble"]) show(byId(id), false);
+  byId("try-close").toggleAttribute("disabled", false);
   say("Working it out \u2026");
   try {
     const answer = await ask(`jobs/${encodeURIComponent(job.job)}/fixtures/${selected.rank}/seating?unit=${unit}`);
@@ -139,14 +140,15 @@ async function learn() {
     writeSeats();
     if (!state.trial) return;
     const opening = Math.max(state.trial.opening, CAUGHT * Math.min(answer.capture_opening ?? 0, armOf(state.part)));
-    place(first ? { ...state.trial, opening } : state.trial);
+    place(first ? { ...state.trial, opening: openingBeside(state.part, state.selected, opening) } : state.trial);
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
     if (known !== mine) return;
     byId("seating-trouble").textContent = error.message;
     show(byId("seating-trouble"), true);
-    say("");
-    drawing.show(state.part, null, 0, false);
+    // What comes of closing is not known, but where the pegs stand is: the part can be moved between them.
+    byId("try-close").toggleAttribute("disabled", true);
+    if (state.trial) place(state.trial);
   }
 }
 
@@ -209,7 +211,7 @@ function tellEntered(lying, opening) {
   const holes = pegs.map((k) => selected.holes[k]).join(" and ");
   if (pegs.length) say(`The peg${pegs.length > 1 ? "s" : ""} in ${holes} ${pegs.length > 1 ? "stand" : "stands"} in the part here.`, "bad");
   else if (inFence(part, selected, lying)) say("The part lies in the fence here.", "bad");
-  else say(`${told()?.done ?? "Opened"} by ${length(opening, 2)}${caughtWords(opening)}. Drag the part and let go.`);
+  else say(`${told()?.done ?? "Opened"} by ${length(opening, 2)}${caughtWords(opening)}. ${told() ? "Drag the part and let go." : "Drag the part to see where it has room."}`);
 }
 
 /** Whether a part in its place is caught so far open, in words that go on. */
@@ -267,7 +269,8 @@ function writeFields() {
   field("try-over").checked = trial.over;
   for (const [key, id] of Object.entries(FIELDS)) {
     if (field(id) === document.activeElement) continue;
-    const value = Math.round(trial[key] * 1000) / 1000;
+    const [unit, fine] = key === "turn" || state.unit === "mm" ? [1, 1e3] : [scale(), 1e4];
+    const value = (Math.round((trial[key] / unit) * fine) / fine) * unit;
     field(id).value = key === "turn" ? String(value) : fieldLength(value);
     field(id).setAttribute("aria-invalid", "false");
   }

@@ -10,6 +10,12 @@ import { partSegments } from "./pose.js";
 /** @typedef {{x: number, y: number, turn: number, over: boolean, opening: number}} Trial */
 /** @typedef {{theta_deg: number, x: number, y: number, over: boolean}} Lying a pose of the part, of the part turned over (x to -x in its own frame) where it is `over` */
 
+/** A peg stands in the part by more than this of its radius, or by more than so many mm where it is a point. */
+const ROUNDING = 0.02;
+const LEAST = 0.01;
+/** How much of an opening is tried one after the other. */
+const SHARES = [1, 0.5, 0.25, 0.1, 0.05, 0.02, 0.01];
+
 /** The middle of the part's box in its own coordinates. */
 function middle(part, over) {
   const [x0, y0, x1, y1] = part.bounds;
@@ -117,8 +123,22 @@ export function entered(part, row, lying, opening) {
   return radii.flatMap(([k, radius]) => {
     const point = back(pegs[k]);
     const away = Math.min(...partSegments(part).map(({ segment }) => nearest(segment, point).distance));
-    return away < radius - 0.02 * radius || inside(part.loops, point) ? [k] : [];
+    const free = inside(part.loops, point) ? -away : away;
+    return free < radius - Math.max(ROUNDING * radius, LEAST) ? [k] : [];
   });
+}
+
+/**
+ * The opening to begin with: that wished for, or as much of it as leaves every peg beside the part in its place; pegs in a
+ * hole of it open into its wall.
+ * @param {any} part
+ * @param {import("./pose.js").Row} row
+ * @param {number} wished in mm
+ */
+export function openingBeside(part, row, wished) {
+  const lying = lyingOf(part, row, { x: 0, y: 0, turn: 0, over: false, opening: 0 });
+  const share = SHARES.find((one) => !entered(part, row, lying, one * wished).length);
+  return (share ?? 0) * wished;
 }
 
 /** Whether a part stands in the fence, which runs along x at y = 0. */

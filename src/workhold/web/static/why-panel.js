@@ -3,6 +3,7 @@
  */
 import { ApiError, ask } from "./api.js";
 import { byId, make, show } from "./dom.js";
+import { heightHelp } from "./height-help.js";
 import { showMiss } from "./stage-panel.js";
 import { change, on, state } from "./state.js";
 import { openComparison } from "./comparison-dialog.js";
@@ -34,7 +35,7 @@ export async function explain(job) {
   try {
     const answer = await ask(`jobs/${encodeURIComponent(job)}/explanation`);
     if (asked !== job) return;
-    write(box, answer);
+    write(box, answer, heightHelp(job));
     if (answer.nearest) showMiss({ rank: null, ...answer.nearest.row }, answer.nearest.words);
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
@@ -43,7 +44,7 @@ export async function explain(job) {
 }
 
 /** Write the explanation. */
-function write(box, { contacts, removals, nearest, helps, asked_words }) {
+function write(box, { contacts, removals, nearest, helps, asked_words }, heights) {
   const parts = [make("p", {}, contacts
     ? `Four pegs can touch the part at the same time in ${countText(contacts)} ways. Each rule takes some of them away:`
     : `Four pegs of this ${kindOf(state.toolkit).noun} cannot touch the part at the same time in any way.`)];
@@ -57,6 +58,7 @@ function write(box, { contacts, removals, nearest, helps, asked_words }) {
   }
   if (asked_words) parts.push(make("p", {}, asked_words));
   if (nearest) parts.push(make("h3", {}, "The nearest miss, as drawn"), make("p", {}, sentence(nearest.words)));
+  if (heights) parts.push(heights);
   parts.push(make("h3", {}, "What would help"));
   if (helps.length) parts.push(make("div.helps", {}, ...helps.map(helpButton)));
   else parts.push(make("p", {}, "No single change that was tried gives a fixture."));

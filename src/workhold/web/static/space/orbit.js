@@ -12,6 +12,10 @@ const STEP = Math.PI / 24;
 const NEARER = 1.15;
 /** The first look: from the front right, above. */
 const FIRST = { around: -0.6, above: 0.75 };
+/** What is seen whole is this much smaller than the canvas. */
+const ROOM = 1.06;
+/** How often the middle of what is seen whole is sought. */
+const ROUNDS = 8;
 const HIGHEST = Math.PI / 2 - 0.001;
 
 /** Half the height that is seen at a distance of 1. */
@@ -27,6 +31,8 @@ export class Orbit {
     /** Extent and middle of all bodies, in metres. */
     this.size = 1;
     this.middle = [0, 0, 0];
+    /** Corners of the box about all bodies, in metres. @type {number[][]} */
+    this.corners = [];
     this.target = [0, 0, 0];
     this.far = 1;
     this.waiting = false;
@@ -65,18 +71,30 @@ export class Orbit {
    */
   frame(bodies, still) {
     const [low, high] = boxAbout(bodies);
+    this.corners = Array.from({ length: 8 }, (_, k) => low.map((value, axis) => ((k >> axis) & 1 ? high[axis] : value)));
     this.middle = low.map((value, k) => (value + high[k]) / 2);
     this.size = Math.hypot(...low.map((value, k) => high[k] - value)) || 1;
     if (still) this.draw();
     else this.fit();
   }
 
-  /** See everything from where it is seen first. */
-  fit() {
-    this.look(FIRST.around, FIRST.above);
+  /** See everything, from where it is seen first or from angles in radians, as large as the canvas has room for. */
+  fit(around = FIRST.around, above = FIRST.above) {
+    this.look(around, above);
     this.target = [...this.middle];
-    const narrow = Math.min(1, this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight));
-    this.far = (0.5 * this.size) / HALF_FIELD / (narrow || 1);
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    const aspect = width && height ? width / height : 1;
+    for (let round = 0; round < ROUNDS; round += 1) {
+      const seen = this.corners.map((corner) => this.axes().map((axis) => axis.reduce((sum, value, k) => sum + value * (corner[k] - this.target[k]), 0)));
+      this.far = Math.max(0.05 * this.size, ...seen.map(([right, up, out]) => out + (ROOM / HALF_FIELD) * Math.max(Math.abs(up), Math.abs(right) / aspect)));
+      // What is nearer looks larger, so the middle of what is seen is not that of the bodies.
+      const middle = [0, 1].map((k) => {
+        const places = seen.map((at) => at[k] / (this.far - at[2]));
+        return (this.far * (Math.min(...places) + Math.max(...places))) / 2;
+      });
+      const [right, up] = this.axes();
+      this.target = this.target.map((value, k) => value + middle[0] * right[k] + middle[1] * up[k]);
+    }
     this.draw();
   }
 

@@ -1,0 +1,351 @@
+"""The command ``workbench``: what FreeCAD's workbench asks, answered in one process that reads the part once.
+
+The workbench writes ``order.json`` into a folder, and finds there the result of the search and the pictures
+drawn. What it has to say stands on standard output as one JSON object. Bodies are handed over as prisms, for
+FreeCAD has a modeller of its own: so the library for STEP files is needed to read the part only.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from threading import Event, Thread
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from attrs import evolve, field, frozen
+
+from workhold.cli.commands import print_remark, untyped
+from workhold.cli.design_report import NEAREST_MISS, THUMBNAILS
+from workhold.cli.outputs import print_json, write_output
+from workhold.cli.program_options import ProgramWords
+from workhold.cli.search_options import QueryWords
+from workhold.cli.toolkit_options import ToolkitWords
+from workhold.errors import InputError
+from workhold.geometry.segment import Line, Segment
+from workhold.units import MILLIMETRE
+
+if TYPE_CHECKING:
+    from workhold.model.bodies import FixtureBody
+    from workhold.model.fixture import Fixture
+    from workhold.model.query import Query
+    from workhold.model.result import Result
+    from workhold.model.support_triples import ChosenSupports
+    from workhold.model.workpiece import Workpiece
+
+__all__ = ["workbench"]
+
+ORDER, RESULT, LONGER, CHOSEN = "order.json", "result.json", "longer.json", "chosen"
+# What the questions of a part's reader are called in the panel; what it has not is named by what it is.
+CALLED = {
+    "axis": "the axis that points up",
+    "peg_height": "the peg height",
+    "section": "a section",
+    "head_room": "the head room",
+    "least_band": "the least height of a face",
+    "part_number": "another body",
+    "heights": "the toolkit's own heights",
+}
+# How far down the list a fixture that was chosen before is looked for, and how many choices are drawn.
+MOST_SEARCHED, MOST_DRAWN = 5000, 12
+# Of pictures in pixels: as many as a panel shows of a sheet of thumbnails, and a window of a whole page.
+ACROSS_SHEET, ACROSS_PAGE = 1200, 1600
+# In degrees: a part that lies turned by more than this in the same holes is another fixture.
+MOST_TURNED = 45.0
+
+
+@frozen(kw_only=True)
+class WorkbenchOrder:
+    """What is asked.
+
+    Parameters
+    ----------
+    part : path of the part's STEP file, for a design; None to put in a fixture of the result in the folder.
+    name : what the part is called in the document.
+    axis, peg_height, toolkit, best : as of ``design``; lengths are in mm.
+    avoid, only : faces of the document by name, each with its place in the STEP file.
+    program, tools, z_zero : as of ``design``.
+    supports : whether three supports and a clamp on top are put in.
+    pictures : whether the first choices and the one that is put in are drawn.
+    marks : of the fixture that was chosen before, see :func:`rank_in`; empty for none.
+    chosen : rank of the fixture of the result that is put in.
+    """
+
+    part: str | None = None
+    name: str = ""
+    axis: str = "z"
+    peg_height: float | None = None
+    toolkit: str = ""
+    best: int = 20
+    avoid: Mapping[str, int] = field(factory=dict)
+    only: Mapping[str, int] = field(factory=dict)
+    program: str | None = None
+    tools: str | None = None
+    z_zero: float = 0.0
+    supports: bool = False
+    pictures: bool = False
+    marks: str = ""
+    chosen: int = 1
+
+    @classmethod
+    def read(cls, folder: Path) -> WorkbenchOrder:
+        """The order in a folder.
+
+        Raises
+        ------
+        InputError
+            Where there is none, or one of another version.
+        """
+        path = folder / ORDER
+        try:
+            return cls(**json.loads(path.read_text(encoding="utf-8")))
+        except (OSError, ValueError, TypeError) as error:
+            raise InputError(
+                f"{path} is no order of this version's workbench: install the add-on that came with workhold."
+            ) from error
+
+
+def workbench(
+    folder: Annotated[
+        str,
+        typer.Argument(metavar="FOLDER", help="The folder with order.json, where the answer goes as well."),
+    ],
+) -> None:
+    """Answer FreeCAD's workbench: design, and the bodies and pictures of the fixture that is put in.
+
+    Example: workhold workbench /tmp/order
+    """
+    place = Path(folder)
+    order = WorkbenchOrder.read(place)
+    if order.part is None:
+        from workhold.files.result.reader import read_result
+
+        result = read_result(place / RESULT)
+        if not 1 <= order.chosen <= len(result):
+            raise InputError(f"there is no fixture {order.chosen} in the list: design first.")
+        print_json(**put_in(result, order.chosen, order, place))
+        return
+    cancel = Event()
+    Thread(target=hear_the_end, args=(cancel,), daemon=True).start()
+    query = asked(order, order.part)
+    from workhold.search.design import answer
+
+    result = answer(query, cancel=cancel)
+    write_output(result, str(place / RESULT), "json")
+    print_json(**design_data(result, order, place, cancel))
+
+
+def hear_the_end(cancel: Event) -> None:
+    """Ends the search when the workbench says so on standard input, or is gone; what was found is kept."""
+    # Not through Python's own buffer, whose lock would outlive the end of the process.
+    os.read(sys.stdin.fileno(), 1)
+    cancel.set()
+
+
+def asked(order: WorkbenchOrder, part: str) -> Query:
+    """The query of an order; the words are those of ``design``, so that both list the same.
+
+    Raises
+    ------
+    InputError
+        For a part, a toolkit, faces or a program that cannot be used.
+    """
+    from workhold.files.part.load import read_workpiece
+    from workhold.model.query import Query
+
+    toolkit, tolerance = untyped(ToolkitWords, toolkit=order.toolkit).asked(MILLIMETRE)
+    try:
+        loaded = read_workpiece(
+            part, axis=order.axis, peg_height=order.peg_height, heights=toolkit.heights, called=CALLED
+        )
+    except InputError as error:
+        raise InputError(str(error).replace(Path(part).name, order.name)) from error
+    for remark in loaded.remarks:
+        print_remark(remark)
+    workpiece = loaded.workpiece
+    avoid = avoided(order, workpiece)
+    named: dict[str, Any] = {"program": order.program, "tools": order.tools or None}
+    machined = untyped(ProgramWords, **(named | {"z_zero": f"{order.z_zero:.6f}mm"} if order.program else {}))
+    peg_height = None if order.peg_height is None else f"{order.peg_height}mm"
+    words = untyped(QueryWords, avoid=[",".join(map(str, avoid))] if avoid else None)
+    wishes = words.asked(MILLIMETRE, machined.program is not None, machined.has_forces)
+    wishes |= machined.asked(MILLIMETRE, peg_height, workpiece)
+    wishes["tolerance"] = tolerance
+    return Query(workpiece, toolkit, best=order.best, **wishes)
+
+
+def avoided(order: WorkbenchOrder, workpiece: Workpiece) -> list[int]:
+    """Numbers of the outline's faces that nothing may touch, from those of the document that are named.
+
+    Raises
+    ------
+    InputError
+        For a face that nothing touches anyway, and an outline whose faces are no solid's.
+    """
+    if not (order.avoid or order.only):
+        return []
+    numbered = workpiece.numbered
+    if not numbered.over:
+        raise InputError(
+            "the outline of this part has no faces of its solid: choose another axis or peg height."
+        )
+
+    def under(named: Mapping[str, int]) -> set[int]:
+        numbers = set[int]()
+        for name, place in named.items():
+            segments = set(numbered.segments_under({place}))
+            if not segments:
+                raise InputError(f"{name} is not upright where pegs reach, so nothing touches it anyway.")
+            numbers.update(face.number for face in numbered.faces if not segments.isdisjoint(face.segments))
+        return numbers
+
+    avoid = under(order.avoid)
+    if order.only:
+        avoid |= {face.number for face in numbered.faces} - under(order.only)
+    return sorted(avoid)
+
+
+def design_data(result: Result, order: WorkbenchOrder, folder: Path, cancel: Event) -> dict[str, Any]:
+    """What there is to say of a search, with the fixture put in that was chosen before, or else the first."""
+    from workhold.listing.identity import entries
+
+    shown = entries(result)
+    first = zip(shown.index[:MOST_DRAWN].tolist(), shown.like[:MOST_DRAWN].tolist(), strict=True)
+    data: dict[str, Any] = {
+        "complete": bool(result.complete),
+        "notes": list(result.notes),
+        "first": [{"rank": index + 1, "like": like} for index, like in first],
+        "lower": None,
+    }
+    if not len(result):
+        if result.complete and order.pictures:
+            draw_nearest_miss(result, folder)
+        return data
+    rank = rank_in(listed_in(folder), order.marks)
+    if rank is None and order.marks and result.complete:
+        from workhold.search.design import answer
+
+        longer = answer(evolve(result.query, best=MOST_SEARCHED), cancel=cancel)
+        write_output(longer, str(folder / LONGER), "json")
+        data["lower"] = rank_in(listed_in(folder, LONGER), order.marks)
+    if order.pictures:
+        from workhold.drawing.fixture_pictures import best_at_a_glance
+
+        svg = best_at_a_glance(result, shown)
+        (folder / f"{THUMBNAILS}.svg").write_text(svg, encoding="utf-8")
+        draw(svg, folder / f"{THUMBNAILS}.png", ACROSS_SHEET)
+    return data | {"found": rank is not None} | put_in(result, rank or 1, order, folder)
+
+
+def listed_in(folder: Path, name: str = RESULT) -> list[dict[str, Any]]:
+    """The fixtures of a result file."""
+    fixtures: list[dict[str, Any]] = json.loads((folder / name).read_text(encoding="utf-8"))["fixtures"]
+    return fixtures
+
+
+def rank_in(fixtures: Sequence[Mapping[str, Any]], marks: str) -> int | None:
+    """The rank of the fixture of a result file that the marks are of, from 1; None where none is.
+
+    The same holes may hold a part in two ways, such as turned by half a turn.
+
+    Parameters
+    ----------
+    marks : as JSON the kind, directions and holes of a fixture, and the angle at which the part lies in them.
+    """
+    if not marks:
+        return None
+    holes, angle = json.loads(marks)
+    turned = {
+        rank: abs((one["pose"]["theta_deg"] - angle + 180.0) % 360.0 - 180.0)
+        for rank, one in enumerate(fixtures, 1)
+        if json.loads(marks_of(one))[0] == holes
+    }
+    nearest = min(turned, key=turned.__getitem__, default=None)
+    return nearest if nearest is not None and turned[nearest] <= MOST_TURNED else None
+
+
+def marks_of(fixture: Mapping[str, Any]) -> str:
+    """What a fixture of a result file is known by; where a clamp is bolted follows from the part."""
+    pegs = [[peg.get("jaw"), peg.get("column"), peg.get("row")] for peg in fixture["pegs"]]
+    directions = fixture.get("directions", fixture.get("direction"))
+    return json.dumps([[fixture["type"], directions, pegs], fixture["pose"]["theta_deg"]])
+
+
+def put_in(result: Result, rank: int, order: WorkbenchOrder, folder: Path) -> dict[str, Any]:
+    """A fixture's bodies but for the part's, and the pose of the part among them; its picture if wanted."""
+    from workhold.presenting.assembly import Assembly
+
+    fixture = result[rank - 1]
+    note, chosen = "", None
+    if order.supports:
+        chosen, note = supported(fixture, result.query)
+    assembly = Assembly.of(fixture, result, {}, chosen)
+    if order.pictures:
+        from workhold.drawing.fixture_pictures import draw_fixture
+        from workhold.drawing.path_drawn import planned_path
+
+        path = planned_path(result, rank - 1)
+        svg = draw_fixture(fixture, result.workpiece, result.toolkit, title=f"Fixture {rank}", path=path)
+        draw(svg, folder / f"{CHOSEN}.png", ACROSS_PAGE)
+    pose = assembly.fixture.pose
+    return {
+        "rank": rank,
+        "marks": marks_of(listed_in(folder)[rank - 1]),
+        "holes": [peg.hole for peg in fixture.pegs],
+        "note": note,
+        "pose": {"theta_deg": pose.theta_deg, "x": pose.x, "y": pose.y},
+        "bodies": [body_data(body) for body in assembly.bodies[1:]],
+    }
+
+
+def supported(fixture: Fixture, query: Query) -> tuple[ChosenSupports | None, str]:
+    """The best three supports under a fixture with a clamp on top; where there are none, why."""
+    from workhold.model.support_triples import ChosenSupports
+    from workhold.supports.asking import requests_by_size, supported_by_size
+    from workhold.supports.words import why_no_set
+
+    (found,), _ = supported_by_size([fixture], query, requests_by_size(query, None))
+    return (ChosenSupports.of(found), "") if found.triples else (None, why_no_set(found, MILLIMETRE))
+
+
+def draw_nearest_miss(result: Result, folder: Path) -> None:
+    """Draws what comes nearest to a fixture where there is none, if anything does."""
+    from workhold.drawing.fixture_pictures import draw_fixture
+    from workhold.search.explaining import explain
+
+    nearest = explain(result.query).nearest
+    if nearest is not None:
+        svg = draw_fixture(nearest.fixture, result.workpiece, result.toolkit, title="Nearest miss")
+        draw(svg, folder / f"{NEAREST_MISS}.png", ACROSS_PAGE)
+
+
+def draw(svg: str, path: Path, width: int) -> None:
+    """Draws SVG text as a PNG of a width in pixels."""
+    from workhold.drawing.render import svg_to_png
+
+    path.write_bytes(svg_to_png(svg, width))
+
+
+def body_data(body: FixtureBody) -> dict[str, Any]:
+    """A body as upright prisms: between two heights, over a border with holes in it."""
+    slabs = [
+        {"low": one.low, "high": one.high, "borders": [loop_data(loop) for loop in (one.outer, *one.holes)]}
+        for one in body.slabs
+    ]
+    return {"name": body.name, "slabs": slabs}
+
+
+def loop_data(segments: Iterable[Segment]) -> list[list[float]]:
+    """A border, segment by segment: a line's ends, or the centre, radius and angles of an arc, from and to.
+
+    Angles are in radians and counted counter-clockwise; an arc that is a circle ends where it began.
+    """
+    return [
+        [*one.start, *one.end]
+        if isinstance(one, Line)
+        else [*one.center, one.radius, one.mid_angle - one.half_sweep, one.mid_angle + one.half_sweep]
+        for one in segments
+    ]

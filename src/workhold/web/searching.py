@@ -1,0 +1,138 @@
+"""The task of a search: the best fixtures first, as where only those are asked for; then all.
+
+A search for everything may take minutes before it can put anything in order. Whoever waits at the page sees
+the best fixtures within seconds, and looks at them while the rest is searched.
+"""
+
+from __future__ import annotations
+
+from threading import Event, Thread
+from time import perf_counter
+
+import numpy as np
+from attrs import evolve, frozen
+
+from workhold.conventions import SAME_POSE
+from workhold.model.fixture_table import FixtureTable
+from workhold.model.query import Query
+from workhold.model.result import Result
+from workhold.web.worker import Order
+
+__all__ = ["FIRST", "Found", "search"]
+
+# So many are sought first. The search for them is given up after so many seconds, or after this share of the
+# time that there is: what was found by then is shown, and the search for all begins.
+FIRST = 20
+MOST_SECONDS, MOST_SHARE = 30.0, 0.25
+# The part of the progress bar that is theirs.
+SHARE = 0.2
+# Seconds between reports of progress.
+PAUSE = 0.1
+TICK = 0.05
+
+
+@frozen(eq=False)
+class Found:
+    """The outcome of a search; ``left_out`` fixtures were found but not kept."""
+
+    result: Result
+    left_out: int
+
+
+def search(payload: tuple[Query, int], order: Order) -> Found:
+    """Searches; reports are ("progress", fraction, found), ("preview", result) and ("first", result).
+
+    A first result has the best fixtures of all, in their order.
+    """
+    from workhold.search.design import answer
+
+    query, most = payload
+    first = None
+    if query.best is None and query.seating is None:
+        first = best_of(query, order)
+        if order.cancel.is_set() or (first.complete and not len(first)):
+            return Found(evolve(first, query=query, complete=first.complete and not len(first)), 0)
+    known = first if first is not None and first.complete else None
+    if known is not None:
+        order.report(("first", known))
+    begun = 0.0 if first is None else SHARE
+    result = answer(
+        query,
+        progress=Reporter(order, begun, 1.0 - begun, 0 if known is None else len(known)),
+        cancel=order.cancel,
+        preview=None if known is not None else lambda result: order.report(("preview", result)),
+    )
+    if known is not None and not result.complete:
+        result = with_best_first(result, known)
+    left_out = max(len(result) - most, 0)
+    if left_out:
+        result = result.part(slice(0, most))
+    return Found(result, left_out)
+
+
+class Reporter:
+    """Reports progress now and then, as a part of the whole.
+
+    Parameters
+    ----------
+    begin, share : where in the whole this part begins, and how much of it it is.
+    least : how many fixtures are known before.
+    """
+
+    def __init__(self, order: Order, begin: float, share: float, least: int = 0) -> None:
+        self.order, self.begin, self.share, self.least = order, begin, share, least
+        self.last = 0.0
+
+    def __call__(self, fraction: float, found: int) -> None:
+        now = perf_counter()
+        if now >= self.last + PAUSE or fraction >= 1.0:
+            self.last = now
+            self.order.report(("progress", self.begin + self.share * fraction, max(found, self.least)))
+
+
+def best_of(query: Query, order: Order) -> Result:
+    """The best fixtures of a query; incomplete where that takes long, or the order is cancelled."""
+    from workhold.search.design import answer
+
+    enough, done = Event(), Event()
+    seconds = min(MOST_SECONDS, MOST_SHARE * order.seconds)
+
+    def watch() -> None:
+        end = perf_counter() + seconds
+        while not done.wait(TICK) and not order.cancel.is_set() and perf_counter() < end:
+            pass
+        enough.set()
+
+    watching = Thread(target=watch, daemon=True)
+    watching.start()
+    try:
+        return answer(
+            evolve(query, best=FIRST),
+            progress=Reporter(order, 0.0, SHARE),
+            cancel=enough,
+            preview=lambda result: order.report(("preview", result.part(slice(0, FIRST)))),
+        )
+    finally:
+        done.set()
+        watching.join()
+
+
+def with_best_first(result: Result, best: Result) -> Result:
+    """A search that was stopped, with the best of all before what else it found.
+
+    It is not complete all the same.
+    """
+    marks = {mark_of(best.table, k) for k in range(len(best))}
+    others = np.array([mark_of(result.table, k) not in marks for k in range(len(result))], bool)
+    table = FixtureTable.joined([best.table, result.table.take(others)])
+    joined = evolve(result, table=table)
+    counts = joined.counts
+    found = {kind: max(result.found.get(kind, 0), counts.get(kind, 0)) for kind in {**result.found, **counts}}
+    distinct = {kind: max(result.distinct.get(kind, 0), best.distinct.get(kind, 0)) for kind in found}
+    return evolve(joined, found=found, distinct=distinct)
+
+
+def mark_of(table: FixtureTable, index: int) -> tuple[object, ...]:
+    """What a fixture of a table is known by: arrangement, holes, faces, and how the part lies."""
+    whole = (table.arrangement[index], *table.column[index], *table.row[index], *table.face[index])
+    return (*map(int, whole), round(float(table.theta[index]) / SAME_POSE))
