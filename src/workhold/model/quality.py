@@ -33,6 +33,7 @@ __all__ = [
     "PENALTY",
     "PIN_DEFLECTION",
     "PIN_FIGURES",
+    "PIN_KEYS",
     "PIN_MOVEMENT",
     "PIN_STRESS",
     "PREFERENCES",
@@ -182,6 +183,7 @@ EDGE_DISTANCE, JAW_FORCE_NEEDED, TILT, SMALLEST_FACE, WARNINGS, PENALTY, CLAMP_F
 PIN_DEFLECTION, PIN_STRESS, PIN_MOVEMENT = range(13, 16)
 # Those of how far pegs bend: at the jaw force, for each kN of it where none is known.
 PIN_FIGURES = PIN_DEFLECTION, PIN_STRESS, PIN_MOVEMENT
+PIN_KEYS = tuple(FIGURES[number].key for number in PIN_FIGURES)
 # The figures that files had before there were these.
 BEFORE_PINS = PIN_DEFLECTION
 

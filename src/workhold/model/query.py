@@ -22,7 +22,7 @@ from workhold.model.quality import (
     FIGURES,
     JAW_FORCE_NEEDED,
     LOAD_REACTION,
-    PIN_FIGURES,
+    PIN_KEYS,
     PROGRAM_FIGURE,
     SEATING_FIGURES,
     chosen_ranking,
@@ -37,7 +37,6 @@ __all__ = ["Query"]
 
 LISTINGS = ("best", "all")
 LOAD_KEYS = (FIGURES[LOAD_REACTION].key, FIGURES[JAW_FORCE_NEEDED].key)
-PIN_KEYS = {FIGURES[number].key for number in PIN_FIGURES}
 SEATING_KEYS = {figure.key for figure in SEATING_FIGURES}
 
 
@@ -164,7 +163,7 @@ class Query:
             object.__setattr__(self, "thickness", None)
             if self.program is None:
                 object.__setattr__(self, "peg_height", None)
-        if not self.knows_heights and not PIN_KEYS.isdisjoint(self.ranking):
+        if not self.knows_heights and not set(PIN_KEYS).isdisjoint(self.ranking):
             raise InputError(
                 "how far pegs bend is known where it is known how high they touch the part: give its thickness, "
                 "or how high the pegs are."

@@ -33,7 +33,6 @@ from workhold.conventions import (
 )
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Segment
-from workhold.model.fixture_table import FixtureTable
 from workhold.model.solid import run_at
 from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import ContactMatrices
@@ -98,29 +97,31 @@ class PinRuns:
     @classmethod
     def of(
         cls,
-        block: FixtureTable,
+        faces: NDArray[Any],
+        carriers: NDArray[Any],
         workpiece: Workpiece,
         toolkit: Toolkit,
         points: Array,
         pressed_up_to: float | None,
         lift: float = 0.0,
     ) -> PinRuns:
-        """The runs of the fixtures of a table.
+        """The runs of some fixtures.
 
         Parameters
         ----------
+        faces, carriers : (N, P) numbers of the faces touched, and of the pegs' carriers.
         points : (N, P, 2) peg centres about the centre of the part, in the part's frame, in mm.
         pressed_up_to : up to which height pegs press on a prism, in mm; None where nobody knows, and of a solid.
         lift : how far the part lies above the plates, in mm.
         """
         each = np.array([2 * c.peg_radius if c.has_lattice else np.nan for c in toolkit.carriers])
-        diameter = each.take(toolkit.peg_carriers(block.arrangement))
+        diameter = each.take(carriers)
         diameter[diameter == 0.0] = np.nan
         if workpiece.solid is None:
             top = np.nan if pressed_up_to is None else pressed_up_to
             low, high = np.zeros(diameter.shape), np.full(diameter.shape, top)
         else:
-            low, high = runs_on_solid(block.face, points + np.array(workpiece.center), workpiece)
+            low, high = runs_on_solid(faces, points + np.array(workpiece.center), workpiece)
         is_none = np.isnan(diameter)
         low[is_none], high[is_none] = np.nan, np.nan
         return cls(low + lift, high + lift, diameter)

@@ -177,7 +177,7 @@ def quality_of(
         filled[:, TILT] = tilts(block.theta, direction)
         filled[:, SMALLEST_FACE] = smallest(touched_sizes(block, toolkit, workpiece, sizes))
         if has_pins:
-            runs = PinRuns.of(block, workpiece, toolkit, contact_matrices.points, pressed_up_to)
+            runs = PinRuns.of(faces, carriers, workpiece, toolkit, contact_matrices.points, pressed_up_to)
             silhouette = corners, arcs
             filled[:, PIN_FIGURES] = most_bent(contact_matrices, runs, jaw_force, known.length, silhouette)
         filled[:, WARNINGS] = judging.warnings(filled, contact_matrices.edges)
