@@ -189,10 +189,12 @@ def quality_table(
             value = figure_text(figure, fixture.quality[figure.key], unit)
             words, meaning = figure.named_for(mover)
             if figure.key in PIN_KEYS:
-                at = f"each kN of {mover} force" if jaw_force is None else unit.force_words(jaw_force)
-                meaning = meaning.replace(
-                    f"at the {mover} force", f"{'for' if jaw_force is None else 'at'} {at}"
+                at = (
+                    f"for each kN of {mover} force"
+                    if jaw_force is None
+                    else f"at {unit.force_words(jaw_force)}"
                 )
+                meaning = meaning.replace(f"at the {mover} force or for each kN of it", at)
             table.add_row(words, value, of, better, meaning)
     return table
 

@@ -169,13 +169,24 @@ FIGURES = (
         "By how much the forces of two clamps may differ: 90 is any two forces.",
         1,
     ),
-    Figure("pin_deflection", "mm", False, "How far the peg that bends most gives way, at the jaw force."),
-    Figure("pin_stress", "MPa", False, "The largest bending stress in a peg, at the jaw force.", 1),
+    Figure(
+        "pin_deflection",
+        "mm",
+        False,
+        "How far the peg that bends most gives way, at the jaw force or for each kN of it.",
+    ),
+    Figure(
+        "pin_stress",
+        "MPa",
+        False,
+        "The largest bending stress in a peg, at the jaw force or for each kN of it.",
+        1,
+    ),
     Figure(
         "pin_movement",
         "mm",
         False,
-        "The farthest that bending pegs move a point of the part, at the jaw force.",
+        "The farthest that bending pegs move a point of the part, at the jaw force or for each kN of it.",
     ),
 )
 CLOSURE_MARGIN, CLAMP_AMPLIFICATION, WRENCH_RADIUS, LOCATION_ERROR, END_DISTANCE, LOAD_REACTION = range(6)
