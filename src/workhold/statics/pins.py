@@ -118,7 +118,7 @@ class PinRuns:
         diameter = each.take(carriers)
         diameter[diameter == 0.0] = np.nan
         if workpiece.solid is None:
-            top = np.nan if pressed_up_to is None else pressed_up_to
+            top = np.nan if pressed_up_to is None else float(pressed_up_to)
             low, high = np.zeros(diameter.shape), np.full(diameter.shape, top)
         else:
             low, high = runs_on_solid(faces, points + np.array(workpiece.center), workpiece)
@@ -136,7 +136,7 @@ def runs_on_solid(faces: NDArray[Any], points: Array, workpiece: Workpiece) -> t
     """The lower and the upper ends (N, P) of the runs that hold the bands of faces, where pegs touch them."""
     numbered = workpiece.numbered
     bands = [(np.nan, np.nan) if band is None else band for band in numbered.bands]
-    low, high = (np.array(ends).take(faces) for ends in zip(*bands, strict=True))
+    low, high = (np.array(ends, np.float64).take(faces) for ends in zip(*bands, strict=True))
     if not any(numbered.runs):
         return low, high
     for face in numbered.faces:

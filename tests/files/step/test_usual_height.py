@@ -8,8 +8,9 @@ import pytest
 
 pytest.importorskip("OCP", reason="the extra 'step' is not installed")
 
-import workhold
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
+
+import workhold
 from solid_examples import bearing_housing, boss, ribbed, stepped
 from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece, refuse_unsure_numbers
