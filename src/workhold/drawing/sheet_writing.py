@@ -367,33 +367,27 @@ def write_dowel(column: TextColumn, sheet: Sheet) -> None:
         )
         column.paragraph(f"Pin of {pin} in a hole of {hole_limits}.", NOTE)
     known, peg, above = sheet.heights, sheet.toolkit.plates[0].peg, f"height above the {sheet.plates_noun}"
-    if known is None:
+    if known is None or "peg_top" in known.assumed:
         for name, size in ((f"{peg} length", details.peg_length), (above, details.peg_height)):
             fact_or_field(column, name, None if size is None else lengths.words(size))
+        usual = None if known is None else usual_dowel(sheet, known)
+        if usual is not None:
+            words = f"Dowels of {usual.name} would do: they stand out {lengths.words(usual.standout)}."
+            column.paragraph(words, NOTE)
         return
     if known.dowel is not None:
+        noun = sheet.toolkit.plates[0].noun
         column.fact(f"{peg}s: dowels of", known.dowel.name, bold=True)
-        column.fact(
-            f"each sits in the {sheet.toolkit.plates[0].noun}", lengths.words(known.dowel.depth), bold=True
-        )
+        column.fact(f"each sits in the {noun}", lengths.words(known.dowel.depth), bold=True)
     else:
         at_least = " at least" if "peg_length" in known.assumed else ""
         column.fact(f"{peg} length{at_least}", lengths.words(known.peg_length), bold=True)
-    column.fact(f"{above}{known.sure('peg_top')}", lengths.words(known.above_plate), bold=True)
-    shorter = shorter_dowel(sheet, known)
-    if shorter is not None:
-        column.paragraph(
-            f"Nobody has said how high the {peg}s are. Dowels of {shorter.name} stand out "
-            f"{lengths.words(shorter.standout)} and bend less: give that as their height.",
-            NOTE,
-        )
+    column.fact(above, lengths.words(known.above_plate), bold=True)
 
 
-def shorter_dowel(sheet: Sheet, heights: SheetHeights) -> SoldDowel | None:
-    """The dowel that is no higher than it must be, where nobody said how high pegs are and it is shorter."""
+def usual_dowel(sheet: Sheet, heights: SheetHeights) -> SoldDowel | None:
+    """The dowel that is no higher than it must be beside a prism; None where none is sold that is not higher."""
     diameter = sheet.toolkit.peg_diameter
-    if "peg_top" not in heights.assumed:
-        return None
     usual = min(DOWEL_STANDOUT * diameter, heights.peg_top) + SAME_HEIGHT
     low = [one for one in standouts(diameter) if one <= usual]
-    return dowel_for(diameter, max(low)) if low and max(low) < heights.peg_top - SAME_HEIGHT else None
+    return dowel_for(diameter, max(low)) if low else None

@@ -24,6 +24,8 @@ from workhold.conventions import (
     LARGE_LOCATION_ERROR,
     NEAR_EDGE,
     NO_FORCE,
+    PIN_MOVEMENT_LIMIT,
+    PIN_STRESS_LIMIT,
     POINTS_PER_DECADE,
     SMALL_FACE,
     SMALL_FACE_POINTS,
@@ -80,7 +82,7 @@ class Judging:
     off: float
     small_face: float
     jaw_force: float | None
-    bending: tuple[float, float]
+    bending: tuple[float, float] = (PIN_STRESS_LIMIT, PIN_MOVEMENT_LIMIT)
 
     @classmethod
     def of(
