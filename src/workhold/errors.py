@@ -18,11 +18,14 @@ __all__ = [
     "lacks_memory",
     "listed",
     "plain",
+    "refuse_kind",
     "shortened",
 ]
 
 # Letters of a sentence: enough for any of the program's own.
 LONGEST = 1000
+# Letters of a value that is shown in one.
+LONGEST_VALUE = 100
 CUT = " ... "
 
 
@@ -114,3 +117,27 @@ def lacks_memory(error: BaseException | None) -> bool:
             return True
         error = error.__cause__ or error.__context__
     return False
+
+
+def refuse_kind(value: object, kind: type, name: str, remedy: str) -> None:
+    """Refuses an argument of another type than it must have.
+
+    Parameters
+    ----------
+    name : of the argument, in words that begin a sentence.
+    remedy : what to give instead.
+
+    Raises
+    ------
+    InputError
+        Then.
+
+    Examples
+    --------
+    >>> refuse_kind("x", float, "the length", "give a number")
+    Traceback (most recent call last):
+        ...
+    workhold.errors.InputError: the length cannot be 'x': give a number.
+    """
+    if not isinstance(value, kind):
+        raise InputError(f"{name} cannot be {shortened(repr(value), LONGEST_VALUE)}: {remedy}.")

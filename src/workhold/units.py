@@ -84,21 +84,33 @@ class Unit:
     def force_words(self, force: float) -> str:
         """A force in N in whole units of force, or with three figures when it is small, and the unit.
 
+        Where that unit is not the newton, newtons stand beside it.
+
         >>> MILLIMETRE.force_words(1234.5), MILLIMETRE.force_words(0.01234), INCH.force_words(1000.0)
-        ('1234 N', '0.0123 N', '225 lbf')
+        ('1234 N', '0.0123 N', '225 lbf (1000 N)')
+        """
+        words = self.force_alone(force)
+        return words if self.newtons == 1 else f"{words} ({MILLIMETRE.force_alone(force)})"
+
+    def force_alone(self, force: float) -> str:
+        """A force in N as of :meth:`force_words` in the unit of force alone, for columns of a table.
+
+        >>> INCH.force_alone(1000.0)
+        '225 lbf'
         """
         value = force / self.newtons
         return f"{value:.0f} {self.force}" if value >= 100 or value == 0 else f"{value:.3g} {self.force}"
 
     def moment_words(self, moment: float) -> str:
-        """A moment in N mm in N m, or in lbf in.
+        """A moment in N mm in N m, or in ft lbf with N m beside it.
 
         >>> MILLIMETRE.moment_words(1234.5), INCH.moment_words(1000.0)
-        ('1.23 N m', '8.85 lbf in')
+        ('1.23 N m', '0.738 ft lbf (1 N m)')
         """
-        inches = self.newtons != 1
-        value = moment / (self.newtons * self.millimetres if inches else 1000.0)
-        return f"{value:.3g} {'lbf in' if inches else 'N m'}".replace("-", "−")
+        words = f"{moment / 1000.0:.3g} N m"
+        if self.newtons != 1:
+            words = f"{moment / (12 * self.newtons * self.millimetres):.3g} ft {self.force} ({words})"
+        return words.replace("-", "−")
 
     def force_above(self, force: float) -> str:
         """A force in N as a whole number of the unit of force, rounded up to stay on the safe side.

@@ -130,6 +130,10 @@ def test_lists_tell_all_of_it(run: Any, folder: Path) -> None:
         for kind in (workhold.Vise, workhold.Plate, workhold.Fence, workhold.FlatJaw)
         for name in kind.presets()
     }
+    vise = next(
+        line for line in run("toolkits").stdout.splitlines() if line.startswith("machine-vise-6-inch")
+    )
+    assert vise.split()[1:4] == ["12.7", "6.35", "11"], "the pegs are those of the jaw that has some"
     (one,) = told(run("toolkits", "plate-20mm", "--json"))["toolkits"]
     assert one["fields"]["pitch"] == [20.0, 20.0] and one["tolerance"]["peg"] == 0.0145
     assert "result" in [one["name"] for one in told(run("schema", "--json"))["schemas"]]

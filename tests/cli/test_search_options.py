@@ -52,6 +52,14 @@ def test_restrictions_reach_the_search(run: Any, searched: dict[str, Any]) -> No
     assert asked.toolkit.body_radius == pytest.approx(3.81)
 
 
+def test_a_load_far_from_the_part_is_remarked_upon(run: Any, searched: dict[str, Any]) -> None:
+    """One that acts a metre off, not one that acts just beside the part."""
+    near, far = ("force=20 at=-5,-5", "force=20 path=10,5;1000,5")
+    outcome = run(*WIDGET, "--load", near, "--load", far)
+    assert outcome.exit_code == 0 and "Load 2 acts at (1000, 5)" in outcome.stderr
+    assert "Load 1" not in outcome.stderr
+
+
 def test_loads_ranking_and_tolerance_reach_the_search(
     run: Any, searched: dict[str, Any], tmp_path: Path
 ) -> None:

@@ -243,6 +243,40 @@ def test_the_manual_lists_every_preset() -> None:
     assert sum(page.count(f"\n| `{kind}") for kind in kinds) == len(preset_names())
 
 
+def test_a_toolkit_in_inches_is_shown_in_inches(
+    run: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On terminal and paper, which is then Letter; not where another unit is asked for or set for good. Lengths that are
+    typed are in mm all the same."""
+    file, page = tmp_path / "r.json", tmp_path / "sheet.svg"
+
+    def words_of(*further: str) -> str:
+        for old in tmp_path.glob("sheet*.svg"):
+            old.unlink()
+        assert run("sheet", file, "1", "-o", page, "--force", *further).exit_code == 0
+        return " ".join(word for one in tmp_path.glob("sheet*.svg") for word in texts(one.read_text()))
+
+    found = run("design", "widget", "--toolkit", "clamp-plate-one-inch", "--best", "1", "--out", file)
+    assert found.exit_code == 0 and "error in" in found.stdout
+    assert "on Letter" in words_of() and "Lengths inch" in words_of("--thickness", "12.7")
+    assert "0.5000 in" in words_of("--thickness", "12.7")
+    assert "on A4" in words_of("--unit", "mm") and "on A4" in words_of("--paper", "a4")
+    monkeypatch.setenv("WORKHOLD_UNIT", "mm")
+    assert "on A4" in words_of()
+    monkeypatch.setenv("WORKHOLD_UNIT", "inch")
+    assert "on Letter" in words_of() and "12.7000 in" in words_of("--thickness", "12.7")
+    metric = run("design", "widget", "--toolkit", "clamp-plate-20mm", "--best", "1")
+    assert "error in" in metric.stdout
+    monkeypatch.setenv("WORKHOLD_UNIT", "ell")
+    assert "Unit 'ell' is not known" in run("show", file, "1").stderr
+
+
+def test_inches_are_told_by_the_holes() -> None:
+    """Eighths of an inch that are no whole or half millimetres."""
+    for name in preset_names():
+        assert load_toolkit(name).toolkit.is_in_inches == (load_toolkit(name).unit is INCH)
+
+
 # A drawing without a unit: refused with both sizes, and on a terminal asked for.
 @pytest.fixture
 def drawing(tmp_path: Path) -> Path:

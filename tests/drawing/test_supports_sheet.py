@@ -126,7 +126,7 @@ def test_without_loads_the_moment_is_told_for_a_round_force() -> None:
     assert sentence in words
     inches = printed(sheet(result_of("plate", False), thickness=HEIGHT, supports=found, unit=INCH))
     assert (
-        f"With each 100 lbf the clamp alone holds up to {100 * found.clamp.arm / 25.4:.3g} lbf in" in inches
+        f"With each 100 lbf the clamp alone holds up to {100 * found.clamp.arm / 304.8:.3g} ft lbf" in inches
     )
 
 

@@ -63,6 +63,7 @@ def test_figures_of_the_presets() -> None:
         "table-50mm": ((50, 50), 16, 2),
         "table-100mm": ((100, 100), 28, 2),
         "two-clamp-plate-20mm": ((20, 20), 6, None),
+        "two-clamp-plate-one-inch": ((25.4, 25.4), 6.35, None),
     }
 
 

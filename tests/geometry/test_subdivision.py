@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import acos, hypot, pi, sqrt
 
 import numpy as np
@@ -12,7 +13,7 @@ from hypothesis import strategies as st
 from workhold.errors import InputError
 from workhold.geometry.loop import loop_segments, signed_area
 from workhold.geometry.segment import Arc, Line, Point, Segment
-from workhold.geometry.subdivision import BorderPiece, border_loops, border_pieces, subdivide
+from workhold.geometry.subdivision import BorderPiece, Inside, border_loops, border_pieces, subdivide
 
 Box = tuple[float, float, float, float]
 Circle = tuple[float, float, float]
@@ -31,6 +32,11 @@ def round_side(circle: Circle) -> Segment:
     return Arc((x, y), radius, 0.3, pi, 1.0)
 
 
+def each(inside: Callable[[Point], bool]) -> Inside:
+    """A test of one point as one of many."""
+    return lambda points: [inside(point) for point in points]
+
+
 def area(loops: list[list[BorderPiece]]) -> float:
     """The area that loops enclose, holes taken away."""
     vertices = [np.array([(*piece.start, piece.bulge) for piece in loop]) for loop in loops]
@@ -47,7 +53,7 @@ def union_loops(boxes: list[Box], circles: list[Circle]) -> list[list[BorderPiec
         )
 
     segments = [side for box in boxes for side in sides(box)] + [round_side(circle) for circle in circles]
-    return border_loops(border_pieces(subdivide(segments), inside))
+    return border_loops(border_pieces(subdivide(segments), each(inside)))
 
 
 WHOLE = st.integers(0, 12)
@@ -101,7 +107,7 @@ def test_equal_carriers_are_one() -> None:
 def test_border_that_does_not_close() -> None:
     """A border of which a piece is missing is refused with the place."""
     open_sides = sides((0, 0, 4, 4))[:3]
-    pieces = border_pieces(subdivide(open_sides), lambda p: 0 < p[0] < 4 and 0 < p[1] < 4)
+    pieces = border_pieces(subdivide(open_sides), each(lambda p: 0 < p[0] < 4 and 0 < p[1] < 4))
     with pytest.raises(InputError, match=r"the outline does not close at \("):
         border_loops(pieces)
 
@@ -114,7 +120,7 @@ def test_cuts_beside_a_corner_leave_one_loop(side: int, apart: float) -> None:
     cut = square[side]
     points = [cut.at(sign * (cut.half_extent - apart)) for sign in (-1.0, 1.0)]
     carriers = subdivide(square, [(cut, point) for point in points])
-    pieces = border_pieces(carriers, lambda p: 0 < p[0] < 4 and 0 < p[1] < 4)
+    pieces = border_pieces(carriers, each(lambda p: 0 < p[0] < 4 and 0 < p[1] < 4))
     assert len(pieces) == 6
     for first in range(6):
         loops = border_loops([*pieces[first:], *pieces[:first]])
@@ -157,6 +163,6 @@ def test_a_circle_that_nearly_touches_a_polygon(corners: int, gap: float) -> Non
         (lambda at: in_polygon(at) and in_circle(at), both),
         (lambda at: in_polygon(at) or in_circle(at), of_polygon + of_circle - both),
     ):
-        loops = border_loops(border_pieces(carriers, inside))
+        loops = border_loops(border_pieces(carriers, each(inside)))
         assert len(loops) == 1
         assert area(loops) == pytest.approx(float(expected), abs=2e-4)

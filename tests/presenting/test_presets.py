@@ -9,6 +9,7 @@ import pytest
 import workhold
 from workhold.errors import InputError
 from workhold.files.toolkit_file import load_toolkit, preset_names
+from workhold.model.query import Query
 
 CLASSES = (workhold.Vise, workhold.Plate, workhold.Fence, workhold.FlatJaw)
 
@@ -20,6 +21,18 @@ def test_every_preset_is_one_of_its_class_alone() -> None:
     for kind, name in listed:
         assert kind.preset(name) == load_toolkit(name).toolkit
         assert workhold.Tolerance.preset(name) == load_toolkit(name).tolerance
+
+
+def test_a_preset_brings_its_tolerance_to_a_query() -> None:
+    """As the command line has it; pegs of another radius are as good as nobody says, and a tolerance given wins."""
+    part = workhold.Workpiece.from_points("plate", [(0, 0), (300, 0), (300, 200), (0, 210)])
+    table, own = workhold.Vise.preset("table-50mm"), load_toolkit("table-50mm").tolerance
+    assert own.peg > 0.1
+    for toolkit in (table, load_toolkit("table-50mm").toolkit, table.changed({"columns": 3})):
+        assert Query(part, toolkit).tolerance == own
+    for toolkit in (table.changed({"peg_radius": 7.0}), workhold.Vise.preset("table-50mm", peg_radius=7.0)):
+        assert Query(part, toolkit).tolerance == workhold.Tolerance()
+    assert Query(part, table, tolerance=workhold.Tolerance(0.02)).tolerance.peg == 0.02
 
 
 def test_fields_can_be_changed() -> None:

@@ -10,7 +10,9 @@ import pytest
 from attrs import evolve
 
 from supports.cases import NAMES, case
+from workhold.errors import InputError
 from workhold.files.supports_file import read_supports, write_supports
+from workhold.files.supports_forms import ReadTriple, TripleReader, read_supports_part
 from workhold.supports.listing import supports_of
 from workhold.verification.supports import verify_supports_file
 
@@ -103,3 +105,31 @@ def test_the_command_judges_a_file_of_supports(tmp_path):
     write_supports(evolve(found, triples=(evolve(found.triples[0], standing=1.0),)), path)
     bad = subprocess.run([*command, path], capture_output=True, text=True, check=False)
     assert bad.returncode == 2 and "Triple 1 is refuted: standing" in bad.stdout, bad.stderr
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "place"),
+    [
+        ('"share": ', '"share": "x", "was": ', "triples.1.best.share"),
+        ('"standing": ', '"stand": ', "triples.1.standing"),
+    ],
+)
+def test_triples_are_checked_one_by_one_as_they_are_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, before: str, after: str, place: str
+) -> None:
+    """They never lie in memory all at once as they are written; what is wrong of one is named with its place."""
+    one = case("bracketL")
+    found = supports_of(one.fixture, one.query, one.request, one.loads, one.jaw_force, best=3)
+    path = tmp_path / "supports.json"
+    write_supports(found, path)
+    forms = []
+    usual = TripleReader.checked
+    monkeypatch.setattr(
+        TripleReader, "checked", lambda self, entry: (forms.append(self.count), usual(self, entry))[1]
+    )
+    assert all(isinstance(triple, ReadTriple) for triple in read_supports_part(path).triples)
+    assert forms == [0, 1, 2]
+    head, first, second, *rest = path.read_text().split('\n{"holes"')
+    path.write_text('\n{"holes"'.join([head, first, second.replace(before, after, 1), *rest]))
+    with pytest.raises(InputError, match=f"not a complete file of supports: {place} cannot be used"):
+        read_supports(path)

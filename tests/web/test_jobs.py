@@ -245,7 +245,7 @@ def test_the_sheet_has_the_loads_jaw_and_sizes_of_its_address(server: RunningSer
     )
     for wanted in (
         "pushed",
-        "33.7 lbf at x 0.0394, y 0.0787 in, towards 30°",
+        "33.7 lbf (150 N) at x 0.0394, y 0.0787 in, towards 30°",
         "at 169 lbf",
         "2.5 times as stiff as a contact",
     ):

@@ -32,10 +32,11 @@ from workhold.files.result.save import save
 from workhold.files.toolkit_file import load_toolkit
 from workhold.fixels.kinds import ALIASES, KINDS, toolkit_of
 from workhold.fixels.toolkit import Toolkit
+from workhold.geometry.segment import Box
 from workhold.listing.identity import entries
 from workhold.model.quality import asked_ranking
 from workhold.model.query import Query
-from workhold.model.requirements import Load, Restrictions, Tolerance, circle_zone, polygon_zone
+from workhold.model.requirements import Load, Restrictions, Tolerance, circle_zone, far_loads, polygon_zone
 from workhold.model.result import Result
 from workhold.presenting.data import explanation_data, fixture_data, load_case_data, part_data, result_data
 
@@ -81,7 +82,11 @@ def design(asked: DesignArguments, folder: Path, cancel: Event) -> Answer:
     loaded, result = answered(asked, cancel)
     save(result, out, overwrite=True)
     found = result_data(result, entries(result), asked.count)
-    data = {**found, "result_file": out, "remarks": list(loaded.remarks)}
+    data = {
+        **found,
+        "result_file": out,
+        "remarks": [*loaded.remarks, *far_loads(result.query.loads, Box(*result.workpiece.bounds))],
+    }
     return Answer(data, result.draw() if asked.picture and len(result) else None)
 
 

@@ -107,7 +107,7 @@ def toolkits_table(unit: Unit) -> Table:
     table = Table(("name", f">pitch {of}", f">peg Ø {of}", ">columns", f">peg off by {of}", "what it is"))
     for name in preset_names():
         loaded = load_toolkit(name)
-        first = loaded.toolkit.carriers[0]
+        first = loaded.toolkit.plates[0]
         table.add_row(
             name,
             pitch_words(first.pitch, unit),
@@ -122,7 +122,7 @@ def toolkits_table(unit: Unit) -> Table:
 def figures_table(loaded: LoadedToolkit, unit: Unit) -> Table:
     """Every figure of a toolkit, one line each."""
     toolkit, of = loaded.toolkit, unit.abbreviation
-    first, finest = toolkit.carriers[0], unit.decimals + 1
+    first, finest = toolkit.plates[0], unit.decimals + 1
     each = f"on {'each' if len(toolkit.plates) > 1 else 'the'} {first.noun}"
     table = Table(("figure", "value"))
     table.add_row("distance between holes", f"{pitch_words(first.pitch, unit)} {of}")

@@ -34,7 +34,7 @@ from workhold.cli.setup_sheets import first_sheet, refuse_sheet
 from workhold.cli.supports_command import asked_thickness, report_supported
 from workhold.cli.table import plural, print_tables
 from workhold.cli.toolkit_options import ToolkitWords
-from workhold.cli.values import choice, length_unit, optional_count, whole_number
+from workhold.cli.values import choice, length_unit, optional_count, printed_unit, whole_number
 from workhold.errors import InputError
 
 if TYPE_CHECKING:
@@ -136,8 +136,10 @@ def design(
     asked["tolerance"] = with_fit_of(asked["tolerance"], tolerance)
     type_ = choice("--type", type_, (*toolkit.types, EVERY_TYPE))
     from workhold.files.part.load import refuse_unsure_numbers
+    from workhold.geometry.segment import Box
     from workhold.kernels.base.compiling import is_first_run
     from workhold.model.query import Query
+    from workhold.model.requirements import far_loads
 
     first_run, second = is_first_run(), None
     if first_run and engine == "curves":
@@ -154,6 +156,9 @@ def design(
     query = Query(
         workpiece, toolkit, None if type_ == EVERY_TYPE else type_, best=kept, listing=listing, **asked
     )
+    for remark in far_loads(query.loads, Box(*workpiece.bounds)):
+        print_remark(remark)
+    printed = printed_unit(reading.unit, toolkit)
     start = perf_counter()
     # What was found is decided for a moment more (``proof.deciding``); the rest of it is left.
     with ask_to_stop("what was found is kept as far as it is soon proven") as cancel:
@@ -175,9 +180,9 @@ def design(
         from workhold.listing.identity import entries
         from workhold.presenting.data import result_data
 
-        further = further_data(result, engine, workers, folder, shown)
+        further = further_data(result, engine, workers, folder, printed)
         if sheet is not None:
-            written = first_sheet(result, sheet, out, high, shown, words.not_on_faces_cut_in)
+            written = first_sheet(result, sheet, out, high, printed, words.not_on_faces_cut_in)
             further["sheet"] = sheet if written else None
         print_json(**result_data(result, entries(result, unfit), max(listed, 0)), result_file=out, **further)
         if not result.complete:
@@ -185,23 +190,23 @@ def design(
         return
     compiled = ", compiling on this first run included" if first_run else ""
     spent = f"{perf_counter() - start:.1f} s{compiled}"
-    report(result, spent, out, form, listed, shown, unfit, stream)
+    report(result, spent, out, form, listed, printed, unfit, stream)
     supported: tuple[Supports, ...] = ()
     if high is not None:
-        supported = report_supported(result, high, shown, stream)
+        supported = report_supported(result, high, printed, stream)
     if not result.complete:
         raise typer.Exit(INTERRUPTED)
     if not any(result.found.values()) and engine == "curves":
         from workhold.cli.tables import other_heights
 
-        explain_none(result, workers, folder, shown, stream)
-        print_tables(*other_heights(workpiece, loaded.heights, shown), stream=stream)
+        explain_none(result, workers, folder, printed, stream)
+        print_tables(*other_heights(workpiece, loaded.heights, printed), stream=stream)
     elif folder is not None:
-        drawn = draw_best(result, folder, shown)
+        drawn = draw_best(result, folder, printed)
         pictures = f"Drawn: {plural(len(drawn), 'picture')} in {folder}." if drawn else "Nothing to draw."
         print_tables(pictures, stream=stream)
     if sheet is not None:
-        ranked = first_sheet(result, sheet, out, high, shown, words.not_on_faces_cut_in, supported)
+        ranked = first_sheet(result, sheet, out, high, printed, words.not_on_faces_cut_in, supported)
         if ranked is None:
             print_tables(f"As there is no fixture, {sheet} was not written.", stream=stream)
         else:

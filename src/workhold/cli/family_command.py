@@ -22,7 +22,15 @@ from workhold.cli.progress import search_progress
 from workhold.cli.search_options import QueryWords
 from workhold.cli.table import Table, plural, print_tables
 from workhold.cli.toolkit_options import ToolkitWords
-from workhold.cli.values import choice, length_unit, number, optional_count, picture_ending, positive_number
+from workhold.cli.values import (
+    choice,
+    length_unit,
+    number,
+    optional_count,
+    picture_ending,
+    positive_number,
+    printed_unit,
+)
 from workhold.errors import InputError
 
 if TYPE_CHECKING:
@@ -32,9 +40,6 @@ if TYPE_CHECKING:
     from workhold.units import Unit
 
 __all__ = ["family"]
-
-# Letters of a part's name that are shown.
-LONGEST_NAME = 26
 
 
 def report(found: Family, plan: Plan | None, spent: str, unit: Unit) -> None:
@@ -91,7 +96,7 @@ def curve_table(found: Family, unit: Unit) -> Table:
             loss_text(point.loss),
             str(plan.moved),
             figure_text(found.figure, worst.figure, unit),
-            short_name(worst.member.name),
+            worst.member.name,
         )
     return table
 
@@ -119,9 +124,9 @@ def setup_table(setup: SetUp, found: Family, unit: Unit) -> Table:
         pose = fixture.pose
         lengths = [unit.number(setting.length) for setting in settings_of(fixture, found.toolkit)]
         table.add_row(
-            short_name(one.member.name),
+            one.member.name,
             f"{one.number:,}" + ("'" if one.turned else ""),
-            f"{pose.theta_deg:.3f}",
+            f"{pose.written_deg:.3f}",
             unit.number(pose.x),
             unit.number(pose.y),
             *lengths,
@@ -129,16 +134,6 @@ def setup_table(setup: SetUp, found: Family, unit: Unit) -> Table:
             figure_text(found.figure, one.figure, unit),
         )
     return table
-
-
-def short_name(name: str) -> str:
-    """Shortens a long name of a part to its beginning and end.
-
-    >>> short_name("ell.dxf"), short_name("bracket, left, machined side up.dxf")
-    ('ell.dxf', 'bracket, left… side up.dxf')
-    """
-    half = LONGEST_NAME // 2
-    return name if len(name) <= LONGEST_NAME else f"{name[:half]}…{name[1 - half :]}"
 
 
 FAMILY, OUTPUT = "The family", "Results"
@@ -227,6 +222,7 @@ def family(
     seconds = positive_number("--time-limit", time_limit)
     workers = optional_count("--threads", threads)
     toolkit, tolerance = held_in.asked(shown)
+    printed = printed_unit(reading.unit, toolkit)
     words.asked(shown)
     type_ = choice("--type", type_, (*toolkit.types, EVERY_TYPE))
     from workhold.family.solver import load_solver
@@ -281,7 +277,7 @@ def family(
     plan = found.plan(most) if found.members and (most is not None or loss is not None) else None
     compiled = ", compiling on this first run included" if first_run else ""
     spent = f"{perf_counter() - start:.1f} s{compiled}"
-    written = write_all(found, plan, out, draw, sheets, shown)
+    written = write_all(found, plan, out, draw, sheets, printed)
     if json_:
         from json import loads
 
@@ -289,7 +285,7 @@ def family(
 
         print_json(**loads(family_text(found)), written=written)
         return
-    report(found, plan, spent, shown)
+    report(found, plan, spent, printed)
     if written:
         print_tables(f"Written to {', '.join(written)}.")
 

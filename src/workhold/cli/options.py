@@ -21,6 +21,7 @@ from workhold.cli.values import (
     length_unit,
     optional_length,
     optional_positive_length,
+    usual_unit,
     whole_number,
 )
 from workhold.errors import InputError
@@ -103,7 +104,12 @@ PartArgument = Annotated[
         help="The part: a DXF, SVG, JSON or STEP file, or a built-in name (see workhold parts).",
     ),
 ]
-SHOWN_UNIT = option(None, "UNIT", "Unit of the lengths shown (mm, cm, m, inch); mm if not given.", "--unit")
+SHOWN_UNIT = option(
+    None,
+    "UNIT",
+    "Unit of the lengths shown (mm, cm, m, inch); if not given, inch for holes a fraction of an inch apart, else mm.",
+    "--unit",
+)
 
 
 def at_terminal() -> bool:
@@ -184,7 +190,7 @@ class PartWords:
         unit = length_unit(self.unit)
         return {
             "unit": self.drawing_unit,
-            "usual_unit": self.unit,
+            "usual_unit": self.unit or usual_unit(),
             "layers": self.layer or None,
             "part_number": number_or_name(self.part_number),
             "join_tolerance": length(CALLED["join_tolerance"], self.join_tolerance, unit),

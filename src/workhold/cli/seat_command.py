@@ -10,7 +10,7 @@ from workhold.cli.commands import option, print_remark
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
 from workhold.cli.outputs import FORCE, JSON, asked_picture, print_json, write_picture
 from workhold.cli.table import Table, print_tables
-from workhold.cli.values import choice, length_unit, optional_positive_length
+from workhold.cli.values import choice, length_unit, optional_positive_length, printed_unit
 from workhold.units import Unit
 
 if TYPE_CHECKING:
@@ -55,6 +55,7 @@ def seat(
     opened = optional_positive_length("--opening", opening, shown_unit)
     picture = asked_picture(draw, (result_file,), force)
     result = result_with(result_file, rank)
+    shown_unit = printed_unit(unit, result.toolkit)
     fixture, written = result[rank - 1], [] if picture is None else [str(picture)]
     if not result.toolkit.closes_at_once:
         print_by_hand(result, rank, picture, shown_unit, json_)

@@ -21,6 +21,7 @@ from workhold.cli.values import (
     optional_force,
     optional_positive_length,
     positive_number,
+    printed_unit,
     two_lengths,
 )
 from workhold.errors import InputError
@@ -56,7 +57,9 @@ def sheet(
         ),
     ],
     force: bool = FORCE,
-    paper: str = option(ON_PAPER, "SIZE", "a4 or letter.", default="a4"),
+    paper: str | None = option(
+        ON_PAPER, "SIZE", "a4 or letter; letter for lengths in inches if not given, else a4."
+    ),
     unit: str | None = SHOWN_UNIT,
     part_name: str | None = option(ON_PAPER, "NAME", "What to call the part; its own name if not given."),
     day: str | None = option(ON_PAPER, "YYYY-MM-DD", "The date of the sheet; today if not given.", "--date"),
@@ -141,7 +144,7 @@ def sheet(
     from workhold.verification.supports import is_supports_file
 
     settings: dict[str, Any] = {
-        "paper": choice("--paper", paper, ("a4", "letter")),
+        "paper": "" if paper is None else choice("--paper", paper, ("a4", "letter")),
         "unit": shown_unit,
         "day": date.today() if day is None else day_of(day),
         "part_name": part_name,
@@ -186,7 +189,7 @@ def sheet(
     if for_cam:
         write_model(path, result, rank, settings, keep_off)
     else:
-        settings["loads"] = given or result.query.loads
+        settings |= {"loads": given or result.query.loads, "unit": printed_unit(unit, result.toolkit)}
         write_paper(path, result, rank, result_file, settings)
     print_written(json_, f"Written to {path}.", path)
 

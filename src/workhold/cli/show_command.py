@@ -21,7 +21,13 @@ from workhold.cli.setup_sheets import (
     write_bodies,
 )
 from workhold.cli.table import Table, print_tables
-from workhold.cli.values import length_unit, optional_force, optional_positive_length, positive_number
+from workhold.cli.values import (
+    length_unit,
+    optional_force,
+    optional_positive_length,
+    positive_number,
+    printed_unit,
+)
 from workhold.units import MILLIMETRE, Unit
 
 if TYPE_CHECKING:
@@ -73,13 +79,13 @@ def show(
     height = optional_positive_length("--thickness", thickness, shown_unit)
     stiffness = jaw_stiffness(jaw)
     result = result_with(result_file, rank)
-    fixture = result[rank - 1]
+    fixture, printed = result[rank - 1], printed_unit(unit, result.toolkit)
     loads_asked = asked or result.query.loads
     cases = load_cases(
         fixture, result.workpiece, result.toolkit, loads_asked, closing_force, coefficient, stiffness
     )
     if not json_:
-        print_fixture(result, rank, cases, shown_unit, (closing_force, stiffness))
+        print_fixture(result, rank, cases, printed, (closing_force, stiffness))
     if not result.complete:
         print_remark("the search for this result was interrupted; there may be better fixtures.")
     if picture is not None:
@@ -88,7 +94,7 @@ def show(
 
         path = planned_path(result, rank - 1)
         held = (fixture, result.workpiece, result.toolkit)
-        svg = draw_fixture(*held, title=f"Fixture {rank}", unit=shown_unit, path=path)
+        svg = draw_fixture(*held, title=f"Fixture {rank}", unit=printed, path=path)
         write_picture(picture, svg)
     if models:
         from workhold.presenting.assembly import Assembly, shape_in

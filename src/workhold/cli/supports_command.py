@@ -24,6 +24,7 @@ from workhold.cli.values import (
     optional_force,
     optional_length,
     positive_number,
+    printed_unit,
 )
 from workhold.errors import InputError
 
@@ -160,7 +161,8 @@ def supports(
             progress=lambda fraction: show(fraction, 0),
         )
     if found.triples and found.request.pad_radius < request.pad_radius:
-        pad, tip = shown.text(found.request.pad_radius), shown.text(found.request.tip_radius)
+        printed = printed_unit(unit, result.toolkit)
+        pad, tip = printed.text(found.request.pad_radius), printed.text(found.request.tip_radius)
         print_remark(f"the usual sizes find no place: the pads have a radius of {pad}, the tip one of {tip}.")
     helped = with_friction(found, count, coefficient)
     if out is not None:
@@ -174,13 +176,13 @@ def supports(
         if not found.triples:
             from workhold.supports.words import why_no_set
 
-            why = why_no_set(found, shown)
+            why = why_no_set(found, printed_unit(unit, result.toolkit))
             raise InputError(f"{why[:1].lower()}{why[1:]}")
         best, shape = ChosenSupports.of(found), shape_in(part, result.workpiece)
         assembly = Assembly.of(result[rank - 1], result, {"support_height": raised}, best, shape)
         write_bodies(assembly, models, shown)
     written = [path for path in (out, glb, step) if path is not None]
-    report(found, count, rank, written, shown, json_, coefficient, helped)
+    report(found, count, rank, written, printed_unit(unit, result.toolkit), json_, coefficient, helped)
     if found.stopped:
         raise typer.Exit(INTERRUPTED)
 

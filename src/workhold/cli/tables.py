@@ -157,7 +157,7 @@ def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILL
             ),
             *(f"{result.table.pairs[index]:,}" for _ in pairs),
             " ".join(unit.number(setting.length, decimals) for setting in settings_of(fixture, toolkit)),
-            rounded(fixture.pose.theta_deg, degrees_decimals),
+            rounded(fixture.pose.written_deg, degrees_decimals),
             *(
                 (counted_text if figure in ranked[:-1] else figure_text)(
                     figure, fixture.figures.get(figure.key, nan), unit
@@ -220,7 +220,7 @@ def fixture_tables(
         f"Fixture {rank} of {total}, type {toolkit.arrangement(fixture.type, fixture.direction).title}",
         *(setting_sentence(setting, unit) for setting in settings_of(fixture, toolkit)),
         *pair_sentences(fixture),
-        f"The part is turned by {rounded(pose.theta_deg, 3)} degrees, its origin lies at "
+        f"The part is turned by {rounded(pose.written_deg, 3)} degrees, its origin lies at "
         f"{place((pose.x, pose.y), unit)} {unit.abbreviation} from {toolkit.datum.full}",
         pegs,
     )

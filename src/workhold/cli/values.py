@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Mapping, Sequence
 from math import inf, isfinite, nan
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from workhold.errors import InputError
 from workhold.limits import counting_number, refuse_long, refuse_strong
-from workhold.units import MILLIMETRE, POUND, Unit, pixels_an_inch, unit_named
+from workhold.units import INCH, MILLIMETRE, POUND, Unit, pixels_an_inch, unit_named
+
+if TYPE_CHECKING:
+    from workhold.fixels.toolkit import Toolkit
 
 __all__ = [
     "choice",
@@ -25,7 +30,9 @@ __all__ = [
     "picture_ending",
     "pitches",
     "positive_number",
+    "printed_unit",
     "two_lengths",
+    "usual_unit",
     "whole_number",
 ]
 
@@ -45,7 +52,21 @@ def length_unit(name: str | None) -> Unit:
     InputError
         For a unit that is not known.
     """
+    name = usual_unit() if name is None else name
     return MILLIMETRE if name is None or pixels_an_inch(name) is not None else unit_named(name)
+
+
+def usual_unit() -> str | None:
+    """The unit that a shop has set for good in the environment, ``WORKHOLD_UNIT``; None where it has set none."""
+    return os.environ.get("WORKHOLD_UNIT") or None
+
+
+def printed_unit(name: str | None, toolkit: Toolkit) -> Unit:
+    """The unit of lengths shown of a fixture: the one asked for or set for good, else that of the toolkit's holes.
+
+    Numbers that are typed without a unit stay in the unit of :func:`length_unit`.
+    """
+    return INCH if name is None and usual_unit() is None and toolkit.is_in_inches else length_unit(name)
 
 
 def length(option: str, text: str, unit: Unit = MILLIMETRE) -> float:

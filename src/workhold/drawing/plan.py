@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import reduce
 from itertools import pairwise
-from math import cos, floor, pi, radians, sin
+from math import copysign, cos, floor, pi, radians, sin
 from typing import Literal
 
 from workhold.drawing.annotation import PAST_END, dimension, dimension_box
@@ -69,9 +69,9 @@ def draw_plan(
     names += draw_travel(scene, bench, view, frame, bounds, lengths)
     names += draw_captions(scene, bench, view, frame, bounds)
     center = view(bench.fixture.pose.apply(*workpiece.center))
-    angle_mark(scene, center, bench.fixture.pose.theta_deg, ANGLE_RADIUS, ANGLE_REACH)
+    angle_mark(scene, center, bench.fixture.pose.written_deg, ANGLE_RADIUS, ANGLE_REACH)
     marks = [(view(point), name) for point, name in marks]
-    angle = f"θ = {bench.fixture.pose.theta_deg:.3f}°" if angle is None else angle
+    angle = f"θ = {bench.fixture.pose.written_deg:.3f}°" if angle is None else angle
     draw_labels(scene, bench, view, workpiece, bounds, names, marks, angle, supports, path, lengths)
 
 
@@ -257,20 +257,21 @@ def side_by_side(lefts: Sequence[float], widths: Sequence[float], right: float) 
 def angle_mark(scene: Scene, center: Point, theta_deg: float, radius: float, reach: float) -> None:
     """Draws the turn from the vise's x axis (a dashed line) to the part's (an arrow) around a page point."""
     x, y = center
-    theta = radians(theta_deg % 360.0)
+    theta = radians(theta_deg)
     mark = scene.group("pose")
     mark.line([(x, y), (x + reach, y)], GREY, 1.0, stroke_dasharray="5 3")
     mark.arrow((x, y), (x + reach * cos(theta), y - reach * sin(theta)), GREY, 1.4, 9)
     mark.circle(center, 2.2, GREY)
-    if theta * radius < 10.0:
+    if abs(theta) * radius < 10.0:
         return
-    end = theta - 7.0 / radius  # leave room for the head
-    pieces = max(1, floor(end / (pi / 2)) + 1)
+    way = copysign(1.0, theta)
+    end = theta - way * 7.0 / radius  # leave room for the head
+    pieces = max(1, floor(abs(end) / (pi / 2)) + 1)
     d = f"M{number(x + radius)} {number(y)}"
     for k in range(1, pieces + 1):
         a = end * k / pieces
         end_x, end_y = number(x + radius * cos(a)), number(y - radius * sin(a))
-        d += f"A{number(radius)} {number(radius)} 0 0 0 {end_x} {end_y}"
+        d += f"A{number(radius)} {number(radius)} 0 0 {0 if way > 0 else 1} {end_x} {end_y}"
     mark.path(d, GREY, 1.0)
     tip = (x + radius * cos(theta), y - radius * sin(theta))
-    mark.arrow_head(tip, -(theta + pi / 2) + 3.5 / radius, GREY, 7.5)
+    mark.arrow_head(tip, -(theta + way * pi / 2) + way * 3.5 / radius, GREY, 7.5)

@@ -80,7 +80,7 @@ def draw_sheet(
     if details.program is not None:
         path = PlannedPath(details.program, fixture, details.passing)
         extent = path.grown(extent)
-    width, height = (UNITS_PER_MM * side for side in PAPERS[details.paper])
+    width, height = (UNITS_PER_MM * side for side in PAPERS[details.paper_size])
     layout = arranged((width, height), extent, *blocks_of(sheet), figure)
     title = f"{sheet.name}: setup sheet of fixture {details.number}"
     pages = [Scene.page(layout.page, title) for _ in (layout.columns, *layout.more)]
@@ -138,7 +138,7 @@ def draw_foot(scene: Scene, layout: PageLayout, sheet: Sheet, page: str) -> None
     box = Box(MARGIN, height - MARGIN - FOOT + 10, width - MARGIN, height - MARGIN)
     cells = [
         (details.listed_as, f"{details.number} of {details.count}"),
-        ("Scale", f"{layout.scale.name} on {PAPER_NAMES[details.paper]}"),
+        ("Scale", f"{layout.scale.name} on {PAPER_NAMES[details.paper_size]}"),
         ("Print at", "100 %"),
         ("Lengths", sheet.lengths.unit.name),
         ("Date", details.day.isoformat()),

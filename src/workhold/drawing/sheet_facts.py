@@ -63,7 +63,7 @@ class SheetDetails:
     day : the date written on the sheet.
     result_hash : SHA-256 of the result file in hexadecimal; empty for a result of no file.
     version : of the program.
-    paper : "a4" or "letter".
+    paper : "a4" or "letter"; "" is letter for lengths in inches, else A4.
     unit : of lengths.
     part_name : written instead of the workpiece's own name.
     tolerance : how far pegs and faces may be off, which the location error is for.
@@ -96,7 +96,7 @@ class SheetDetails:
     day: date
     result_hash: str
     version: str
-    paper: str = "a4"
+    paper: str = ""
     unit: Unit = MILLIMETRE
     part_name: str | None = None
     tolerance: Tolerance = field(factory=Tolerance)
@@ -122,6 +122,11 @@ class SheetDetails:
     cutting: CuttingNeed | None = None
     bent: BentPegs | None = None
     listed_as: str = "Fixture"
+
+    @property
+    def paper_size(self) -> str:
+        """The size of the paper: the one asked for, or the one that the unit's users have."""
+        return self.paper or ("letter" if self.unit.force == "lbf" else "a4")
 
 
 # Two zeros this near to each other, in mm, are one.

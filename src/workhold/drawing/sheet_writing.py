@@ -318,12 +318,12 @@ def peg_rows(sheet: Sheet) -> tuple[list[str], list[list[str]], str]:
     flats = FLAT_PIN in sheet.toolkit.contacts
     header = ["Hole", "face", *["flat"] * flats, f"x {sheet.lengths.sign}", f"y {sheet.lengths.sign}", per]
     if force is not None:
-        header.append(f"at {unit.force_words(force)}")
+        header.append(f"at {unit.force_alone(force)}")
     rows = []
     for name, peg in zip(contact_names(sheet.fixture, sheet.toolkit), sheet.fixture.pegs, strict=True):
         looks = "–" if peg.flat_deg is None else f"{peg.flat_deg:.2f}°"
         row = [name, peg.touched, *[looks] * flats, number(peg.x), number(peg.y), f"{KILO * peg.force:.0f}"]
-        rows.append(row if force is None else [*row, unit.force_words(force * peg.force)])
+        rows.append(row if force is None else [*row, unit.force_alone(force * peg.force)])
     each = "kN" if unit.newtons == 1 else f"{KILO:.0f} {unit.force}"
     return header, rows, f"{per}: {unit.force} of the {pegs_words(sheet.toolkit)} on the part for each {each}"
 
@@ -342,7 +342,7 @@ def write_flats(column: TextColumn, sheet: Sheet) -> None:
 
 def lies_words(sheet: Sheet) -> str:
     """How the part lies beside its drawing."""
-    return f"turned {sheet.fixture.pose.theta_deg:.1f}° counter-clockwise from its drawing"
+    return f"turned {sheet.fixture.pose.written_deg:.1f}° counter-clockwise from its drawing"
 
 
 def inside_words(sheet: Sheet) -> str:

@@ -22,7 +22,7 @@ from types import ModuleType
 from typing import Any
 
 from workhold.errors import InputError, lacks_memory
-from workhold.files.budget import LIMITS
+from workhold.files.budget import LIMITS, OverBudgetError
 from workhold.files.fork_server import CAN_FORK, ForkedProcess, forked
 
 __all__ = ["limit_memory", "limit_processor", "run_apart"]
@@ -123,9 +123,11 @@ def outcome(answered: bytes, code: int, given_up: bool, limits: tuple[float, int
     if kind == "fault":
         raise RuntimeError(f"in the process that reads {what}:\n{value}")
     if kind == "memory":
-        raise InputError(f"{what} needs more than {memory / 1e9:.1f} GB of memory to read: save less in it.")
+        raise OverBudgetError(
+            f"{what} needs more than {memory / 1e9:.1f} GB of memory to read: save less in it."
+        )
     if given_up:
-        raise InputError(
+        raise OverBudgetError(
             f"{what} was given up after {seconds:.0f} s of reading: it is damaged, or holds too much; save "
             "less in it."
         )

@@ -14,7 +14,7 @@ depth : how many elements lie inside each other.
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from attrs import frozen
@@ -32,6 +32,15 @@ STEP_SECONDS, STEP_SECONDS_PER_MILLION = 12.0, 2.0
 
 class OverBudgetError(InputError):
     """A file asks for more than its reader may take; no reader goes on after it."""
+
+    @staticmethod
+    def is_behind(error: BaseException | None) -> bool:
+        """Whether such an error is what another was raised from, with its place."""
+        while error is not None:
+            if isinstance(error, OverBudgetError):
+                return True
+            error = error.__cause__
+        return False
 
 
 @frozen
@@ -115,7 +124,13 @@ LIMITS = {
     "tools": FileLimits(
         "a table of tools", 1_000_000, 10_000, "tools", remedy="give the tools of the program"
     ),
-    "program": FileLimits("a program", 64_000_000, 2_000_000, "moves", remedy="split it"),
+    "program": FileLimits(
+        "a program",
+        64_000_000,
+        2_000_000,
+        "moves, or blocks with those of its subprograms written out,",
+        remedy="split it",
+    ),
     "jobs": FileLimits("a file that describes jobs", 5_000_000, 20_000, "jobs", remedy="split it"),
     "supports": FileLimits("a file that describes supports", 120_000_000),
     "result": FileLimits(
@@ -218,12 +233,30 @@ class Budget:
         InputError
             Where it is deeper than the limit.
         """
-        self.depth += 1
         try:
-            if self.limits.deepest is not None and self.depth > self.limits.deepest:
-                raise OverBudgetError(
-                    f"{label} is nested more than {self.limits.deepest} levels deep: {self.limits.remedy}."
-                )
+            self.enter(lambda: label)
             yield
         finally:
-            self.depth -= 1
+            self.leave()
+
+    def enter(self, label: Callable[[], str]) -> None:
+        """Counts what is read from now on as one level deeper, until :meth:`leave`.
+
+        Parameters
+        ----------
+        label : as in :meth:`nested`, made where it is needed.
+
+        Raises
+        ------
+        InputError
+            Where it is deeper than the limit.
+        """
+        self.depth += 1
+        if self.limits.deepest is not None and self.depth > self.limits.deepest:
+            raise OverBudgetError(
+                f"{label()} is nested more than {self.limits.deepest} levels deep: {self.limits.remedy}."
+            )
+
+    def leave(self) -> None:
+        """Counts what is read from now on as one level less deep."""
+        self.depth -= 1

@@ -18,9 +18,9 @@ from workhold.files.result.reader import checked_table, collected, measured
 from workhold.files.result.writer import outlines_entry, solid_entry, toolkit_entry, workpiece_entry
 from workhold.files.supports_forms import (
     FORMAT,
-    ClampFiguresPart,
+    ReadFigures,
+    ReadTriple,
     SupportsPart,
-    TriplePart,
     read_supports_part,
 )
 from workhold.model.fixture import Fixture
@@ -72,6 +72,16 @@ def read_supports(path: str | Path) -> Supports:
         loads = tuple(load.load(request.thickness) for load in part.loads)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
+    pads: dict[tuple[str, int, int], SupportPad] = {}
+    triples = []
+    # What is made of a triple takes its place in memory.
+    part.triples.reverse()
+    while part.triples:
+        one = part.triples.pop()
+        for hole in one.holes:
+            if hole not in pads:
+                pads[hole] = pad_of(hole, fixture, query, path)
+        triples.append(triple_of(one, tuple(pads[hole] for hole in one.holes), request.point))
     return Supports(
         query,
         fixture,
@@ -80,39 +90,41 @@ def read_supports(path: str | Path) -> Supports:
         part.jaw_force,
         part.counts.positions,
         part.counts.triples,
-        tuple(triple_of(one, fixture, query, request.point, path) for one in part.triples),
+        tuple(triples),
     )
 
 
-def triple_of(
-    part: TriplePart, fixture: Fixture, query: Query, point: tuple[float, float] | None, path: Path
-) -> Triple:
-    """A triple of a file; refuses a hole that is on no plate of the toolkit."""
+def pad_of(hole: tuple[str, int, int], fixture: Fixture, query: Query, path: Path) -> SupportPad:
+    """The support in a hole of a file; refuses one that is on no plate of the toolkit."""
+    name, column, row = hole
     plates = {plate.name: plate for plate in query.toolkit.plates}
-    supports = []
-    for name, column, row in part.holes:
-        if name not in plates:
-            raise InputError(f"{path}: a support stands on {name!r}: give {' or '.join(plates)}.")
-        place = plates[name].place(column, row, fixture.jaw_separation)
-        x, y = fixture.pose.inverse.apply(*place)
-        supports.append(SupportPad(name, column, row, float(x), float(y)))
+    if name not in plates:
+        raise InputError(f"{path}: a support stands on {name!r}: give {' or '.join(plates)}.")
+    x, y = fixture.pose.inverse.apply(*plates[name].place(column, row, fixture.jaw_separation))
+    return SupportPad(name, column, row, float(x), float(y))
+
+
+def triple_of(
+    part: ReadTriple, supports: tuple[SupportPad, ...], point: tuple[float, float] | None
+) -> Triple:
+    """A triple of a file with its supports; the clamp of its own stands at the point asked for."""
     return Triple(
-        supports=tuple(supports),
+        supports=supports,
         travel=part.jaw_separation,
         marginal=part.marginal,
         standing=part.standing,
         overhang=part.overhang,
         arm=part.arm,
-        arm_at=(part.arm_at[0], part.arm_at[1]),
+        arm_at=part.arm_at,
         best=clamp_of(part.best, None),
         given=None if part.given is None else clamp_of(part.given, point),
     )
 
 
-def clamp_of(part: ClampFiguresPart, point: tuple[float, float] | None) -> ClampFigures:
+def clamp_of(part: ReadFigures, point: tuple[float, float] | None) -> ClampFigures:
     """The figures at one point of the clamp."""
-    x, y = part.at if part.at is not None else point or (0.0, 0.0)
-    return ClampFigures((x, y), part.clamp_needed, part.support_force, part.arm, part.share, part.lift)
+    at = part.at or point or (0.0, 0.0)
+    return ClampFigures(at, part.clamp_needed, part.support_force, part.arm, part.share, part.lift)
 
 
 def write_supports(supports: Supports, path: str | Path, *, overwrite: bool = False) -> None:

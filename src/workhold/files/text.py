@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import tomllib
 from collections.abc import Callable
-from functools import cache
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -185,7 +185,7 @@ def refuse_long_numbers(value: Any) -> None:
         raise InputError(f"the file holds a number with more than {MOST_DIGITS} digits: correct it.")
 
 
-@cache
+@lru_cache(maxsize=16)
 def decoder(hook: Callable[[dict[str, Any]], Any] | None) -> json.JSONDecoder:
     """The decoder that makes something else of each object, or of none."""
     return json.JSONDecoder(

@@ -155,7 +155,7 @@ class LoadedToolkit:
     @property
     def toolkit(self) -> Toolkit:
         """The toolkit with nothing changed."""
-        return toolkit_of(self.kind, self.fields)
+        return toolkit_of(self.kind, {**self.fields, "tolerance": self.tolerance})
 
 
 def read_toolkit_file(path: Path) -> LoadedToolkit:

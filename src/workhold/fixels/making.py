@@ -128,6 +128,9 @@ def made_from_table(kind: Kind) -> Kind:
     these = {name: attribute_of(rows[name], inherits=inherits) for name in names}
     for name in () if inherits else HARDWARE:
         these[name] = field(default=None, converter=partial(hardware_of, name), kw_only=True)
+    if not inherits:
+        # What is known of the pegs makes no other toolkit.
+        these["tolerance"] = field(default=None, kw_only=True, eq=False, repr=False)
     return frozen(these=these)(kind)
 
 

@@ -35,6 +35,10 @@ from workhold.units import Unit
 
 __all__ = ["Arrangement", "Carrier", "Change", "Limit", "Symmetry", "Toolkit", "Travel", "Wording"]
 
+# The field whose change makes other pegs.
+PEG_RADIUS = "peg_radius"
+# An eighth of an inch in mm.
+EIGHTH = 3.175
 # The order in which a person would ask for limits to be lifted.
 LIFTED = ("bodies", "travel", "holes")
 
@@ -94,6 +98,11 @@ class Limit:
     lifted: Change
 
 
+def is_whole(number: float) -> bool:
+    """Whether a number is a whole one but for rounding."""
+    return abs(number - round(number)) < 1e-9
+
+
 class Toolkit:
     """The data that every toolkit has; a toolkit is a frozen attrs class, such as ``fixels.vise.Vise``.
 
@@ -115,6 +124,8 @@ class Toolkit:
     page : what the page calls it.
     supports, top_clamp : the supports and the clamp on top that its owner has; None where nobody says.
     pins : what its pegs may bend; None for the usual limits.
+    tolerance : how far its pegs and the faces they touch may be off (``model.requirements.Tolerance``), as its
+        preset or file says; None where nobody says. A query takes it where it is given no other.
     """
 
     __slots__ = ()
@@ -126,6 +137,7 @@ class Toolkit:
         supports: SupportPads | None
         top_clamp: TopClamp | None
         pins: PinLimits | None
+        tolerance: Any
 
     kind: ClassVar[str]
     table: ClassVar[FieldTable]
@@ -168,6 +180,12 @@ class Toolkit:
         6.0
         """
         return 2 * self.plates[0].peg_radius
+
+    @property
+    def is_in_inches(self) -> bool:
+        """Whether its holes are eighths of an inch apart, and not whole or half millimetres."""
+        pitches = [pitch for carrier in self.plates for pitch in carrier.pitch]
+        return all(is_whole(pitch / EIGHTH) and not is_whole(pitch / 0.5) for pitch in pitches)
 
     @property
     def contacts(self) -> frozenset[ContactKind]:
@@ -276,6 +294,8 @@ class Toolkit:
         ((20.0, 20.0), 5.0)
         """
         given = {**delegate("preset_fields")(cls, name), **changes}
+        if PEG_RADIUS not in changes:
+            given.setdefault("tolerance", delegate("preset_tolerance")(name))
         try:
             return cls(**given)
         except TypeError as error:
@@ -302,7 +322,9 @@ class Toolkit:
         InputError
             When there is no such toolkit.
         """
-        return evolve(self, **fields)  # type: ignore[misc]
+        # Other pegs are as good as nobody says.
+        others = {"tolerance": None} if PEG_RADIUS in fields else {}
+        return evolve(self, **others, **fields)  # type: ignore[misc]
 
     def without(self, limits: Iterable[Limit]) -> Self:
         """The toolkit without some of its limits."""

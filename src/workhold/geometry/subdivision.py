@@ -30,7 +30,15 @@ from workhold.errors import InputError
 from workhold.geometry.loop import Comparisons, near_pairs
 from workhold.geometry.segment import Arc, Line, Point, Segment, bounding_box, carrier_intersections
 
-__all__ = ["BorderPiece", "CutCarrier", "border_loops", "border_pieces", "distinct_sorted", "subdivide"]
+__all__ = [
+    "BorderPiece",
+    "CutCarrier",
+    "Inside",
+    "border_loops",
+    "border_pieces",
+    "distinct_sorted",
+    "subdivide",
+]
 
 # Carriers, and points along one, that differ by less than this in mm are one.
 ONE = 1e-6
@@ -46,6 +54,8 @@ SHARES = (0.5, 0.25, 0.75, 0.375, 0.625, 0.125, 0.875, 0.03, 0.97)
 THIN, SAME_END = 2 * ONE, 10 * ONE
 # Points times carriers that are looked at together.
 AT_ONCE = 1 << 20
+# Which of some points (x, y) belong to a region.
+Inside = Callable[[Sequence[Point]], Sequence[bool]]
 
 
 @define
@@ -355,11 +365,6 @@ class Carriers:
         position = carrier.position(point)
         return dist(point, carrier.at(position)) if carrier.covers(position) else inf
 
-    def clearance(self, own: CutCarrier, point: Point, reach: float) -> float:
-        """The clearance of a point of a carrier; at most a reach in mm."""
-        near = self.near(np.array([point]), reach)
-        return min((self.distance(one, point) for _, one in near if one is not own), default=reach)
-
 
 @frozen
 class BorderPiece:
@@ -412,43 +417,42 @@ class BorderPiece:
         return (sin(quarter) / cos(quarter)) * (1.0 if self.forward else -1.0)
 
 
-def border_pieces(carriers: Sequence[CutCarrier], inside: Callable[[Point], bool]) -> list[BorderPiece]:
+def border_pieces(carriers: Sequence[CutCarrier], inside: Inside) -> list[BorderPiece]:
     """Pieces with a region on one side only.
 
     Parameters
     ----------
     carriers : see :func:`subdivide`; they hold the region's whole border.
-    inside : whether a point (x, y) that lies on no carrier belongs to the region.
+    inside : which of some points (x, y) that lie on no carrier belong to the region.
     """
     known = Carriers.of(carriers)
-    spans = [(carrier, low, high) for carrier in carriers for low, high in carrier.pieces()]
-    middles = np.array([carrier.at((low + high) / 2) for carrier, low, high in spans]).reshape(-1, 2)
+    every = [BorderPiece(carrier, low, high, True) for carrier in carriers for low, high in carrier.pieces()]
+    middles = np.array([piece.middle for piece in every]).reshape(-1, 2)
     crowded = {
         number
         for number, other in known.near(middles, 2 * BESIDE)
-        if other is not spans[number][0]
+        if other is not every[number].carrier
         and known.distance(other, (float(middles[number, 0]), float(middles[number, 1]))) <= 2 * BESIDE
     }
-    found, thin = list[BorderPiece | None](), dict[int, BorderPiece]()
-    for number, (carrier, low, high) in enumerate(spans):
-        piece = BorderPiece(carrier, low, high, True)
-        position, beside = (low + high) / 2, min(BESIDE, BESIDE_SHARE * piece.length)
-        if number in crowded:
-            position, clearance = clearest(piece, known, 2 * beside)
-            if clearance <= THIN:
-                thin[len(found)] = piece
-            beside = min(beside, clearance / 2)
-        left, right = sides(carrier, position, beside, inside)
-        found.append(evolve(piece, forward=left) if left != right else None)
+    clear = clearest({number: every[number] for number in sorted(crowded)}, known)
+    thin = {number: every[number] for number, (_, clearance) in clear.items() if clearance <= THIN}
+    places = []
+    for number, piece in enumerate(every):
+        position, clearance = clear.get(number, ((piece.low + piece.high) / 2, inf))
+        places.append((piece.carrier, position, min(beside_of(piece), clearance / 2)))
+    found = [
+        evolve(piece, forward=left) if left != right else None
+        for piece, (left, right) in zip(every, sides(places, inside), strict=True)
+    ]
     for group in twins(thin):
         first = thin[group[0]]
-        beside = min(BESIDE, BESIDE_SHARE * first.length)
-        left, right = sides(first.carrier, (first.low + first.high) / 2, beside, inside)
+        position = (first.low + first.high) / 2
+        ((left, right),) = sides([(first.carrier, position, beside_of(first))], inside)
         for number in group:
             found[number] = None
         if left != right:
             outer = evolve(first, forward=left)
-            (x, y), (nx, ny) = outer.middle, outer.carrier.left((first.low + first.high) / 2)
+            (x, y), (nx, ny) = outer.middle, outer.carrier.left(position)
             away = (-nx, -ny) if left else (nx, ny)
             number = max(
                 group,
@@ -460,26 +464,50 @@ def border_pieces(carriers: Sequence[CutCarrier], inside: Callable[[Point], bool
     return [piece for piece in found if piece is not None]
 
 
-def sides(
-    carrier: CutCarrier, position: float, beside: float, inside: Callable[[Point], bool]
-) -> tuple[bool, bool]:
-    """Whether points so far beside a position of a carrier, on its left and its right, are inside."""
-    (x, y), (nx, ny) = carrier.at(position), carrier.left(position)
-    left = inside((x + beside * nx, y + beside * ny))
-    return left, inside((x - beside * nx, y - beside * ny))
+def sides(places: Sequence[tuple[CutCarrier, float, float]], inside: Inside) -> list[tuple[bool, bool]]:
+    """Whether points beside positions of carriers, on the left and the right of each, are inside.
+
+    Parameters
+    ----------
+    places : carrier, position, and how far beside it in mm.
+    """
+    points: list[Point] = []
+    for carrier, position, beside in places:
+        (x, y), (nx, ny) = carrier.at(position), carrier.left(position)
+        points += [(x + beside * nx, y + beside * ny), (x - beside * nx, y - beside * ny)]
+    found = inside(points)
+    return list(zip(found[0::2], found[1::2], strict=True))
 
 
-def clearest(piece: BorderPiece, carriers: Carriers, enough: float) -> tuple[float, float]:
-    """The first position of a piece with enough clearance in mm, else that with the most; with its clearance."""
-    best = piece.low, -1.0
+def clearest(pieces: Mapping[int, BorderPiece], carriers: Carriers) -> dict[int, tuple[float, float]]:
+    """By a piece's number its first position that is clear enough, else that with the most clearance.
+
+    With it the clearance in mm, as far as it is looked at.
+    """
+    found: dict[int, tuple[float, float]] = {}
+    enough = {number: 2 * beside_of(piece) for number, piece in pieces.items()}
+    left = list(pieces)
     for share in SHARES:
-        position = piece.low + share * (piece.high - piece.low)
-        clearance = carriers.clearance(piece.carrier, piece.carrier.at(position), enough)
-        if clearance > best[1]:
-            best = position, clearance
-        if clearance >= enough:
+        if not left:
             break
-    return best
+        own = [pieces[number] for number in left]
+        places = [piece.low + share * (piece.high - piece.low) for piece in own]
+        points = [piece.carrier.at(place) for piece, place in zip(own, places, strict=True)]
+        clearances = [enough[number] for number in left]
+        # No piece asks for more than twice what is looked at beside it.
+        for row, other in carriers.near(np.array(points), 2 * BESIDE):
+            if other is not own[row].carrier:
+                clearances[row] = min(clearances[row], carriers.distance(other, points[row]))
+        for number, place, clearance in zip(left, places, clearances, strict=True):
+            if number not in found or clearance > found[number][1]:
+                found[number] = place, clearance
+        left = [number for number in left if found[number][1] < enough[number]]
+    return found
+
+
+def beside_of(piece: BorderPiece) -> float:
+    """How far beside a piece its two sides are looked at, in mm, where nothing is near."""
+    return min(BESIDE, BESIDE_SHARE * piece.length)
 
 
 def twins(pieces: Mapping[int, BorderPiece]) -> list[list[int]]:

@@ -287,6 +287,8 @@ class Tool:
     diameter : of the flute, in mm.
     name : what the workshop calls it.
     cutting : what is known of how it cuts; a file of a result has the forces instead.
+    has_holder : whether one of the cylinders is its holder; None where nobody says, and one of several
+        cylinders is taken for it.
 
     Raises
     ------
@@ -299,10 +301,13 @@ class Tool:
     diameter: float = field(converter=real)
     name: str = ""
     cutting: CuttingData = field(factory=CuttingData, eq=False)
+    has_holder: bool | None = field(default=None, eq=False)
 
     def __attrs_post_init__(self) -> None:
         if not self.cylinders or not 0.0 < self.diameter < inf or self.number < 0:
             raise InputError(f"tool {self.number} has no diameter: give one in mm.")
+        if self.has_holder is None:
+            object.__setattr__(self, "has_holder", len(self.cylinders) > 1)
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data as in a result file."""

@@ -45,6 +45,15 @@ class Pose:
     y: float
 
     @property
+    def written_deg(self) -> float:
+        """The turn in degrees as people write it: up to an eighth of a turn clockwise is a negative angle.
+
+        >>> Pose(359.75, 0.0, 0.0).written_deg, Pose(270.0, 0.0, 0.0).written_deg
+        (-0.25, 270.0)
+        """
+        return self.theta_deg - 360.0 if self.theta_deg > 315.0 else self.theta_deg
+
+    @property
     def inverse(self) -> Pose:
         """The way back, from the vise frame to the workpiece's."""
         x, y = rotated(-self.x, -self.y, -radians(self.theta_deg))

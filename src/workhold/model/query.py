@@ -6,11 +6,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from math import isfinite
-from typing import Any
+from typing import Any, cast
 
 from attrs import evolve, field, frozen
 
-from workhold.errors import InputError
+from workhold.errors import InputError, refuse_kind
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Box
 from workhold.limits import counting_number, real, refuse_long, refuse_strong
@@ -45,9 +45,9 @@ def restrictions_of(value: Restrictions | None) -> Restrictions:
     return Restrictions() if value is None else value
 
 
-def tolerance_of(value: Tolerance | None) -> Tolerance:
-    """A tolerance, or the usual one for None."""
-    return Tolerance() if value is None else value
+def tolerance_given(value: Tolerance | None) -> Tolerance:
+    """A tolerance as it is given; None until the toolkit is known, which may have one."""
+    return cast(Tolerance, value)
 
 
 def loads_of(loads: Iterable[Load]) -> tuple[Load, ...]:
@@ -67,8 +67,7 @@ KINDS: dict[str, tuple[type, str]] = {
 def refuse_other_kinds(query: Query) -> None:
     """Refuses parts of a query whose type is wrong."""
     for name, (kind, remedy) in KINDS.items():
-        if not isinstance(value := getattr(query, name), kind):
-            raise InputError(f"the {name} cannot be {value!r}: {remedy}.")
+        refuse_kind(getattr(query, name), kind, f"the {name}", remedy)
     loads: tuple[Any, ...] = query.loads
     for load in loads:
         if not isinstance(load, Load):
@@ -90,8 +89,9 @@ class Query:
         restriction.
     ranking : figures of quality, the first counting most, named as in ``model.quality``. None is the usual
         order, see :data:`DEFAULT_RANKING`.
-    tolerance : how far pegs and faces may be off, for the location error; None is the usual one. The
-        workpiece's departure is added to that of the faces.
+    tolerance : how far pegs and faces may be off, for the location error; None is the toolkit's own where it
+        has one, as presets have, or else the usual one. The workpiece's departure is added to that of the
+        faces.
     loads : what the fixture must resist, for the load reaction.
     best : seek and list only this many, the best ones; None lists all.
     jaw_force : in N, with which the vise is closed, to warn of pegs that let go; None where it is open.
@@ -124,7 +124,7 @@ class Query:
     contact_margin: float = 0.0
     restrictions: Restrictions = field(default=None, converter=restrictions_of)
     ranking: tuple[str, ...] = field(default=None, converter=words)
-    tolerance: Tolerance = field(default=None, converter=tolerance_of)
+    tolerance: Tolerance = field(default=None, converter=tolerance_given)
     loads: tuple[Load, ...] = field(default=(), converter=loads_of)
     best: int | None = None
     jaw_force: float | None = None
@@ -137,6 +137,9 @@ class Query:
     thickness: float | None = None
 
     def __attrs_post_init__(self) -> None:
+        given: Any = self.tolerance
+        if given is None:
+            object.__setattr__(self, "tolerance", getattr(self.toolkit, "tolerance", None) or Tolerance())
         refuse_other_kinds(self)
         object.__setattr__(self, "workpiece", met_by(self.workpiece, self.toolkit))
         object.__setattr__(self, "tolerance", self.tolerance.with_departure(self.workpiece.departure))

@@ -25,11 +25,20 @@ from workhold.geometry.loop import (
     reversed_vertices,
     signed_area,
 )
-from workhold.geometry.segment import Segment
+from workhold.geometry.segment import Box, Segment
 from workhold.limits import real, refuse_long, refuse_strong
 from workhold.model.dowels import Fit
 
-__all__ = ["ANY_DIRECTION", "Load", "Restrictions", "Tolerance", "Zone", "circle_zone", "polygon_zone"]
+__all__ = [
+    "ANY_DIRECTION",
+    "Load",
+    "Restrictions",
+    "Tolerance",
+    "Zone",
+    "circle_zone",
+    "far_loads",
+    "polygon_zone",
+]
 
 ANY_DIRECTION = (0.0, 360.0)
 
@@ -120,6 +129,29 @@ class Load:
             raise InputError(
                 "a load with neither force nor moment does nothing: give force=... or moment=...."
             )
+
+
+def far_loads(loads: Sequence[Load], part: Box) -> list[str]:
+    """Remarks on the loads that act farther from a part's box than the part is large, one sentence each.
+
+    Examples
+    --------
+    >>> far_loads([Load(points=[(9, 0)], force=1), Load(points=[(900, 0)], force=1)], Box(0, 0, 30, 40))
+    ['Load 2 acts at (900, 0), 870 mm from the part: is its place in mm of the drawing?']
+    """
+    remarks, size = [], hypot(part.x1 - part.x0, part.y1 - part.y0)
+    for number, load in enumerate(loads, 1):
+        away = [
+            (hypot(max(part.x0 - x, x - part.x1, 0.0), max(part.y0 - y, y - part.y1, 0.0)), x, y)
+            for x, y in load.points
+        ]
+        far, x, y = max(away, default=(0.0, 0.0, 0.0))
+        if far > size:
+            called = f"Load {number}" + (f", {load.name}," if load.name else "")
+            remarks.append(
+                f"{called} acts at ({x:g}, {y:g}), {far:.0f} mm from the part: is its place in mm of the drawing?"
+            )
+    return remarks
 
 
 Angles = tuple[float, float]

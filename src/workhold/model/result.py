@@ -9,6 +9,7 @@ from typing import Any, overload
 from attrs import define, evolve, field
 
 from workhold.delegates import delegate
+from workhold.errors import refuse_kind
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture, Listed
 from workhold.model.fixture_table import BLOCK, FixtureTable, fixture_at, fixtures_of
@@ -61,6 +62,7 @@ class Result:
     seating: tuple[Seating, ...] = field(default=(), hash=False)
 
     def __attrs_post_init__(self) -> None:
+        refuse_kind(self.query, Query, "the query", "give a Query, such as workhold.Query(part, toolkit)")
         notes, asked = self.reasons, asked_note(self.query.restricted_by)
         if asked and self.complete and notes and not any(self.found.values()):
             notes = (*(note for note in notes if note != asked), asked)

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from workhold.conventions import READING, SHORTEST
 from workhold.delegates import delegate
-from workhold.errors import InputError, encodable
+from workhold.errors import InputError, encodable, refuse_kind
 from workhold.fixels.carrier import WALL
 from workhold.geometry.hull import HullEdge, hull_edges
 from workhold.geometry.loop import (
@@ -46,6 +46,12 @@ def numbers_of(loops: Sequence[NDArray[np.float64]]) -> tuple[bytes, ...]:
     return tuple((loop + 0.0).tobytes() for loop in loops)
 
 
+def checked_name(name: Any) -> str:
+    """The name of a part; refuses what is no text."""
+    refuse_kind(name, str, "the name of a part", "give text")
+    return encodable(name)
+
+
 @define(frozen=True, slots=False, repr=False)
 class Workpiece:
     """A prismatic part, known by its silhouette. Build it with :meth:`from_loops` or :func:`workhold.load`.
@@ -72,7 +78,7 @@ class Workpiece:
     [0, 1, 2, 3]
     """
 
-    name: str = field(converter=encodable)
+    name: str = field(converter=checked_name)
     loops: tuple[NDArray[np.float64], ...] = field(eq=numbers_of)
     remarks: tuple[str, ...] = field(default=(), eq=False)
     departure: float = 0.0
@@ -80,9 +86,11 @@ class Workpiece:
     outlines: tuple[tuple[str, Workpiece], ...] = ()
 
     def __attrs_post_init__(self) -> None:
+        refuse_kind(self.loops, Sequence, "the loops", "give a tuple of arrays")
         if self.solid is not None:
             self.solid.for_segments(sum(len(loop) for loop in self.loops))
         for loop in self.loops:
+            refuse_kind(loop, np.ndarray, "a loop", "give an array (N, 3) of vertices: x, y and bulge")
             loop.setflags(write=False)
 
     def __reduce__(self) -> tuple[Any, ...]:

@@ -128,7 +128,7 @@ def entries_table(result: Result, shown: Entries) -> Markup:
                 " ".join(
                     unit.number(setting.length, unit.decimals) for setting in settings_of(fixture, toolkit)
                 ),
-                rounded(fixture.pose.theta_deg, 3),
+                rounded(fixture.pose.written_deg, 3),
                 *(
                     (counted_text if figure in ranked[:-1] else figure_text)(
                         figure, known.get(figure.key, nan), unit

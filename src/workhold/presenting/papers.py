@@ -162,8 +162,8 @@ def save_sheet(
     if ending in MODEL_ENDINGS:
         write_model(path, listed.result, listed.row + 1, settings, clearance)
         return
-    paper = settings.setdefault("paper", "a4")
-    if paper not in PAPERS:
+    paper = settings.get("paper", "")
+    if paper and paper not in PAPERS:
         raise InputError(f"the paper {str(paper)[:40]!r} is not known: choose {' or '.join(PAPERS)}.")
     settings["jaw"] = jaw_stiffness(settings.get("jaw", "screw"))
     settings.setdefault("day", date.today())

@@ -15,7 +15,7 @@ from attrs import evolve, frozen
 
 from workhold.contact.curves import center_numbers
 from workhold.contact.problem import Problem, Progress
-from workhold.errors import InputError
+from workhold.errors import InputError, refuse_kind
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.base.feature import IS_ARC
@@ -165,6 +165,7 @@ def answer(
     >>> len(answer(query)), answer(query).query == query
     (3, True)
     """
+    refuse_kind(query, Query, "the query", "give a Query, such as workhold.Query(part, toolkit)")
     workers = thread_count(counting_number("threads", threads))
     if query.seating is not None:
         search = partial(answer, threads=workers, preview=preview)

@@ -14,6 +14,7 @@ import numpy as np
 from attrs import define, evolve, field
 from numpy.typing import NDArray
 
+from workhold.errors import refuse_kind
 from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.seating.columns import CONFIG, CONTACTS, FORCE, PEG, PIECE, SEPARATION
 from workhold.limits import thread_count
@@ -399,6 +400,7 @@ def seatings(result: Result, fixtures: Sequence[Fixture] | int = 1, *, with_cage
     >>> round(seating.capture_opening, 3), round(seating.sticking_friction, 3)
     (0.03, 0.083)
     """
+    refuse_kind(result, Result, "the result", "give a Result, as workhold.design and workhold.open make")
     chosen = result[:fixtures] if isinstance(fixtures, int) else fixtures
     if not result.toolkit.closes_at_once:
         for fixture in chosen:

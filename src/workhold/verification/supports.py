@@ -24,8 +24,8 @@ from workhold.errors import InputError
 from workhold.files.result.parts import checked_head
 from workhold.files.supports_forms import (
     FORMAT,
-    ClampFiguresPart,
-    TriplePart,
+    ReadFigures,
+    ReadTriple,
     read_supports_part,
 )
 from workhold.fixels.contacts import CLAMP_TIP
@@ -167,7 +167,7 @@ class SupportsJudge(SupportPlaces):
         """What each support takes of a unit of clamp force at a point."""
         return np.asarray((solved @ self.right_side([*point, 0.0], [0, 0, -1.0], [0, 0, 0], 0.0))[0])
 
-    def faults(self, part: TriplePart) -> Iterator[str]:
+    def faults(self, part: ReadTriple) -> Iterator[str]:
         """Everything that speaks against a triple, one sentence each, without a full stop."""
         holes = [(str(a), b, c) for a, b, c in part.holes]
         names = {plate.name for plate in self.toolkit.plates}
@@ -190,12 +190,12 @@ class SupportsJudge(SupportPlaces):
             return
         yield from self.figure_faults(part, supports)
 
-    def figure_faults(self, part: TriplePart, supports: Array) -> Iterator[str]:
+    def figure_faults(self, part: ReadTriple, supports: Array) -> Iterator[str]:
         """Whether figures are those of the balance, and no clamp place that is tried is better."""
         solved = self.balances(supports)
         least, most = self.extremes(solved) if self.loads else (np.zeros(3), np.zeros(3))
         jaw = solved @ self.right_side([0, 0, 0], [0, 0, 0], [0, 0, 0], 1.0)
-        places = [("best", part.best, part.best.at)]
+        places: list[tuple[str, ReadFigures, Sequence[float] | None]] = [("best", part.best, part.best.at)]
         if part.given is not None:
             places.append(("given", part.given, list(self.request.point or ())))
         for name, figures, at in places:
@@ -230,7 +230,7 @@ class SupportsJudge(SupportPlaces):
             yield f"the arm is not {part.arm:.9g}"
         yield from self.better_places(part, supports, solved, least)
 
-    def better_places(self, part: TriplePart, supports: Array, solved: Array, least: Array) -> Iterator[str]:
+    def better_places(self, part: ReadTriple, supports: Array, solved: Array, least: Array) -> Iterator[str]:
         """A fault where a place of a grid over the triangle is better than the one written."""
         for i, j in product(range(1, GRID), repeat=2):
             if i + j >= GRID:
@@ -251,7 +251,7 @@ def differs(written: float | None, own: float) -> bool:
     return written is None or abs(written - own) > AGREEMENT * max(1.0, abs(own))
 
 
-def other_figures(name: str, figures: ClampFiguresPart, known: dict[str, float]) -> Iterator[str]:
+def other_figures(name: str, figures: ReadFigures, known: dict[str, float]) -> Iterator[str]:
     """A fault for each figure that is another one."""
     for key, value in known.items():
         if differs(getattr(figures, key), value):

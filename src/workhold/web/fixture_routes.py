@@ -203,7 +203,7 @@ async def paper(
     kind: Literal[
         "sheet.pdf", "sheet.svg", "setup.dxf", "setup.step", "picture.svg", "pins.csv", "assembly.glb"
     ],
-    paper: Literal["a4", "letter"] = "a4",
+    paper: Literal["", "a4", "letter"] = "",
     unit: UnitName = "mm",
     jaw_force: JawForce = None,
     jaw: Jaw = "screw",

@@ -8,7 +8,9 @@ from pathlib import Path
 import ezdxf
 import numpy as np
 import pytest
+from attrs import evolve
 
+from workhold.files.budget import LIMITS, Budget
 from workhold.files.part.load import read_workpiece
 from workhold.files.part.survey import survey
 from workhold.files.questions import worded
@@ -145,3 +147,24 @@ def test_no_mark_is_left_in_any_sentence(tmp_path: Path) -> None:
         words = [seen.refusal, *(seen.loaded.remarks if seen.loaded else ())]
         assert [worded(one, None) for one in words] == words
     assert np.isfinite(survey(path, called=CALLED).size or np.nan).all()
+
+
+@pytest.mark.parametrize("kind", ["dxf", "svg"])
+def test_a_drawing_that_asks_for_too_much_is_read_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kind: str
+) -> None:
+    """No second budget is spent on it, nor a third; it is refused as ever."""
+    path = tmp_path / f"part.{kind}"
+    if kind == "dxf":
+        drawn(path)
+    else:
+        path.write_text('<svg xmlns="http://www.w3.org/2000/svg" width="9mm" height="9mm"><g/><g/><g/></svg>')
+    monkeypatch.setitem(LIMITS, kind, evolve(LIMITS[kind], most_elements=2))
+    begun = []
+    usual = Budget.__init__
+    monkeypatch.setattr(
+        Budget, "__init__", lambda self, *args: (begun.append(args[0].what), usual(self, *args))[1]
+    )
+    seen = survey(path, called=CALLED)
+    assert seen.loaded is None and "more than the 2" in seen.refusal and seen.size is None
+    assert begun.count(LIMITS[kind].what) == 1

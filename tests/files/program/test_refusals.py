@@ -5,9 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from attrs import evolve
 from program_examples import HEAD, MILL, read_text
 
 from workhold.errors import InputError
+from workhold.files.budget import LIMITS
 from workhold.files.program.reader import read_program_with_calls
 from workhold.model.program import Program
 
@@ -148,8 +150,8 @@ def test_files_that_are_none_are_refused(tmp_path: Path) -> None:
 
 def test_too_many_moves_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A cycle that repeats does not fill the memory."""
-    monkeypatch.setattr("workhold.files.program.path.MOST_MOVES", 100)
-    with pytest.raises(InputError, match="line 4: the program has more than 100 moves"):
+    monkeypatch.setitem(LIMITS, "program", evolve(LIMITS["program"], most_elements=100))
+    with pytest.raises(InputError, match=r"line 4: the file has more than the 100 moves.*: split it"):
         read_text(tmp_path, START + "G91 G81 X1 R-18 Z-5 L9000\n")
 
 

@@ -69,7 +69,7 @@ def test_what_is_not_a_plain_subprogram_is_refused(tmp_path: Path, text: str, li
 def test_calls_in_calls_end(tmp_path: Path) -> None:
     """Repeats of repeats come to more blocks than a program may have."""
     calls = "".join(f"M98 P{number} L9999\nM99\nO{number}\n" for number in range(3, 7))
-    with pytest.raises(InputError, match="with its subprograms the program has more than 2,000,000 blocks"):
+    with pytest.raises(InputError, match=r"line \d+: the file has more than the 2,000,000 moves, or blocks"):
         read_text(tmp_path, f"{HEAD}M98 P2 L9999\nM30\nO2\n{calls}F1\nM99\n")
 
 

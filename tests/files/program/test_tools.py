@@ -85,6 +85,19 @@ def test_lengths_are_in_the_unit_that_is_said_or_that_of_the_program(tmp_path: P
     assert read_text(tmp_path, program, tools={1: 0.5}).tools[1].diameter == 12.7
 
 
+def test_a_holder_as_wide_as_its_tool_is_known(tmp_path: Path) -> None:
+    """What a table says of a holder is known, whatever its width and length; a shank is no holder."""
+    program, words = HEAD + "G0 X0 Y0 Z9\n", "The holder of T1 is not known"
+    for further, is_known in (
+        ("holder_diameter = 10, holder_length = 30", True),
+        ("holder_diameter = 40", True),
+        ("flute_length = 20, shank_diameter = 8", False),
+    ):
+        tools = table(tmp_path, f"tool.1 = {{diameter = 10, stickout = 40, {further}}}")
+        read = read_text(tmp_path, program, tools=tools)
+        assert (words not in "\n".join(read.notes)) == is_known
+
+
 def test_the_table_of_linuxcnc(tmp_path: Path) -> None:
     """T, P, D and Z in any order; Z says nothing of the shape, and tools without a diameter are left out."""
     lines = ["T1 P1 D10 Z50.2 ;end mill", "D3.5P2Z+1T7", "P9 T9 Z4 ; probe", "Z-.5 P3 T+12 D+8."]

@@ -212,7 +212,7 @@ def test_sections_lie_within_and_fill(name: str, shape: Any) -> None:
             ]
         )
         within = np.array([bool(is_inside(x, y, rows)) for x, y in points])
-        covered = np.array([solid.material.reaches_into((float(x), float(y)), -1.0, high) for x, y in points])
+        covered = np.array(solid.material.reaches_into([(float(x), float(y)) for x, y in points], -1.0, high))
         assert (within == covered).all()
         size = area(solid, -1.0, high)
         assert size >= before - 1e-9

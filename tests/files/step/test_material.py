@@ -91,7 +91,7 @@ def test_faces_met_twice_or_not_at_all(monkeypatch: pytest.MonkeyPatch, passed: 
     """Where a line meets two neighbours on their edge, or a face too much, each range is asked for by itself."""
     shape: Any = box(60, 40, 14)
     faces = solid_faces(shape)
-    monkeypatch.setattr(Material, "heights", lambda self, point: passed)
+    monkeypatch.setattr(Material, "heights", lambda self, point, near: passed)
     intervals = Material(shape, faces, edge_curves(faces)).intervals((30.0, 20.0))
     assert (intervals[0][0], intervals[-1][1]) == (0.0, 14.0)
     assert all(a[1] == b[0] for a, b in pairwise(intervals))

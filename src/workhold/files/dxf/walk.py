@@ -16,7 +16,7 @@ from attrs import evolve, frozen
 
 from workhold.conventions import LEVEL
 from workhold.errors import InputError, plain, shortened
-from workhold.files.budget import LIMITS, Budget
+from workhold.files.budget import Budget, OverBudgetError
 from workhold.files.dxf.entities import REFUSED, SHAPES, RawChain, seen_from_below
 from workhold.files.outline.chain import Chain, Placement, counted, listed
 from workhold.files.outline.curves import CurveReader
@@ -25,9 +25,6 @@ from workhold.files.questions import LAYERS
 __all__ = ["BlockNesting", "DxfWalk"]
 
 T = TypeVar("T")
-# Blocks inside each other, and repetitions of one.
-DEEPEST = LIMITS["dxf"].deepest or 0
-MOST_REPEATED = LIMITS["dxf"].most_elements or 0
 # The colour of what has that of its layer.
 BY_LAYER = 256
 
@@ -192,17 +189,20 @@ class DxfWalk:
         if block is None:
             self.missing_blocks[name] += 1
             return
-        if name.casefold() in nest.blocks or len(nest.blocks) >= DEEPEST:
+        if name.casefold() in nest.blocks:
             raise InputError(f"{label} inserts block '{name}', which contains itself: repair the drawing.")
         said_of(label, seen_from_below, insert)
         if insert.dxf.get("invisible", 0):
             self.hidden["made invisible"] += 1
             return
         rows, columns = max(insert.dxf.row_count, 1), max(insert.dxf.column_count, 1)
-        if rows * columns > MOST_REPEATED:
-            raise InputError(
-                f"{label} repeats its block {rows * columns} times: export the part's outline only."
-            )
+        try:
+            # An empty block costs something too.
+            self.budget.spend(rows * columns)
+        except OverBudgetError as error:
+            if rows * columns == 1:
+                raise
+            raise OverBudgetError(f"{label} repeats its block {rows * columns:,} times: {error}") from error
         inner = evolve(
             nest,
             layer=layer,
@@ -214,9 +214,8 @@ class DxfWalk:
             placement = nest.placement.after(block_placement(single))
             if placement.flat:
                 raise InputError(f"{label} has a scale of zero: correct it.")
-            # An empty block costs something too.
-            self.budget.spend()
-            self.visit_all(block, evolve(inner, placement=placement))
+            with self.budget.nested(label):
+                self.visit_all(block, evolve(inner, placement=placement))
 
     def refuse_missing_layers(self) -> None:
         """Refuses chosen layers on which there is no outline entity.

@@ -12,8 +12,8 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from math import hypot
 from pathlib import Path
 from typing import Any
@@ -211,16 +211,35 @@ def survey(path: Path, *, called: Mapping[str, str] | None = None, **options: An
         For a file that cannot be opened at all.
     """
     content = read_bytes(path)
-    loaded, sentence = None, ""
+    loaded, sentence, is_over = None, "", False
     try:
         # Questions keep their marks, so that they can be found in the sentence.
         loaded = read_workpiece(path, **options, called=MARKS)
     except InputError as error:
-        sentence = str(error)
+        sentence, is_over = str(error), OverBudgetError.is_behind(error)
     asked = tuple(dict.fromkeys(mark[1:-1] for mark in MARK.findall(sentence)))
     if loaded is not None:
         loaded = evolve(loaded, remarks=tuple(worded(remark, called) for remark in loaded.remarks))
-    unit = ANY_UNIT if UNIT in sentence else None
+    told = Survey(loaded, worded(sentence, called), asked, None, (), (), ())
+    if not is_over:
+        with suppress(OverBudgetError):
+            told = seen(told, path, content, ANY_UNIT if UNIT in sentence else None, options)
+    return told
+
+
+def seen(told: Survey, path: Path, content: bytes, unit: str | None, options: Mapping[str, Any]) -> Survey:
+    """A survey with what is drawn in the file, for which it is read again.
+
+    Parameters
+    ----------
+    unit : in which it is read, where its own is asked.
+    options : as in :func:`survey`.
+
+    Raises
+    ------
+    OverBudgetError
+        Where that takes too much.
+    """
     kind = ""
     with suppress(InputError):
         kind = kind_of(path, content)
@@ -231,11 +250,11 @@ def survey(path: Path, *, called: Mapping[str, str] | None = None, **options: An
     size = size_of(chains)
     gaps, parts = gaps_and_parts(chains, options.get("join_tolerance", 1e-3), size)
     layers = tuple[DrawnLayer, ...]()
-    with suppress(InputError):
+    with going_on():
         drawn = drawn_layers(path, unit or options.get("unit"), None)[0] if kind == "dxf" else ()
         layers = tuple(layer for layer in drawn if layer.chains)
-    if loaded is not None:
-        parts, solids = loaded.parts, loaded.solids
+    if told.loaded is not None:
+        parts, solids = told.loaded.parts, told.loaded.solids
     else:
         solids = solids_of(content) if kind == "step" else ()
     pixels = None
@@ -243,7 +262,29 @@ def survey(path: Path, *, called: Mapping[str, str] | None = None, **options: An
         # A unit in which a pixel is a millimetre, so that the size is a number of them.
         drawn_in_pixels = drawing_of(kind, path, content, {**options, "unit": ONE_PIXEL})
         pixels = size_of(cleaned(drawn_in_pixels.chains).chains)
-    return Survey(loaded, worded(sentence, called), asked, size, chains, parts, gaps, layers, solids, pixels)
+    return evolve(
+        told,
+        size=size,
+        chains=chains,
+        parts=parts,
+        gaps=gaps,
+        layers=layers,
+        solids=solids,
+        pixels=pixels,
+    )
+
+
+@contextmanager
+def going_on() -> Iterator[None]:
+    """Passes over what is refused, but not over what takes too much: that is not tried once more.
+
+    Raises OverBudgetError then.
+    """
+    try:
+        yield
+    except InputError as error:
+        if OverBudgetError.is_behind(error):
+            raise OverBudgetError(str(error)) from error
 
 
 MARKS = {mark[1:-1]: mark for mark in re.findall(r"<\w+>", MARK.pattern)}
@@ -252,7 +293,7 @@ MARKS = {mark[1:-1]: mark for mark in re.findall(r"<\w+>", MARK.pattern)}
 def drawing_of(kind: str, path: Path, content: bytes, options: Mapping[str, Any]) -> Drawing:
     """All that is drawn in a DXF or SVG file, nothing where it cannot be read, or holds no drawing."""
     taken = {name: options.get(name) for name in ("unit", "fit")}
-    with suppress(InputError):
+    with going_on():
         if kind == "dxf":
             from workhold.files.dxf.reader import read_dxf
 

@@ -17,7 +17,7 @@ from attrs import define, field, frozen
 
 from workhold.conventions import ARC_RADII
 from workhold.errors import InputError, listed
-from workhold.files.budget import LIMITS
+from workhold.files.budget import LIMITS, Budget
 from workhold.files.program.words import AT_FEED_UP, NOSE, Modes
 from workhold.files.questions import START
 from workhold.limits import MOST_LENGTH
@@ -37,7 +37,6 @@ __all__ = [
 AXES = "XYZ"
 # Digits in mm to which places are rounded, so that sums of increments are the places that they mean.
 DIGITS = 9
-MOST_MOVES = LIMITS["program"].most_elements or 0
 Place = tuple[float, float, float]
 # A place of which not every coordinate needs to be known.
 Reached = list[float | None]
@@ -61,6 +60,7 @@ class PathWriter:
     nose : lines of rapid moves to a height of the spindle's nose.
     has_heights : whether the program gives any height.
     offset_used : code of the zero in which the moves are.
+    budget : what the moves may still take.
     """
 
     modes: Modes = field(factory=Modes)
@@ -72,6 +72,7 @@ class PathWriter:
     nose: list[int] = field(factory=list)
     has_heights: bool = True
     offset_used: str | None = None
+    budget: Budget = field(factory=lambda: Budget(LIMITS["program"]))
 
     def scale(self) -> float:
         """Millimetres in the unit in force.
@@ -213,8 +214,7 @@ class PathWriter:
             feed = modes.feed * (1.0 if modes.unit is None else modes.unit.millimetres)
             # The inverse time of G93 counts for a block, not for its spans.
             feed *= {"94": 1.0, "95": modes.spindle, "93": 0.0}[modes.feed_kind]
-        if len(self.rows) >= MOST_MOVES:
-            raise InputError(f"the program has more than {MOST_MOVES:,} moves: split it.")
+        self.budget.spend()
         tool = -1 if modes.tool is None else modes.tool
         self.rows.append((self.line, tool, cutting, start, end, bulge, feed, modes.spindle))
 

@@ -16,7 +16,7 @@ from workhold.files.budget import LIMITS
 from workhold.files.program.interpreter import LAST_DIGIT, Interpreter
 from workhold.files.program.path import PathWriter, Place
 from workhold.files.program.subprograms import with_calls
-from workhold.files.program.tool_tables import SHAPE, commented_tools, is_bare, read_tools, tool_of_fields
+from workhold.files.program.tool_tables import SHAPE, commented_tools, read_tools, tool_of_fields
 from workhold.files.program.words import UNITS, VISITS, ProgramBlock, ProgramText, code_of, program_text
 from workhold.files.questions import START, worded
 from workhold.files.text import read_limited
@@ -275,7 +275,7 @@ def tools_used(
     missing = sorted(set(used) - set(known))
     if missing:
         raise InputError(f"{path}: {lacking(sorted(set(used)), missing)}")
-    bare = [f"T{number}" for number in sorted(set(used)) if is_bare(known[number])]
+    bare = [f"T{number}" for number in sorted(set(used)) if not known[number].has_holder]
     if bare:
         notes.append(f"The holder of {listed(bare)} is not known, and not looked at.")
     return {number: known[number] for number in sorted(set(used))}, notes

@@ -15,7 +15,7 @@ from collections.abc import Iterator, Sequence
 from attrs import define, evolve
 
 from workhold.errors import InputError
-from workhold.files.budget import LIMITS
+from workhold.files.budget import LIMITS, Budget
 from workhold.files.program.words import CALLS, RETURN, SWITCHED_END, ProgramBlock, ProgramText, code_of
 
 __all__ = ["with_calls"]
@@ -23,7 +23,6 @@ __all__ = ["with_calls"]
 # Calls within calls; controls take from 4 to 10.
 MOST_CALLS = 10
 MOST_REPEATS = 9999
-MOST_BLOCKS = LIMITS["program"].most_elements or 0
 # Letters of words that may stand beside a call, and of those that belong to it.
 BESIDE, OF_CALLS = frozenset("GMSF"), frozenset("PL")
 Starts = dict[tuple[str, float], list[int]]
@@ -77,14 +76,14 @@ def run_blocks(blocks: Sequence[ProgramBlock], optional: set[int]) -> Iterator[P
     """Yields blocks as they run, without calls and M99, up to the program's end."""
     running: list[Running] = []
     starts = starts_of(blocks)
-    index = count = 0
+    budget, index = Budget(LIMITS["program"]), 0
     while index < len(blocks):
         block = blocks[index]
-        index, count = index + 1, count + 1
-        if count > MOST_BLOCKS:
-            raise InputError(
-                f"line {block.line}: with its subprograms the program has more than {MOST_BLOCKS:,} blocks: split it."
-            )
+        index += 1
+        try:
+            budget.spend()
+        except InputError as error:
+            raise InputError(f"line {block.line}: {error}") from error
         if running and block.program != running[-1].program:
             raise running[-1].refuse_endless()
         try:

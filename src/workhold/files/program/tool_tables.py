@@ -32,7 +32,7 @@ from workhold.limits import real
 from workhold.model.cutting_tool import CuttingData, Cylinder, Tool
 from workhold.units import Unit, unit_named
 
-__all__ = ["FIELDS", "SHAPE", "commented_tools", "is_bare", "read_tools", "tool_of_fields"]
+__all__ = ["FIELDS", "SHAPE", "commented_tools", "read_tools", "tool_of_fields"]
 
 LENGTHS = ("diameter", "flute_length", "shank_diameter", "stickout", "holder_diameter", "holder_length")
 # How it cuts; flutes are teeth. A corner or a point is inside the flat end as which every tool is taken.
@@ -108,7 +108,8 @@ def tool_of_fields(number: int, fields: Mapping[str, Any], place: str, unit: Uni
     try:
         cutting = cutting_of(fields, unit)
         name = str(fields.get("name") or "")
-        return Tool(number, stack(lengths, place), lengths["diameter"], name, cutting)
+        cylinders, has_holder = stack(lengths, place), "holder_diameter" in lengths
+        return Tool(number, cylinders, lengths["diameter"], name, cutting, has_holder)
     except InputError as error:
         raise InputError(str(error) if str(error).startswith(place) else f"{place}: {error}") from error
 
@@ -169,13 +170,6 @@ def stack(lengths: Mapping[str, float], place: str) -> list[Cylinder]:
         end = reach + lengths.get("holder_length", ENDLESS)
         found.append(Cylinder(reach, end, lengths["holder_diameter"] / 2))
     return found
-
-
-def is_bare(tool: Tool) -> bool:
-    """Whether nothing is known of a tool's holder."""
-    return (
-        len({one.radius for one in tool.cylinders}) == 1 or max(one.high for one in tool.cylinders) == ENDLESS
-    )
 
 
 def read_tools(path: str | Path, unit: Unit) -> tuple[dict[int, Tool], bool]:

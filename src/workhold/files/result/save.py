@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from workhold.errors import InputError
+from workhold.errors import InputError, refuse_kind
 from workhold.files.atomic import text_file
 from workhold.files.replacing import refuse_other_ending, refuse_output
 from workhold.model.result import Result
@@ -28,6 +28,7 @@ def save(result: Result, path: str | Path, form: str | None = None, *, overwrite
     InputError
         When the form is not known or not that of the name, and when the file cannot be written or replaced.
     """
+    refuse_kind(result, Result, "the result", "give a Result, as workhold.design and workhold.open make")
     form = Path(path).suffix[1:].lower() if form is None else form
     if form not in FORMS:
         raise InputError(f"{path}: {form!r} is no form of a result file: choose one of {', '.join(FORMS)}.")

@@ -263,7 +263,8 @@ def toolkit_entry(toolkit: Toolkit) -> dict[str, Any]:
 
 def toolkit_fields(toolkit: Toolkit) -> dict[str, Any]:
     """The fields of a toolkit as they are written: lengths in mm, holes by name, their number first."""
-    values = asdict(toolkit, recurse=False)  # type: ignore[arg-type]
+    # The tolerance stands among what was asked.
+    values = asdict(toolkit, recurse=False, filter=lambda one, _: one.name != "tolerance")  # type: ignore[arg-type]
     fields = {name: written(value) for name, value in values.items()}
     silent = {row.name for row in toolkit.table.fields if row.form in SILENT} | set(HARDWARE)
     fields = {name: value for name, value in fields.items() if name not in silent or value is not None}

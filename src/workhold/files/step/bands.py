@@ -15,8 +15,9 @@ steep : where an edge stands upright, or so nearly that rounding hides it, so th
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 from itertools import pairwise
 from math import hypot, pi, tau
@@ -255,14 +256,14 @@ class Branch:
         """The z in mm at a place; beyond an end that of the end."""
         if self.level is not None:
             return self.level
-        places, heights = self.places, self.heights
+        places, heights = self.listed
         if place <= places[0]:
-            return float(heights[0])
+            return heights[0]
         if place >= places[-1]:
-            return float(heights[-1])
-        k = int(np.searchsorted(places, place)) - 1
-        first, last = float(heights[k]), float(heights[k + 1])
-        share = (place - float(places[k])) / float(places[k + 1] - places[k])
+            return heights[-1]
+        k = bisect_left(places, place) - 1
+        first, last = heights[k], heights[k + 1]
+        share = (place - places[k]) / (places[k + 1] - places[k])
         if len(self.edge.points) == 2 or abs(last - first) <= ONE_HEIGHT or share in (0.0, 1.0):
             return first + share * (last - first)
         if place not in self.known:
@@ -270,23 +271,26 @@ class Branch:
         return self.known[place]
 
     @cached_property
-    def located(self) -> Callable[[float, float], float]:
-        """The position on the carrier of a point x, y in mm."""
-        segment = self.carrier
-        if isinstance(segment, Arc):
-            return lambda x, y: segment.parameter((x, y))
-        (px, py), (tx, ty) = segment.middle, segment.tangent
-        return lambda x, y: (x - px) * tx + (y - py) * ty
+    def listed(self) -> tuple[list[float], list[float]]:
+        """Its places and heights as plain numbers, of which one is asked for much faster."""
+        return self.places.tolist(), self.heights.tolist()
 
     def refined(self, k: int, place: float) -> float:
         """The z in mm at which a curved edge passes a place between its points k and k + 1."""
-        curve, located, near = self.edge.curve, self.located, float(self.places[k])
-        is_line = isinstance(self.carrier, Line)
+        at, carrier, near = self.edge.curve.Value, self.carrier, float(self.places[k])
+        if isinstance(carrier, Line):
+            (px, py), (tx, ty) = carrier.middle, carrier.tangent
 
-        def value(parameter: float) -> float:
-            point = curve.Value(parameter)
-            found = located(point.X(), point.Y())
-            return found - place if is_line else near + (found - near + pi) % tau - pi - place
+            def value(parameter: float) -> float:
+                point = at(parameter)
+                return float((point.X() - px) * tx + (point.Y() - py) * ty - place)
+
+        else:
+
+            def value(parameter: float) -> float:
+                point = at(parameter)
+                found = carrier.parameter((point.X(), point.Y()))
+                return near + (found - near + pi) % tau - pi - place
 
         ends = [(float(self.parameters[j]), float(self.places[j]) - place) for j in (k, k + 1)]
         z = curve_point(self.edge.curve, crossing(value, ends[0], ends[1]))[2]

@@ -303,7 +303,7 @@ def drawn(
     found = evolve(found, runs=outline.runs)
     own = tuple(own_drawings(solid, view.heights, found))
     if usual is None and has_table and not plain_prism:
-        rows = height_table(solid, room, least)
+        rows = height_table(solid, room, least, outline)
     remarks = [] if plain_prism else height_remarks(outline, found, rows)
     remarks += [] if usual is None else usual.remarks
     if any(band is None for band in outline.bands):

@@ -361,20 +361,19 @@ def bisected(
     low, high : it does not hold at low, and does at high.
     known : two places between them: it does not hold up to the first, and does from the second on.
     """
-    before, after = known
     turn = 1.0 if high >= low else -1.0
+    before, after = turn * known[0], turn * known[1]
     for _ in range(steps):
         middle = (low + high) / 2
         if middle in (low, high):
             break
-        if turn * middle >= turn * after:
+        place = turn * middle
+        if place >= after:
             high = middle
-        elif turn * middle <= turn * before:
+        elif place <= before or not holds(middle):
             low = middle
-        elif holds(middle):
-            high = middle
         else:
-            low = middle
+            high = middle
     return low, high
 
 

@@ -12,7 +12,7 @@ head room : what is kept free above the pegs, in mm.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import pairwise
 from math import inf
@@ -42,8 +42,8 @@ from workhold.files.step.projected import (
 )
 from workhold.files.step.strips import Strip, run_rows, strips_of_loop
 from workhold.geometry.loop import loop_segments, signed_area
-from workhold.geometry.segment import Arc, Line, Point, Segment
-from workhold.geometry.subdivision import BorderPiece, border_loops, border_pieces, subdivide
+from workhold.geometry.segment import Arc, Line, Segment
+from workhold.geometry.subdivision import BorderPiece, Inside, border_loops, border_pieces, subdivide
 from workhold.model.solid import Band, HeightRow, RunRows, SolidOutline
 
 __all__ = [
@@ -206,9 +206,9 @@ class StandingSolid:
             return None
         return sum(signed_area(loop_segments(vertices_of(loop))) for loop in loops)
 
-    def inside(self, low: float, high: float) -> Callable[[Point], bool]:
-        """Whether the solid has material over a point (x, y) between two heights in mm, as a function."""
-        return lambda point: self.material.reaches_into(point, low, high)
+    def inside(self, low: float, high: float) -> Inside:
+        """Over which of some points (x, y) the solid has material between two heights in mm, as a function."""
+        return lambda points: self.material.reaches_into(points, low, high)
 
     def border(
         self, low: float, high: float, walls: Walls | None = None, silhouette: Sequence[Segment] = ()
@@ -298,11 +298,17 @@ def measures(outline: HeightOutline) -> tuple[float, float, float, float]:
     return area, border, touchable, min(bands, default=0.0)
 
 
-def height_table(solid: StandingSolid, room: float, least: float) -> list[HeightRow]:
+def height_table(
+    solid: StandingSolid, room: float, least: float, known: HeightOutline | None = None
+) -> list[HeightRow]:
     """Ranges of peg heights with what their outlines offer, without those whose outline is refused.
 
     A range ends where a face begins or ends, or meets what is kept free above the pegs, and where a wall has
     come to be high enough to be touched.
+
+    Parameters
+    ----------
+    known : an outline that was made with the same room and shortest band.
     """
     levels = {round(z, 6) for face in solid.faces for z in (face.low, face.high)}
     starts = {face.low if face.lie == "upright" else face.high for face in solid.faces}
@@ -312,7 +318,7 @@ def height_table(solid: StandingSolid, room: float, least: float) -> list[Height
     if len(heights) > most:
         heights = [heights[round(k)] for k in np.linspace(0, len(heights) - 1, most)]
     rows: list[HeightRow] = []
-    whole = WholeOutline.of(solid, heights[-1], room, least) if heights else None
+    whole = WholeOutline.of(solid, heights[-1], room, least, known) if heights else None
     # What is less than the shortest band above the plane touches nothing.
     for low, high in pairwise([least, *heights]):
         is_whole = bool(whole and rows and rows[-1].high == low and whole.has_area(rows[-1].area))
@@ -354,10 +360,18 @@ class WholeOutline:
     border: tuple[Segment, ...]
 
     @classmethod
-    def of(cls, solid: StandingSolid, height: float, room: float, least: float) -> WholeOutline | None:
-        """The outline of pegs of a height in mm; None where it is refused."""
+    def of(
+        cls,
+        solid: StandingSolid,
+        height: float,
+        room: float,
+        least: float,
+        known: HeightOutline | None,
+    ) -> WholeOutline | None:
+        """The outline of pegs of a height in mm, if it is not the known one; None where it is refused."""
         try:
-            outline = solid.outline(height, room, least)
+            is_known = known is not None and known.peg_height == height
+            outline = known if known and is_known else solid.outline(height, room, least)
         except InputError:
             return None
         pieces = [one for loop in outline.loops for strip in loop for one in strip.covered]

@@ -90,7 +90,7 @@ def joined(faces: Sequence[Sequence[Array]]) -> list[Array]:
     inside = [segment_rows(segments_of(loops)) for loops in kept]
     pieces = border_pieces(
         subdivide(segment for loops in kept for segment in segments_of(loops)),
-        lambda point: any(is_inside(*point, rows) for rows in inside),
+        lambda points: [any(is_inside(*point, rows) for rows in inside) for point in points],
     )
     return [smoothed(loop) for loop in border_loops(pieces)]
 

@@ -35,6 +35,8 @@ Array = NDArray[np.float64]
 Sheet = tuple[float, float, float, float, float, float]
 # How far in mm a line may miss a face's border and still meet the face.
 ON_FACE = 1e-7
+# Points times faces that are looked at together.
+AT_ONCE = 1 << 18
 # How much wider than the library says, in mm, the boxes of faces are taken.
 ROUND = 1e-6
 # The direction of rays, and another: ones in which no line of a drawing is likely to run, nor two of its
@@ -105,14 +107,27 @@ class PlaneFaces:
 
     def heights(self, point: Point) -> list[float]:
         """The z in mm at which the upright line through a point meets the faces, in any order."""
-        levels = self.levels(point)
-        return [float(levels[k]) for k in np.flatnonzero(self.near(point)).tolist() if self.holds(k, point)]
+        near = np.flatnonzero(boxed([point], self.boxes)).tolist() if len(self.boxes) else []
+        if not near:
+            return []
+        (levels,) = self.levels([point])
+        return [float(levels[k]) for k in near if self.holds(k, point)]
 
-    def meets(self, point: Point, low: float, high: float) -> bool:
-        """Whether the upright line through a point meets a face between two z in mm; two rays must agree."""
-        levels = self.levels(point)
-        near = self.near(point) & (low < levels) & (levels < high)
-        return any(self.surely_holds(k, point) for k in np.flatnonzero(near).tolist())
+    def met(self, points: Sequence[Point], low: float, high: float) -> list[float]:
+        """A z in mm between two others at which the upright line through each point meets a face, else infinity.
+
+        Two rays must agree.
+        """
+        if not len(self.planes):
+            return [inf] * len(points)
+        levels = self.levels(points)
+        near = boxed(points, self.boxes) & (low < levels) & (levels < high)
+        return [
+            next(
+                (float(own[k]) for k in np.flatnonzero(is_near).tolist() if self.surely_holds(k, point)), inf
+            )
+            for point, own, is_near in zip(points, levels, near, strict=True)
+        ]
 
     def surely_holds(self, face: int, point: Point) -> bool:
         """Whether both rays find a point in a face of a number."""
@@ -121,17 +136,13 @@ class PlaneFaces:
             self.known[key] = self.holds(face, point) and self.holds(face, point, OTHER_RAY)
         return self.known[key]
 
-    def levels(self, point: Point) -> Array:
-        """The z (F,) in mm of each face's plane or cone at a point."""
+    def levels(self, points: Sequence[Point]) -> Array:
+        """The z (N, F) in mm of each face's plane or cone at points."""
         origin, rise_x, rise_y, outward, axis_x, axis_y = self.planes.T
-        away = np.hypot(point[0] - axis_x, point[1] - axis_y)
-        levels: Array = origin + rise_x * point[0] + rise_y * point[1] + outward * away
+        x, y = np.array(points)[:, :, None].transpose(1, 0, 2)
+        away = np.hypot(x - axis_x, y - axis_y)
+        levels: Array = origin + rise_x * x + rise_y * y + outward * away
         return levels
-
-    def near(self, point: Point) -> NDArray[np.bool_]:
-        """Which faces (F,) have a point in their box."""
-        (x, y), boxes = point, self.boxes
-        return (boxes[:, 0] <= x) & (x <= boxes[:, 2]) & (boxes[:, 1] <= y) & (y <= boxes[:, 3])
 
     def holds(self, face: int, point: Point, ray: Point = RAY) -> bool:
         """Whether a face of a number holds a point, seen from above.
@@ -158,6 +169,19 @@ class PlaneFaces:
                 apart = np.abs((angle - middle + pi) % tau - pi)
                 met += int(np.count_nonzero((square > 0) & (away > 0) & (apart <= half)))
         return met % 2 == 1
+
+
+def boxed(points: Sequence[Point], boxes: Array, more: float = 0.0) -> NDArray[np.bool_]:
+    """Which boxes (F, 4 and more) have points (N, 2) in them, (N, F).
+
+    Parameters
+    ----------
+    more : by how much in mm the boxes are larger on all sides.
+    """
+    x, y = np.array(points)[:, :, None].transpose(1, 0, 2)
+    near: NDArray[np.bool_] = (boxes[:, 0] - more <= x) & (x <= boxes[:, 2] + more)
+    near &= (boxes[:, 1] - more <= y) & (y <= boxes[:, 3] + more)
+    return near
 
 
 def plane_of(face: SolidFace) -> Sheet | None:
@@ -217,15 +241,22 @@ class Material:
 
     def __attrs_post_init__(self) -> None:
         self.flat, others = PlaneFaces.of(self.faces, self.edges)
-        met = [self.faces[k] for k in others]
+        # The lowest first: what is met low is reached at more heights.
+        met = sorted((self.faces[k] for k in others), key=lambda face: face.low)
         self.meeting = [occ.IntCurvesFace_Intersector(face.shape, ON_FACE) for face in met]
         self.boxes = np.array([(*face.box, face.low, face.high) for face in met]).reshape(-1, 6)
         self.below = min(face.low for face in self.faces) - 1.0
 
-    def intervals(self, point: Point) -> list[tuple[float, float]]:
-        """The intervals of the upright line through a point (x, y), from the lowest up."""
+    def intervals(self, point: Point, near: Sequence[int] | None = None) -> list[tuple[float, float]]:
+        """The intervals of the upright line through a point (x, y), from the lowest up.
+
+        Parameters
+        ----------
+        near : numbers of the faces that are not flat and may lie over the point, where they are known.
+        """
         if point not in self.known:
-            heights = self.heights(point)
+            near = np.flatnonzero(self.near([point])).tolist() if near is None else near
+            heights = self.heights(point, near)
             is_clear = all(high - low > SAME_HEIGHT for low, high in pairwise(heights))
             if len(heights) % 2 == 0 and is_clear:
                 self.known[point] = list(zip(heights[0::2], heights[1::2], strict=True))
@@ -247,18 +278,16 @@ class Material:
         self.classifier.Perform(occ.gp_Pnt(*point, z), 1e-7)
         return bool(self.classifier.State() == occ.TopAbs_IN)
 
-    def heights(self, point: Point) -> list[float]:
-        """Sorted z in mm at which the upright line through a point passes a face."""
+    def heights(self, point: Point, near: Sequence[int]) -> list[float]:
+        """Sorted z in mm at which the upright line through a point passes a face, see :meth:`intervals`."""
         found = self.flat.heights(point)
-        for index in np.flatnonzero(self.near(point)).tolist():
+        for index in near:
             found += self.hits_of(point, index)
         return sorted(found)
 
-    def near(self, point: Point) -> NDArray[np.bool_]:
-        """Which faces that are not flat may lie over a point, seen by their boxes."""
-        (x, y), boxes = point, self.boxes
-        near = (boxes[:, 0] - ON_FACE <= x) & (x <= boxes[:, 2] + ON_FACE)
-        return near & (boxes[:, 1] - ON_FACE <= y) & (y <= boxes[:, 3] + ON_FACE)
+    def near(self, points: Sequence[Point]) -> NDArray[np.bool_]:
+        """Which faces (N, F) that are not flat may lie over points, seen by their boxes."""
+        return boxed(points, self.boxes, ON_FACE)
 
     def hits_of(self, point: Point, index: int) -> list[float]:
         """The z in mm at which the upright line through a point passes a face that is not flat."""
@@ -270,25 +299,48 @@ class Material:
             self.hits[key] = [self.below + face.WParameter(k) for k in met]
         return self.hits[key]
 
-    def reaches_into(self, point: Point, low: float, high: float) -> bool:
-        """Whether some material over a point lies strictly between two z in mm."""
+    def reaches_into(self, points: Sequence[Point], low: float, high: float) -> list[bool]:
+        """Whether some material over points lies strictly between two z in mm."""
         # Outlines of all heights ask for the same points, and what is reached stays so as the height grows.
-        least, most = self.reached.get((point, low), (inf, -inf))
-        if not most < high < least:
-            return high >= least
-        is_reached = self.finds_within(point, low, high)
-        self.reached[point, low] = (high, most) if is_reached else (least, high)
-        return is_reached
+        bounds = [self.reached.get((point, low), (inf, -inf)) for point in points]
+        fresh = [point for point, (least, most) in zip(points, bounds, strict=True) if most < high < least]
+        if not fresh:
+            return [high >= least for least, _ in bounds]
+        fresh = list(dict.fromkeys(fresh))
+        step = max(1, AT_ONCE // len(self.faces))
+        for first in range(0, len(fresh), step):
+            some = fresh[first : first + step]
+            for point, reached in zip(some, self.find_within(some, low, high), strict=True):
+                least, most = self.reached.get((point, low), (inf, -inf))
+                self.reached[point, low] = (reached, most) if reached <= high else (least, high)
+        return [high >= self.reached[point, low][0] for point in points]
 
-    def finds_within(self, point: Point, low: float, high: float) -> bool:
-        """Finds what :meth:`reaches_into` returns."""
+    def find_within(self, points: Sequence[Point], low: float, high: float) -> list[float]:
+        """Finds what :meth:`reaches_into` returns: an upper height from which on it is so, else infinity."""
         # A face has material on one of its sides, so one hit within is enough. Flat faces are asked first,
         # because they answer much faster.
         inner = low + 2 * SAME_HEIGHT, high - 2 * SAME_HEIGHT
-        if self.flat.meets(point, *inner):
-            return True
-        near = self.near(point) & (self.boxes[:, 4] < inner[1]) & (self.boxes[:, 5] > inner[0])
-        for index in np.flatnonzero(near).tolist():
-            if any(inner[0] < z < inner[1] for z in self.hits_of(point, index)):
-                return True
-        return any(min(end, high) - max(start, low) > SAME_HEIGHT for start, end in self.intervals(point))
+        found = self.flat.met(points, *inner)
+        near = self.near(points)
+        crossed = numbers_of(near & (self.boxes[:, 4] < inner[1]) & (self.boxes[:, 5] > inner[0]))
+        every = numbers_of(near)
+        for number, point in enumerate(points):
+            if found[number] == inf:
+                hits = (z for k in crossed[number] for z in self.hits_of(point, k))
+                found[number] = next((z for z in hits if inner[0] < z < inner[1]), inf)
+            if found[number] < inf:
+                found[number] = min(found[number] + 3 * SAME_HEIGHT, high)
+            elif any(
+                min(end, high) - max(start, low) > SAME_HEIGHT
+                for start, end in self.intervals(point, every[number])
+            ):
+                found[number] = high
+        return found
+
+
+def numbers_of(marked: NDArray[np.bool_]) -> list[list[int]]:
+    """The numbers of the columns (N, M) that are marked in each row."""
+    found: list[list[int]] = [[] for _ in marked]
+    for row, column in np.argwhere(marked).tolist():
+        found[row].append(column)
+    return found

@@ -39,6 +39,7 @@ from workhold.files.step.edge_curves import (
 from workhold.files.step.faces import SLOPING, SolidFace, is_level, is_upright, surface_of
 from workhold.files.step.library import occ, sub_shapes
 from workhold.geometry.segment import Arc, Line, Point, Segment
+from workhold.geometry.subdivision import Inside
 
 __all__ = [
     "FLAT",
@@ -408,16 +409,14 @@ class OtherCurveError(InputError):
         self.face = face
 
 
-def refuse_others(
-    others: Sequence[Other], faces: Sequence[SolidFace], inside: Callable[[Point], bool]
-) -> None:
+def refuse_others(others: Sequence[Other], faces: Sequence[SolidFace], inside: Inside) -> None:
     """Refuses a curve that is neither line nor arc where material lies on one side of it only.
 
     The points farthest out are looked at first: where there is such a curve, it is most likely there.
 
     Parameters
     ----------
-    inside : whether a point (x, y) belongs to the outline's region.
+    inside : which of some points (x, y) belong to the outline's region.
 
     Raises
     ------
@@ -441,21 +440,27 @@ def refuse_others(
     for each in (FEW, 1):
         for index, points in ordered.values():
             away = np.hypot(*(points[1:-1] - middle).T)
-            looked = np.argsort(-away, kind="stable")[::each].tolist()
-            if any(is_border(points, k + 1, inside) for k in looked):
+            if has_border(points, np.argsort(-away, kind="stable")[::each] + 1, inside):
                 raise OtherCurveError(faces[index])
 
 
-def is_border(points: NDArray[np.float64], k: int, inside: Callable[[Point], bool]) -> bool:
-    """Whether a curve has the region on one side only at its point of a number, which is no end of it."""
-    dx, dy = points[k + 1] - points[k - 1]
-    size = float(np.hypot(dx, dy))
-    if size < 10 * BESIDE[0]:
-        return False
-    x, y = points[k]
-    nx, ny = float(-dy / size), float(dx / size)
-    return all(
-        inside((float(x + beside * nx), float(y + beside * ny)))
-        != inside((float(x - beside * nx), float(y - beside * ny)))
-        for beside in BESIDE
-    )
+def has_border(points: NDArray[np.float64], looked: NDArray[np.intp], inside: Inside) -> bool:
+    """Whether a curve has the region on one side only at some of its points, none of which is an end.
+
+    Parameters
+    ----------
+    points : (N, 2) along the curve, in mm.
+    looked : numbers of the points at which it is looked at.
+    """
+    steps = points[looked + 1] - points[looked - 1]
+    sizes = np.hypot(*steps.T)
+    wide = sizes >= 10 * BESIDE[0]
+    places, across = points[looked[wide]], steps[wide][:, ::-1] * (-1.0, 1.0) / sizes[wide][:, None]
+    for beside in BESIDE:
+        both = np.concatenate([places + beside * across, places - beside * across])
+        found = np.array(inside([(x, y) for x, y in both.tolist()]), dtype=bool)
+        is_border = found[: len(places)] != found[len(places) :]
+        places, across = places[is_border], across[is_border]
+        if not len(places):
+            break
+    return len(places) > 0

@@ -397,12 +397,12 @@ def cubic_pieces(run: Run, one: Covered, first: float, last: float) -> Iterator[
     places = [first + (last - first) * k / 3 for k in range(4)]
     rows = tuple((k / 3, *run.at(place)) for k, place in enumerate(places))
     unit = one.piece.carrier.segment.radius if isinstance(one.piece.carrier.segment, Arc) else 1.0
-    off = max(
-        abs(a - b)
-        for share in (1 / 6, 1 / 2, 5 / 6)
+    is_off = any(
+        abs(a - b) > CUBIC
+        for share in (1 / 2, 1 / 6, 5 / 6)
         for a, b in zip(run_at(rows, share), run.at(first + (last - first) * share), strict=True)
     )
-    if off > CUBIC and abs(last - first) * unit > SHORTEST_PIECE:
+    if is_off and abs(last - first) * unit > SHORTEST_PIECE:
         middle = (first + last) / 2
         yield from cubic_pieces(run, one, first, middle)
         yield from cubic_pieces(run, one, middle, last)

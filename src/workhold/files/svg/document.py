@@ -27,7 +27,6 @@ from workhold.files.budget import LIMITS, Budget
 from workhold.files.svg.selectors import SelectorMatcher, inner_tokens
 
 __all__ = [
-    "DEEPEST",
     "GEOMETRY",
     "Declared",
     "Document",
@@ -38,8 +37,6 @@ __all__ = [
     "short",
 ]
 
-# Elements inside each other, and <use> elements that show each other.
-DEEPEST = LIMITS["svg"].deepest or 0
 SVG_SPACE = "http://www.w3.org/2000/svg"
 LINK = "{http://www.w3.org/1999/xlink}href"
 ANIMATIONS = {"animate", "animateColor", "animateMotion", "animateTransform", "set"}
@@ -164,7 +161,6 @@ def parsed(content: bytes, lines: dict[Element, int], budget: Budget) -> Element
     builder = ElementTree.TreeBuilder()
     # The same text for the same name, however often it is there.
     names: dict[str, str] = {}
-    depth = 0
 
     def expanded(name: str) -> str:
         if name not in names:
@@ -172,10 +168,7 @@ def parsed(content: bytes, lines: dict[Element, int], budget: Budget) -> Element
         return names[name]
 
     def started(name: str, attributes: dict[str, str]) -> None:
-        nonlocal depth
-        depth += 1
-        if depth > DEEPEST:
-            raise InputError(f"<{shown(name)}> is nested more than {DEEPEST} levels deep: save a plain SVG.")
+        budget.enter(lambda: f"<{shown(name)}>")
         # What ten attributes take is what an element takes.
         budget.spend(1 + len(attributes) // 10)
         line = parser.CurrentLineNumber
@@ -188,8 +181,7 @@ def parsed(content: bytes, lines: dict[Element, int], budget: Budget) -> Element
         lines[element] = line
 
     def ended(name: str) -> None:
-        nonlocal depth
-        depth -= 1
+        budget.leave()
         builder.end(expanded(name))
 
     def declared(*_: object) -> None:

@@ -12,7 +12,7 @@ from workhold.errors import InputError, shortened
 from workhold.files.budget import Budget
 from workhold.files.outline.chain import Chain, Placement, counted
 from workhold.files.outline.curves import CurveReader
-from workhold.files.svg.document import DEEPEST, Declared, Document, Styles, href, local_name, short
+from workhold.files.svg.document import Declared, Document, Styles, href, local_name, short
 from workhold.files.svg.shapes import SHAPES
 from workhold.files.svg.style import INITIAL, Style, boundaries, computed, link_of, refuse_effects
 from workhold.files.svg.transforms import transform_of
@@ -218,7 +218,7 @@ class SvgWalk:
         target = self.document.linked(link)
         if target is None:
             raise InputError(f"{label} shows '{short(link)}', which is not in the file: unlink or remove it.")
-        if link in nest.links or len(nest.links) >= DEEPEST:
+        if link in nest.links:
             raise InputError(f"{label} shows itself: unlink it.")
         inner = evolve(nest, suffix=shortened(f" of {label}", LONGEST_SUFFIX), links=(*nest.links, link))
         tag = local_name(target)

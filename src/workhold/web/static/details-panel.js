@@ -2,7 +2,7 @@
  * Below the drawing: the table of pegs, which says in words what the drawing shows, and the figures of quality.
  */
 import { byId, make } from "./dom.js";
-import { forceOf } from "./pose.js";
+import { forceOf, writtenTurn } from "./pose.js";
 import { on, state } from "./state.js";
 import { pressedBy } from "./toolkits.js";
 import { bareLength, figureText, length, number } from "./units.js";
@@ -46,7 +46,7 @@ function writePegs(row) {
     ),
   );
   byId("pose-words").textContent =
-    `${settingWords(row).map(capital).join(", ")}. ${row.order ? `${row.order} ` : ""}Part turned by ${number(row.theta_deg, 3)}°, its zero at ` +
+    `${settingWords(row).map(capital).join(", ")}. ${row.order ? `${row.order} ` : ""}Part turned by ${number(writtenTurn(row), 3)}°, its zero at ` +
     `${bareLength(row.x)}, ${length(row.y)} from ${row.flush.length ? "" : "hole "}${row.origin}. ` + (loaded ? "" : `Forces are for each newton of ${forceOf(row)}.`);
 }
 

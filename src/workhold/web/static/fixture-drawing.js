@@ -6,7 +6,7 @@
 import { draw, show } from "./dom.js";
 import { boundsOf, outlinePath, segmentPath } from "./geometry.js";
 import { drawLettering } from "./fixture-lettering.js";
-import { contactsOf, forceOf, intoVise, partSegments, place, poseMatrix, touchableSegments } from "./pose.js";
+import { contactsOf, forceOf, intoVise, partSegments, place, poseMatrix, touchableSegments, writtenTurn } from "./pose.js";
 import { nearestMove, programPaths } from "./program-drawing.js";
 import { clampFromAbove, supportPads } from "./supports-drawing.js";
 import { lyingMatrix } from "./trial.js";
@@ -122,7 +122,7 @@ export class FixtureDrawing {
   words() {
     const { row } = this;
     const set = row.settings.map((one) => `${one.name} ${one.length.toFixed(3)} mm, `).join("");
-    return `Fixture ${row.rank || ""}, ${row.title}: pegs in ${row.holes.join(", ")}, ${set}part turned by ${row.theta_deg.toFixed(3)} degrees. The table of pegs tells the rest.`;
+    return `Fixture ${row.rank || ""}, ${row.title}: pegs in ${row.holes.join(", ")}, ${set}part turned by ${writtenTurn(row).toFixed(3)} degrees. The table of pegs tells the rest.`;
   }
 
   /** Make everything that lies in mm. */

@@ -2,6 +2,7 @@
  * The list of fixtures: only the rows in sight exist, so ten thousand scroll like ten.
  */
 import { make } from "./dom.js";
+import { writtenTurn } from "./pose.js";
 import { state } from "./state.js";
 import { drawThumbnail } from "./thumbnails.js";
 import { figureText, length, number } from "./units.js";
@@ -130,7 +131,7 @@ export class FixtureList {
     cell.element.classList.remove("coming");
     cell.element.classList.toggle("unfit", Boolean(row.unfit));
     cell.title.replaceChildren(
-      make("span", {}, make("b", {}, `${row.rank}`), ` ${row.title} `, make("span.faint", {}, `${number(row.theta_deg, 1)}°`)),
+      make("span", {}, make("b", {}, `${row.rank}`), ` ${row.title} `, make("span.faint", {}, `${number(writtenTurn(row), 1)}°`)),
       row.like ? make("span.faint.small", { title: `and ${row.like} like it` }, `+${row.like} alike`) : "",
     );
     // What has no room in the line is left out of it.

@@ -45,6 +45,12 @@ export function turn(row) {
 }
 
 /**
+ * The turn in degrees as people write it: up to an eighth of a turn clockwise is a negative angle.
+ * @param {Row} row
+ */
+export const writtenTurn = (row) => (row.theta_deg > 315 ? row.theta_deg - 360 : row.theta_deg);
+
+/**
  * The pose as an SVG matrix.
  * @param {Row} row
  */

@@ -28,6 +28,9 @@ const field = ({ name }) => /** @type {HTMLInputElement} */ (byId(name.replaceAl
 /** Whether the sheet tells where else the part can come to rest. @returns {HTMLInputElement} */
 const seating = () => /** @type {HTMLInputElement} */ (byId("sheet-seating"));
 
+/** The paper asked for, or the one that users of the unit have. @param {Object<string, any>} sheet @returns {string} */
+const paperOf = (sheet) => sheet.paper ?? (state.unit === "inch" ? "letter" : "a4");
+
 /** Set the fields up. */
 export function sheetFields() {
   byId("sheet-details").addEventListener("input", quiet(read, 200));
@@ -39,7 +42,7 @@ export function sheetFields() {
 
 /** Read the fields; one that cannot be read is marked and left as it was. */
 function read() {
-  const sheet = { paper: state.sheet.paper };
+  const sheet = state.sheet.paper ? { paper: state.sheet.paper } : {};
   if (seating().checked) sheet.seating = true;
   for (const each of FIELDS) {
     const text = field(each).value;
@@ -58,7 +61,7 @@ function read() {
 /** Write what is known into fields that nobody is typing in. */
 function write() {
   const { sheet, selected, part } = state;
-  choice("paper").value = sheet.paper;
+  choice("paper").value = paperOf(sheet);
   seating().checked = sheet.seating === true;
   for (const each of FIELDS) {
     const input = field(each);
@@ -77,7 +80,7 @@ function write() {
 
 /** What is asked of a sheet, as the server takes it: lengths in the unit shown. @param {Object<string, any>} [sheet] */
 export function sheetQuery(sheet = state.sheet) {
-  const query = { paper: sheet.paper, unit: state.unit };
+  const query = { paper: paperOf(sheet), unit: state.unit };
   if (sheet.seating) query.seating = "true";
   for (const { name, form } of FIELDS) {
     const value = sheet[name];

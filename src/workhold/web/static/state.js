@@ -67,7 +67,7 @@ export const state = {
   pinned: null,
   view: "part",
   force: null,
-  sheet: { paper: "a4" },
+  sheet: {},
   trial: null,
   cut: null,
   sides: null,
