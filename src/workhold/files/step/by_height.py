@@ -284,7 +284,8 @@ def drawn(
     """
     axis, room, least = axis_named(view.axis), view.head_room, view.least_band
     plain_prism = view.peg_height is None and is_prism(solid)
-    rows, usual = list[HeightRow](), None
+    rows = list[HeightRow]()
+    usual: UsualHeight | None = None
     if view.peg_height is None and view.peg_diameter is not None:
         rows = [] if plain_prism else height_table(solid, room, least)
         usual = usual_height(solid, rows, view.peg_diameter, room, least, plain_prism)
