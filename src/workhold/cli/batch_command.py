@@ -275,7 +275,10 @@ def requests_in(
 
     asked = asked_of(words, reading)
     held_in = [HeldIn(one.name, query_of(ANY_PART, one, asked)) for one in toolkits]
-    known = words[2].heights(length_unit(reading.unit), reading.peg_height)
+    # With a program heights are among what is asked.
+    known = (
+        words[2].heights(length_unit(reading.unit), reading.peg_height) if words[2].program is None else {}
+    )
     drawn_in = [HeldIn(one.name, query_of(ANY_PART, one, asked | known)) for one in toolkits]
     listed, heights = part_list(parts, [folder]), heights_of_all(toolkits)
     of_carriers = {"heights": heights} if heights else {}
