@@ -314,3 +314,19 @@ def test_the_protocol_calls_a_tool(spoken: Spoken) -> None:
     assert Path(told["structuredContent"]["result_file"]).exists()
     wrong = spoken.ask("tools/call", name="show", arguments={"result_file": "none.json"})
     assert wrong["isError"] and wrong["content"][0]["text"].startswith("none.json")
+
+
+def test_a_program_and_its_forces(folder: Path) -> None:
+    """Fixtures keep clear of its tools; a fixture says which line asks for the force, and what of it cuts."""
+    Path("p.nc").write_text("(T1 D=8. - end mill)\nG21 G90\nT1 M6\nG0 X-30 Y12 Z9\nG1 Z-1 F90\nX70\nM30\n")
+    program = {"path": "p.nc", "thickness": 6, "peg_height": 3, "stock": {"side": 0, "top": 0}}
+    program["cutting"] = {"cutting_force": 70}
+    told("design", folder, part="wedge.json", **VISE, program=program, best=2, out="p.json")
+    shown = told("show", folder, result_file="p.json")["program"]
+    assert any("line 6, T1 (end mill, milling from X" in one for one in shown), shown
+    opened = workhold.open("p.json").query.program
+    assert opened is not None and opened.stock is not None and opened.stock.side == 0.0
+    refused, _, failed = outcome(
+        "design", {"part": "wedge.json", **VISE, "program": {"path": "p.nc"}}, folder, Event()
+    )
+    assert failed and "give its thickness" in str(refused)

@@ -167,7 +167,8 @@ def test_forces_reach_the_table_the_sentences_and_the_sheet(run: Any, file: Path
     entry = json.loads(out.read_text())["fixtures"][0]["program_forces"]
     assert entry["jaw_force"] == entry["jaw"]["force"] > 0 and entry["room"] is None
     shown = run("show", out, "1")
-    assert f"asked for by line {entry['jaw']['line']}, T1: with less the part leaves" in shown.stdout
+    assert f"asked for by line {entry['jaw']['line']}, T1 (flat end mill, milling from X" in shown.stdout
+    assert " mm): with less the part leaves" in shown.stdout
     text = " ".join(sheet.read_text().split())
     assert "Jaw force at least" in text
     given = run("show", out, "1", "--jaw-force", "9000", "--jaw", "constant")
@@ -204,6 +205,11 @@ def test_forces_rank_where_they_are_asked_for(
         (["--power", "much"], "--power 'much' is not a power above 0"),
         (["--power", "2", "--material", "steel"], "power and material are two ways to the same force"),
         (["--cutting-force", "-3"], "--cutting-force"),
+        (["--cutting-force", "3", "--stock", "ball"], "--stock 'ball' is not known: give outline or block"),
+        (
+            ["--cutting-force", "3", "--stock", "block,5"],
+            "--stock '5' is not the stock: give outline or block",
+        ),
         (["--teeth", "2.5"], "--teeth"),
         (["--cutting-force", "90", "--cutting-direction", "up"], "--cutting-direction 'up' is not known"),
     ],
@@ -221,5 +227,8 @@ def test_the_program_command_states_forces_of_tools(run: Any, file: Path) -> Non
     said = run("program", file, "--cutting-force", "0.2kN")
     assert said.exit_code == 0 and "T1: up to 200 N as given." in said.stdout
     data = json.loads(run("program", file, "--cutting-force", "200", "--json").stdout)["cutting"]
-    assert data == [{"tool": 1, "force": 200.0, "torque": 600.0, "axial": [pytest.approx(-115.47), 280.0]}]
+    assert data == [{"tool": 1, "force": 200.0, "torque": 600.0, "axial": [pytest.approx(-115.47), 200.0]}]
+    assert "with 5.000 mm around" in said.stdout
+    bare = run("program", file, "--cutting-force", "200", "--stock", "block,0,2in")
+    assert "the block around the part with 0.000 mm around" in bare.stdout
     assert "cutting" not in json.loads(run("program", file, "--json").stdout)

@@ -31,9 +31,22 @@ def names_of(*given: str | Path, leave_out: tuple[Path, ...] = ()) -> list[str]:
 
 def test_a_folder_is_its_drawings_in_the_order_people_count(tmp_path: Path) -> None:
     folder = folder_of(
-        tmp_path, "p10.json", "P2.DXF", "p1.svg", "a/z.stp", "a/b.step", "notes.txt", "p02.json", "p²².json"
+        tmp_path,
+        *(
+            "p10.json",
+            "P2.DXF",
+            "p1.svg",
+            "a/z.stp",
+            "a/b.step",
+            "notes.txt",
+            "p02.json",
+            "p²².json",
+            "p1000.svg",
+        ),
     )
-    assert names_of(folder) == ["p1.svg", "p02.json", "P2.DXF", "p10.json", "p²².json", "a/b.step", "a/z.stp"]
+    assert names_of(folder) == [
+        *("p1.svg", "p02.json", "P2.DXF", "p10.json", "p1000.svg", "p²².json", "a/b.step", "a/z.stp")
+    ]
     assert [part.path for part in part_list([folder])][-1] == tmp_path / "a" / "z.stp"
 
 
@@ -52,6 +65,27 @@ def test_hidden_files_own_results_and_folders_left_out_are_no_parts(tmp_path: Pa
     folder = folder_of(tmp_path, "a.json", ".b.json", ".git/c.json", "out/d.json", "in/e.json")
     (folder / "r.json").write_text('{"format": "workhold-result/1",\n')
     assert names_of(folder, leave_out=(folder / "out",)) == ["a.json", "in/e.json"]
+
+
+def test_a_folder_left_out_is_known_by_any_name(tmp_path: Path) -> None:
+    folder = folder_of(tmp_path / "parts", "a.json", "out/d.json")
+    (tmp_path / "link").symlink_to(folder)
+    for given, left in ((folder, tmp_path / "link"), (tmp_path / "link", folder)):
+        assert names_of(given, leave_out=(left / "out",)) == ["a.json"]
+
+
+def test_a_folder_that_nobody_may_read_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(path: Path) -> object:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(os, "scandir", refuse)
+    with pytest.raises(InputError, match=r"cannot be read \(permission denied\)"):
+        part_list([tmp_path])
+
+
+def test_names_that_are_not_utf8_can_be_written(tmp_path: Path) -> None:
+    name = os.fsdecode(b"p\xff.json")
+    names_of(folder_of(tmp_path, name))[0].encode()
 
 
 def test_what_is_no_file_is_a_row_that_costs_no_other(tmp_path: Path) -> None:
@@ -107,6 +141,7 @@ def test_a_link_of_another_ending_hides_no_part(tmp_path: Path) -> None:
     folder = folder_of(tmp_path, "z.json")
     (folder / "a.dxf").symlink_to("z.json")
     (folder / "b.json").symlink_to("z.json")
+    (folder / "c.JSON").symlink_to("z.json")
     assert names_of(folder) == ["a.dxf", "b.json"]
 
 
@@ -151,13 +186,24 @@ def test_a_part_that_cannot_be_read_is_a_sentence(tmp_path: Path) -> None:
     assert gone.loaded is None and "file not found" in gone.refusal
 
 
-def test_a_fault_of_a_library_is_a_sentence_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [
+        (
+            IndexError("list index out of range"),
+            "the file is damaged, or holds what this program cannot read: save it anew",
+        ),
+        (MemoryError(), "reading it takes more memory than there is: save less in it"),
+    ],
+)
+def test_a_fault_of_a_library_is_a_sentence_too(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: Exception, words: str
+) -> None:
     def broken(path: Path, **options: object) -> None:
-        raise IndexError("list index out of range")
+        raise error
 
     monkeypatch.setattr(module, "read_workpiece", broken)
-    read = read_listed(ListedPart("a", tmp_path / "a.dxf"))
-    assert read.refusal == "a.dxf: the file is damaged, or holds what this program cannot read: save it anew."
+    assert read_listed(ListedPart("a", tmp_path / "a.dxf")).refusal == f"a.dxf: {words}."
 
 
 def test_reading_takes_its_options(tmp_path: Path) -> None:

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
 
 from workhold.errors import InputError, plain, shortened
-from workhold.files.budget import LIMITS
+from workhold.files.budget import LIMITS, FileLimits
 from workhold.files.loads_file import read_loads
 from workhold.files.part.load import read_workpiece
 from workhold.files.result.reader import read_result
-from workhold.files.text import json_value, read_text, toml_table
+from workhold.files.text import json_value, read_at_most, read_limited, read_text, toml_table
 from workhold.files.toolkit_file import read_toolkit_file
 from workhold.fixels.vise import Vise
 from workhold.model.requirements import Load, Tolerance, circle_zone
@@ -96,6 +97,74 @@ def test_size_is_looked_at_before_a_file_is_read(tmp_path: Path) -> None:
         read_loads(path)
     with pytest.raises(InputError, match="this is not a file"):
         read_text(Path("/dev/zero"), LIMITS["toolkit"])
+
+
+def test_a_file_of_just_the_size_is_read_and_one_that_grows_is_not(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a file that is longer than the system says, no more is read than shows that."""
+    path, few = tmp_path / "a.txt", FileLimits("a text", 10)
+    path.write_bytes(b"x" * 10)
+    assert read_limited(path, few) == b"x" * 10
+    path.write_bytes(b"x" * 11)
+    with pytest.raises(InputError, match="more than the"):
+        read_limited(path, few)
+    path.write_bytes(b"x" * 2000)
+    whole = Path.stat
+
+    def stat(self: Path, **options: bool) -> os.stat_result:
+        found = whole(self, **options)
+        return os.stat_result((*found[:6], 4, *found[7:10])) if self == path else found
+
+    monkeypatch.setattr(Path, "stat", stat)
+    monkeypatch.setattr("workhold.files.text.BLOCK", 100)
+    with pytest.raises(InputError, match="the file grows while it is read"):
+        read_limited(path, few)
+    assert 10 < len(read_at_most(path, 10)) <= 200
+    assert len(read_at_most(path, None)) == 2000
+
+
+def test_what_is_no_utf8_is_told_by_its_line(tmp_path: Path) -> None:
+    path = tmp_path / "a.txt"
+    path.write_bytes(b"one\ntwo\nth\xffree\n")
+    with pytest.raises(InputError, match=r"not UTF-8 text \(byte 10, line 3\)"):
+        read_text(path, LIMITS["toolkit"])
+
+
+def test_whole_numbers_end_where_floats_do() -> None:
+    """With 308 digits they are read, in JSON and in TOML, wherever they stand."""
+    largest, over = "9" * 308, "1" + "0" * 308
+    assert json_value(largest) == toml_table(f"a = {largest}")["a"] == int(largest)
+    for text in (
+        f"a = {over}",
+        f"a = -{over}",
+        f"a = [1, {over}]",
+        f"[a]\nb = {over}",
+        f"[[a]]\nb = [[{over}]]",
+    ):
+        with pytest.raises(InputError, match="more than 308 digits"):
+            toml_table(text)
+    with pytest.raises(InputError, match="309 digits"):
+        json_value(f"[{over}]")
+
+
+def test_json_that_would_fill_the_memory_is_refused_before_it_is_read(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Lists and objects count together; a file of which more is expected may hold more."""
+    monkeypatch.setattr("workhold.files.text.MOST_BRACKETS", 6)
+    monkeypatch.setattr("workhold.files.text.MOST_COMMAS", 8)
+    assert json_value("[[],[],{},{}]   ") == [[], [], {}, {}]
+    for text, words in (("[[],[],{},{},{},{}]", "lists and objects"), ("[1,1,1,1,1,1,1,1,1,1]", "values")):
+        with pytest.raises(InputError, match=f"million {words}: save less in it"):
+            json_value(text)
+        assert json_value(text, times=2.0)
+
+
+@pytest.mark.parametrize("text", ["[" * 200_000, '{"a":' * 200_000])
+def test_json_that_is_nested_too_deeply_is_one_sentence(text: str) -> None:
+    with pytest.raises(InputError, match="nested too deeply"):
+        json_value(text)
 
 
 @pytest.mark.parametrize(

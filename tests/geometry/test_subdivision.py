@@ -104,6 +104,64 @@ def test_equal_carriers_are_one() -> None:
     assert [len(carrier.pieces()) for carrier in found] == [4, 2]
 
 
+def test_carriers_are_cut_only_where_both_are_covered() -> None:
+    """A line that ends before another cuts nothing of it, on either side."""
+    found = subdivide([Line((0, 0), (10, 0)), Line((5, 3), (5, 9)), Arc((5, 0), 2, pi / 2, 0.5, 1.0)])
+    assert [len(carrier.pieces()) for carrier in found] == [1, 1, 1]
+
+
+def test_pieces_of_rounding_are_left_out() -> None:
+    """Between two cuts that lie as near to each other as rounding puts them, on a line and on a circle."""
+    side, circle = Line((0, 0), (10, 0)), Arc((20, 0), 5, 0.0, pi, 1.0)
+    cuts = [(one, one.at(parameter)) for one in (side, circle) for parameter in (1.0, 1.0 + 4e-6 / 5)]
+    cuts.append((side, side.at(1.0 + 5e-6)))
+    assert [len(carrier.pieces()) for carrier in subdivide([side, circle], cuts)] == [2, 2]
+
+
+@pytest.mark.parametrize("chord", [6e-5, 2e-4])
+def test_two_points_within_a_gap_are_one_in_the_middle(chord: float) -> None:
+    """Where a circle reaches over a line by so little; two that are farther apart stay two."""
+    circle = Arc((0, 0), 1, 0.0, pi, 1.0)
+    height = sqrt(1 - chord**2 / 4)
+    line, _ = subdivide([Line((-5, height), (5, height)), circle])
+    ends = sorted(line.at(position)[0] for piece in line.pieces() for position in piece)
+    assert len(ends) == (4 if chord < 1e-4 else 6)
+    assert abs(ends[1]) == pytest.approx(0 if chord < 1e-4 else chord / 2, abs=2e-6)
+
+
+@pytest.mark.parametrize("first", range(5))
+def test_a_short_piece_of_a_border_is_not_passed_over(first: int) -> None:
+    """Though the one behind it begins within a gap as well."""
+    corners = [(0.0, 0.0), (10 - 5e-5, 0.0), (10.0, 5e-5), (10.0, 10.0), (0.0, 10.0)]
+    segments = [Line(corners[k - 1], corners[k]) for k in range(5)]
+    pieces = border_pieces(
+        subdivide(segments), lambda at: 0 < at[0] < 10 and 0 < at[1] < 10 and at[0] - at[1] < 10 - 5e-5
+    )
+    (loop,) = border_loops([*pieces[first:], *pieces[:first]])
+    assert len(loop) == 5
+
+
+def test_of_twins_the_outer_one_is_the_border() -> None:
+    """A circle that reaches over the side of a box by less than its points are known: its cap is as thin."""
+    over = 1e-6
+    for turn in (0.0, 1.0, 2.5):
+        box: list[Segment] = sides((-5, -5, 5, 1 - over))
+        if turn:
+            box = [Line(one.at(-one.half_extent), one.at(one.half_extent)) for one in box[::-1]]
+        carriers = subdivide([*box, Arc((0, 0), 1, turn, pi, 1.0)])
+
+        def inside(at: Point) -> bool:
+            return (abs(at[0]) < 5 and -5 < at[1] < 1 - over) or hypot(*at) < 1
+
+        (loop,) = border_loops(border_pieces(carriers, inside))
+        kinds = [type(piece.carrier.segment) for piece in loop]
+        assert kinds.count(Arc) == 1 and len(loop) == 6
+        assert all(
+            abs(a.end[0] - b.start[0]) + abs(a.end[1] - b.start[1]) < 1e-5
+            for a, b in zip(loop, [*loop[1:], loop[0]], strict=True)
+        )
+
+
 def test_border_that_does_not_close() -> None:
     """A border of which a piece is missing is refused with the place."""
     open_sides = sides((0, 0, 4, 4))[:3]

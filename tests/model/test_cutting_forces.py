@@ -28,8 +28,8 @@ def moves_of(feed: float = 600.0, spindle: float = 3000.0) -> Moves:
 
 
 def forces_of(own: dict[str, Any], job: dict[str, Any] | None = None, **how: Any) -> CuttingForces:
-    """The forces of a tool of 10 mm."""
-    tool = Tool(1, [Cylinder(0, 40, 5)], 10, cutting=CuttingData(**own))
+    """The forces of a tool of 10 mm, called a drill so that it drills straight down."""
+    tool = Tool(1, [Cylinder(0, 40, 5)], 10, cutting=CuttingData(**own), kind="drill")
     found = forces_on(moves_of(**how), {1: tool}, CuttingData(**(job or {})))
     assert found is not None
     return found
@@ -80,7 +80,7 @@ def test_teeth_add_up_to_most_where_a_walk_says(teeth: int, angle: float) -> Non
 def test_what_a_tool_says_goes_before_what_the_job_says() -> None:
     found = forces_of({"cutting_force": 80}, {"material": "steel"})
     assert found.force[1] == 80
-    assert "as given" in found.reasons[1]
+    assert found.reasons[1] == "as given."
     assert forces_on(moves_of(), {1: Tool(1, [Cylinder(0, 9, 5)], 10)}, CuttingData(teeth=3)) is None
 
 

@@ -15,7 +15,7 @@ from strategies import random_outline
 from workhold import Load, Query, Result, answer
 from workhold.model.cutting_forces import CuttingForces, forces_on
 from workhold.model.cutting_tool import CuttingData
-from workhold.model.moves import Moves, along
+from workhold.model.moves import Moves, Stretches, along
 from workhold.model.program import Program
 from workhold.model.quality import JAW_FORCE_NEEDED, LOAD_REACTION
 from workhold.statics.loads import load_cases
@@ -38,7 +38,7 @@ def result_of(kind: str, **more: Any) -> Result:
 def pressing(program: Program, force: float = 300.0) -> Program:
     """A program whose tools press."""
     data = CuttingData(cutting_force=force)
-    return evolve(program, forces=forces_on(program.moves, program.tools, data))
+    return evolve(program, forces=forces_on(program.moves, program.tools, data), is_placed=False)
 
 
 def figures(result: Result, program: Program | None, loads: tuple[Load, ...] = ()) -> np.ndarray:
@@ -50,16 +50,18 @@ def figures(result: Result, program: Program | None, loads: tuple[Load, ...] = (
 
 def as_loads(program: Program, step: float = 0.05) -> tuple[Load, ...]:
     """The loads that a program stands for, arcs as points near to each other."""
-    moves, forces = program.moves, program.forces
+    forces = program.forces
     assert forces is not None
-    out = []
-    for k in np.flatnonzero(forces.torque > 0.0).tolist():
+    moves, out = program.moves.cut_to(forces.stretches), []
+    for k, own in enumerate(forces.stretches.move.tolist()):
         count = 2 if moves.bulge[k] == 0.0 else int(moves.length[k] / step) + 2
         share, ones = np.linspace(0, 1, count), np.ones(count)
         ends = (np.outer(ones, one[k, :2]) for one in (moves.start, moves.end))
         points = along(*ends, moves.bulge[k] * ones, share)
         for sign in (1, -1):
-            out.append(Load(points.tolist(), float(forces.force[k]), moment=sign * float(forces.torque[k])))
+            out.append(
+                Load(points.tolist(), float(forces.force[own]), moment=sign * float(forces.torque[own]))
+            )
     return tuple(out)
 
 
@@ -95,7 +97,8 @@ def test_forces_twice_as_large_ask_for_twice_as_much() -> None:
     result = result_of("vise")
     program = result.query.program
     assert program is not None
-    once, twice = figures(result, program), figures(result, pressing(program, 600.0))
+    strong = pressing(program, 600.0).pressing_on(result.workpiece.outer_loops)
+    once, twice = figures(result, program), figures(result, strong)
     assert twice == pytest.approx(2 * once) and (once > 0).all()
 
 
@@ -123,9 +126,11 @@ def test_a_longer_path_never_asks_for_less(direction: Any) -> None:
     for count in (*range(1, len(program.moves), 3), len(program.moves)):
         part = Moves(*(getattr(program.moves, name)[:count] for name in names))
         whole = program.forces
-        forces = CuttingForces(
-            whole.force[:count], whole.torque[:count], whole.axial[:count], whole.height[:count], direction
-        )
+        some = whole.stretches
+        own = some.move < count
+        cut = Stretches(some.move[own], some.first[own], some.last[own])
+        columns = (whole.force[:count], whole.torque[:count], whole.axial[:count], whole.height[:count])
+        forces = CuttingForces(*columns, direction, stretches=cut)
         found = figures(result, evolve(program, moves=part, forces=forces))
         assert (found >= before * (1 - 1e-12)).all()
         before = found

@@ -20,10 +20,10 @@ PART = Workpiece.from_loops("part", [[[0, 0, 0], [100, 0, 0], [96, 60, 0], [4, 5
 VISE = Vise(pitch=20, columns=5, peg_radius=3)
 
 
-def program_of(rows: list[tuple[Any, ...]], **cutting: Any) -> Program:
+def program_of(rows: list[tuple[Any, ...]], kind: str = "", **cutting: Any) -> Program:
     """A program of one tool of 10 mm from rows of start, end and bulge, whose Z0 is 20 mm up."""
     moves = Moves.of_rows([(k, 1, True, *row, 100.0, 900.0) for k, row in enumerate(rows, 1)])
-    tools = {1: Tool(1, [Cylinder(0, 60, 5)], 10)}
+    tools = {1: Tool(1, [Cylinder(0, 60, 5)], 10, kind=kind)}
     bare = Program("p.nc", "0" * 64, "mm", (0.0, 0.0), 20.0, tools=tools, moves=moves)
     return evolve(bare, forces=forces_on(moves, tools, CuttingData(cutting_force=400, **cutting)))
 
@@ -36,10 +36,13 @@ def test_loads_by_hand() -> None:
     one, other = cutting_loads(program_of(SLOT, cut_depth=4, helix_angle=45), 20.0)
     assert one.points == ((20.0, 30.0), (80.0, 30.0)) and one.force == 400 and one.heights == (17.0, 17.0)
     assert one.axial == pytest.approx((-400.0, 0.0)) and (one.moment, other.moment) == (2000.0, -2000.0)
-    drill, _ = cutting_loads(program_of(HOLE), 20.0)
+    drill, _ = cutting_loads(program_of(HOLE, "drill"), 20.0)
     # What comes out below acts on the part at its lower side.
     assert drill.force == 0 and drill.axial == pytest.approx((0.0, 560.0)) and drill.heights == (0.0, 20.0)
     assert drill.points == ((50.0, 30.0),) and drill.name == "T1 drilling"
+    # Any other tool plunges: what it mills with presses down.
+    plunge, _ = cutting_loads(program_of(HOLE), 20.0)
+    assert (plunge.axial, plunge.moment, plunge.name) == ((0.0, 400.0), 2000.0, "T1 plunging")
 
 
 def test_an_arc_lies_inside_its_load() -> None:

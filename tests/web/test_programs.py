@@ -9,6 +9,7 @@ import pytest
 from running_server import RunningServer
 
 from workhold import Program, Query, Vise, answer, load
+from workhold.statics.program_forces import cutting_need_of
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 PART = load(EXAMPLES / "bracket.dxf")
@@ -137,3 +138,21 @@ def test_the_description_names_the_form(server: RunningServer) -> None:
         "peg_height",
     } <= set(forms["ProgramForm"]["properties"])
     assert "program" in forms["JobForm"]["properties"] and "program" in forms["ExploreForm"]["properties"]
+
+
+def test_forces_act_where_tools_meet_the_stock(server: RunningServer) -> None:
+    """As the page's fields give them: what is asked for, and what of which line does."""
+    asked = {"cutting": {"cutting_force": 500}, "stock": {"side": 0, "top": 1, "shape": "block"}}
+    url = server.done({**SEARCH, "program": {**PROGRAM, **asked}})
+    told = server.client.get(f"{url}/fixtures/1").json()["program_forces"]
+    how: dict[str, Any] = {"thickness": 12, **asked}
+    program = Program.read(EXAMPLES / "bracket.nc", EXAMPLES / "tools.toml", **how)
+    own = cutting_need_of(answer(Query(PART, Vise(20, 2, 4), program=program, peg_height=6)), 0)
+    assert own is not None
+    assert {key: told[key] for key in own.to_dict()} == own.to_dict()
+    assert f"line {own.jaw.line}, T{own.jaw.tool} (end mill, milling from X" in told["words"][0]
+    # Without forces nothing is asked for.
+    bare = server.client.get(f"{server.done(SEARCH)}/fixtures/1").json()
+    assert bare["program_forces"] is None
+    wrong = {**PROGRAM, "stock": {"side": -1}}
+    assert server.client.post("/api/programs", json={"program": wrong}).status_code == 400

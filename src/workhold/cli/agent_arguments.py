@@ -15,6 +15,7 @@ from workhold.files.input_forms import LoadTable
 __all__ = [
     "DesignArguments",
     "LoadArguments",
+    "ProgramArguments",
     "SheetArguments",
     "ShowArguments",
     "ToolArguments",
@@ -95,6 +96,73 @@ class Polygon(ToolArguments):
     polygon: list[Pair] = Field(min_length=3)
 
 
+class CuttingArguments(ToolArguments):
+    """How the tools cut of which the table does not say it; one of force, power and material."""
+
+    cutting_force: Annotated[float, Field(ge=0)] | None = Field(
+        default=None, description="at the periphery of every tool, in N"
+    )
+    power: Positive | None = Field(default=None, description="at the spindle, in kW")
+    material: str | None = Field(
+        default=None, description="such as steel, aluminium or titanium, or kc1.1,mc such as 1500,0.22"
+    )
+    teeth: int | None = Field(default=None, ge=1)
+    cut_depth: Positive | None = Field(default=None, description="along the tools' axes, in mm")
+    cut_width: Positive | None = Field(default=None, description="across the feed, in mm")
+    direction: Literal["any", "feed"] | None = None
+
+
+class StockArguments(ToolArguments):
+    """What the part is cut from, on which alone tools press."""
+
+    side: float = Field(default=5.0, ge=0, description="around the outline, in mm; 0 where it comes finished")
+    top: float = Field(default=5.0, ge=0, description="on top, in mm; 0 where it comes finished")
+    shape: Literal["outline", "block"] = Field(
+        default="outline", description="the part's outline, or the block around it"
+    )
+
+
+class ProgramArguments(ToolArguments):
+    """The program of the mill, whose tools the fixtures are to keep clear of."""
+
+    path: str = Field(description="path of the program (G-code)")
+    tools: str | None = Field(
+        default=None, description="path of its table of tools; what the program's comments say if not given"
+    )
+    zero: Pair = Field(default=[0.0, 0.0], description="where its X0 Y0 is on the part, in mm")
+    z_zero: Literal["top", "bottom"] | float = Field(
+        default="top", description="where its Z0 is, or a height above the part's lower side in mm"
+    )
+    thickness: Positive | None = Field(
+        default=None, description="of the part, in mm; that of its solid if not given"
+    )
+    peg_height: Positive | None = Field(default=None, description="of pegs, in mm; as the part if not given")
+    clearance: float = Field(default=1.0, ge=0, description="what tools keep from what holds the part, in mm")
+    rapid: Literal["straight", "box"] = "straight"
+    unit: Literal["mm", "inch"] | None = Field(default=None, description="of a program without G20 and G21")
+    start: Annotated[list[float], Field(min_length=3, max_length=3)] | None = Field(
+        default=None, description="where the tip is at the start, from the program's own zero, in mm"
+    )
+    whole_numbers: Literal["units", "thousandths"] = "units"
+    cutting: CuttingArguments | None = Field(
+        default=None, description="how tools cut, for their forces on the part"
+    )
+    stock: StockArguments | None = Field(
+        default=None, description="what the part is cut from; 5 mm around the outline and on top if not given"
+    )
+
+    def reading(self, height: float | None) -> dict[str, Any]:
+        """Returns the arguments of :meth:`workhold.Program.read`.
+
+        Parameters
+        ----------
+        height : of the part's solid in mm; None where it has none.
+        """
+        left_out = {"path", "peg_height", "thickness"}
+        given = self.model_dump(exclude=left_out)
+        return given | {"thickness": self.thickness or height}
+
+
 class DesignArguments(LoadArguments):
     """A search for every way to hold a part."""
 
@@ -122,6 +190,9 @@ class DesignArguments(LoadArguments):
     )
     jaw_force: ClosingForce = None
     loads: list[LoadTable] = Field(default=[], description="what acts on the part while it is held")
+    program: ProgramArguments | None = Field(
+        default=None, description="list only fixtures that the tools of this program keep clear of"
+    )
     seating: int | None = Field(
         default=None,
         ge=1,

@@ -17,6 +17,7 @@ from attrs import frozen
 from workhold.cli.agent_arguments import (
     DesignArguments,
     LoadArguments,
+    ProgramArguments,
     SheetArguments,
     ShowArguments,
     ToolArguments,
@@ -24,6 +25,7 @@ from workhold.cli.agent_arguments import (
 from workhold.cli.options import result_with
 from workhold.cli.outputs import refuse_output
 from workhold.cli.search_options import with_fit_of
+from workhold.cli.show_command import passing_words
 from workhold.errors import InputError
 from workhold.files.input_forms import LoadTable
 from workhold.files.loads_file import load_from_words
@@ -34,11 +36,14 @@ from workhold.fixels.kinds import ALIASES, KINDS, toolkit_of
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Box
 from workhold.listing.identity import entries
+from workhold.model.program import Program
 from workhold.model.quality import asked_ranking
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Restrictions, Tolerance, circle_zone, far_loads, polygon_zone
 from workhold.model.result import Result
+from workhold.model.workpiece import Workpiece
 from workhold.presenting.data import explanation_data, fixture_data, load_case_data, part_data, result_data
+from workhold.units import MILLIMETRE
 
 __all__ = ["TOOLS"]
 
@@ -129,13 +134,16 @@ def answered(asked: DesignArguments, cancel: Event) -> tuple[Loaded, Result]:
         circle_zone(*one.circle) if hasattr(one, "circle") else polygon_zone(one.polygon)
         for one in asked.keep_out
     ]
+    passed = passed_by(asked.program, loaded.workpiece)
+    program = passed.get("program")
+    has_forces = program is not None and program.forces is not None
     query = Query(
         loaded.workpiece,
         toolkit,
         asked.types,
         asked.contact_margin,
         Restrictions(avoid=asked.avoid, zones=zones, angles=asked.angles),
-        asked_ranking(None, asked.prefer, loads),
+        asked_ranking(None, asked.prefer, bool(loads) or has_forces, program is not None),
         with_fit_of(None, tolerance),
         loads,
         asked.best,
@@ -143,6 +151,7 @@ def answered(asked: DesignArguments, cancel: Event) -> tuple[Loaded, Result]:
         seating=asked.seating,
         opening=asked.opening,
         foolproof=asked.foolproof,
+        **passed,
     )
     clock = Timer(asked.seconds, cancel.set)
     clock.start()
@@ -150,6 +159,27 @@ def answered(asked: DesignArguments, cancel: Event) -> tuple[Loaded, Result]:
         return loaded, answer(query, cancel=cancel)
     finally:
         clock.cancel()
+
+
+def passed_by(asked: ProgramArguments | None, workpiece: Workpiece) -> dict[str, Any]:
+    """Reads the program that fixtures are to let pass, as a query takes it.
+
+    Raises
+    ------
+    InputError
+        For a program that cannot be read, and heights that nobody knows.
+    """
+    if asked is None:
+        return {}
+    solid = workpiece.solid
+    height = None if solid is None else solid.height
+    high = asked.peg_height or asked.thickness if solid is None else solid.peg_height
+    if high is None:
+        raise InputError(
+            "the part is an outline without heights, so nobody knows what of the program passes over the pegs: "
+            "give its thickness, and peg_height where pegs are not as high."
+        )
+    return {"program": Program.read(asked.path, **asked.reading(height)), "peg_height": high}
 
 
 def held_in(name: str, fields: Mapping[str, Any]) -> tuple[Toolkit, Tolerance | None]:
@@ -195,6 +225,7 @@ def show(asked: ShowArguments, folder: Path, cancel: Event) -> Answer:
         "listed": len(result),
         "complete": bool(result.complete),
         "loads": [load_case_data(one) for one in cases],
+        "program": passing_words(result, asked.rank, MILLIMETRE, force),
     }
     shown = fixture_data(fixture, result.toolkit, asked.rank)
     if asked.seating and not result.toolkit.closes_at_once:

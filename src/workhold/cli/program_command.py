@@ -19,6 +19,7 @@ from workhold.cli.program_options import (
     MATERIAL,
     POWER,
     START_WORDS,
+    STOCK,
     TEETH,
     WHOLE_NUMBERS_WORDS,
     ProgramWords,
@@ -74,6 +75,7 @@ def program(
     cut_depth: str | None = CUT_DEPTH,
     cut_width: str | None = CUT_WIDTH,
     cutting_direction: str | None = CUTTING_DIRECTION,
+    stock: str | None = STOCK,
     draw: str | None = option(None, "FILE", "Draw the paths of the tools (.svg or .png)."),
     force: bool = FORCE,
     unit: str | None = SHOWN_UNIT,
@@ -103,6 +105,7 @@ def program(
         cut_depth=cut_depth,
         cut_width=cut_width,
         cutting_direction=cutting_direction,
+        stock=stock,
     )
     asked = asked_reading(typed, shown, height, asked_zero(zero, shown))
     from workhold.files.program.reader import read_program_with_calls
@@ -169,7 +172,25 @@ def force_table(program: Program, unit: Unit) -> list[Table | str]:
             unit.force_above(up),
         )
     where = "in any direction" if forces.direction == "any" else "within 60 degrees of against the feed"
-    return ["", table, f"Forces on the part act {where}, at the tool's periphery.", *forces.reasons.values()]
+    said = forces.said(program.moves, program.tools).values()
+    return [
+        "",
+        table,
+        f"Forces on the part act {where}, at the tool's periphery.",
+        *said,
+        stock_words(program, unit),
+    ]
+
+
+def stock_words(program: Program, unit: Unit) -> str:
+    """On what alone the tools press, in a sentence."""
+    stock = program.stock
+    assert stock is not None
+    shape = "the part's outline" if stock.shape == "outline" else "the block around the part"
+    around = f"{shape} with {unit.text(stock.side)} around"
+    if stock.height is None:
+        return f"Only what meets the stock counts: {around}."
+    return f"Only what meets the stock counts: {around} and {unit.text(stock.top)} on top."
 
 
 def report(read: ReadProgram, unit: Unit, from_z_zero: bool) -> None:

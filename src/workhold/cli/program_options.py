@@ -43,6 +43,7 @@ __all__ = [
     "SOLIDS",
     "ProgramWords",
     "START_WORDS",
+    "STOCK",
     "TEETH",
     "asked_reading",
     "asked_zero",
@@ -67,6 +68,12 @@ CUTTING_DIRECTION = option(
     FORCES,
     "any|feed",
     "Whether a force may act in any direction, or within 60 degrees of against the feed; any if not given.",
+)
+STOCK = option(
+    FORCES,
+    "SHAPE,SIDE,TOP",
+    "What the part is cut from, on which alone tools press: its outline, or the block around it, with so much "
+    "around and on top; outline,5,5 if not given. Give block, 0,0 or block,2,1.",
 )
 POWER_WORDS = re.compile(r"\s*(?P<number>.*?)\s*(?P<unit>kW|hp)?\s*", re.IGNORECASE | re.DOTALL)
 # kW in a unit; 550 foot-pounds a second.
@@ -123,6 +130,7 @@ class ProgramWords:
     cut_depth: str | None = CUT_DEPTH
     cut_width: str | None = CUT_WIDTH
     cutting_direction: str | None = CUTTING_DIRECTION
+    stock: str | None = STOCK
     thickness: str | None = option(
         PROGRAM,
         "LENGTH",
@@ -246,6 +254,32 @@ def asked_cutting(typed: ProgramWords, unit: Unit) -> CuttingData:
     return CuttingData(**given)
 
 
+def asked_stock(text: str, unit: Unit) -> dict[str, Any]:
+    """What the part is cut from, as ``model.stock.Stock.of`` takes it.
+
+    Raises
+    ------
+    InputError
+        For anything but a shape, two lengths, or both.
+
+    Examples
+    --------
+    >>> asked_stock("block", MILLIMETRE), asked_stock("0,2", MILLIMETRE)
+    ({'shape': 'block'}, {'side': 0.0, 'top': 2.0})
+    """
+    first, *rest = (word.strip() for word in text.split(","))
+    given: dict[str, Any] = {}
+    if first[:1].isalpha():
+        given["shape"] = choice("--stock", first, ("outline", "block"))
+        if not rest:
+            return given
+    else:
+        rest = [first, *rest]
+    remedy = "the stock: give outline or block, what it has around and on top, such as 0,2, or block,0,2."
+    side, top = two_lengths("--stock", ",".join(rest), unit, remedy)
+    return given | {"side": side, "top": top}
+
+
 def no_force(text: str | None) -> float | None:
     """A cutting force in N, 0 included; None where it is not given."""
     return 0.0 if text is not None and text.strip() == "0" else optional_force("--cutting-force", text)
@@ -331,6 +365,7 @@ def asked_reading(
         "whole_numbers": choice("--whole-numbers", words.whole_numbers, ("units", "thousandths")),
         "called": CALLED,
         "cutting": asked_cutting(words, unit),
+        "stock": None if words.stock is None else asked_stock(words.stock, unit),
     }
 
 

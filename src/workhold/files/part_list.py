@@ -115,7 +115,7 @@ def is_folder(path: Path) -> bool:
     """Whether a path is a folder; names that no file can have are none."""
     try:
         return path.is_dir()
-    except (OSError, ValueError):
+    except OSError:
         return False
 
 
@@ -130,9 +130,10 @@ def drawings_in(folder: Path, apart: set[str]) -> Iterator[Path]:
     InputError
         When the folder itself cannot be looked into.
     """
-    waiting = [folder]
+    # Each with where it really lies: asking for that anew would look at all folders above it every time.
+    waiting = [(folder, Path(os.path.realpath(folder)))]
     while waiting:
-        inside = waiting.pop()
+        inside, place = waiting.pop()
         try:
             entries = sorted(os.scandir(inside), key=lambda entry: natural(entry.name))
         except OSError as error:
@@ -145,8 +146,9 @@ def drawings_in(folder: Path, apart: set[str]) -> Iterator[Path]:
         for path in (inside / entry.name for entry in entries):
             if path.suffix.lower() in ENDINGS and not path.is_dir() and not is_own(path):
                 yield path
-        inner = [inside / entry.name for entry in entries if entry.is_dir(follow_symlinks=False)]
-        waiting += [path for path in reversed(inner) if os.path.realpath(path) not in apart]
+        inner = [entry.name for entry in entries if entry.is_dir(follow_symlinks=False)]
+        places = [(inside / name, place / name) for name in reversed(inner)]
+        waiting += [one for one in places if str(one[1]) not in apart]
 
 
 def natural(name: str) -> tuple[list[tuple[bool, int, str]], str]:

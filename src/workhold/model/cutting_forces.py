@@ -5,14 +5,14 @@ minute, F = 60 000 P / (pi D S) with D in m. Or it is the sum over the teeth in 
 kc1.1 h^(1 - mc) b. A tooth at the angle a takes a chip h = f sin a thick, f being the feed per tooth. The sum
 is taken where the teeth add up to most (H. El-Hofy, *Fundamentals of Machining Processes*, 2013, 6.3.1).
 
-A move straight down drills: forces on both sides of the axis cancel, and a torque is left. With kc of the
-chip h = f sin(point / 2) the power of a drill makes F = f D kc / 4 at its periphery, f per turn. It presses
-down with 0.7 (D / 2) f kc = 1.4 F ("Common Drilling Formulas", a sheet of tool makers). A move straight up
-cuts nothing.
+A drill cycle drills, and so does straight down what its table calls a drill: forces on both sides of the axis
+cancel, and a torque is left. With kc of the chip h = f sin(point / 2) the power of a drill makes F = f D kc / 4
+at its periphery, f per turn. It presses down with 0.7 (D / 2) f kc = 1.4 F ("Common Drilling Formulas", a sheet
+of tool makers). Any other tool plunges straight down: what it mills with presses down, with its torque. A move
+straight up cuts nothing.
 
-A program feeds through air as well: down to the work, and into a cut from beside it. Nobody says what the raw
-part is like, so it is taken as a block: the part's outside dimensions with an allowance on all sides and on
-top. A move that stays outside of it wholly presses on nothing. One that enters it counts from end to end.
+A program feeds through air as well, down to the work and into a cut from beside it. Forces act along the
+stretches of moves on which a tool meets the stock, see ``model.stock``.
 
 Glossary
 --------
@@ -27,19 +27,15 @@ from math import acos, floor, pi, radians, sin, tan
 from typing import Any
 
 import numpy as np
-from attrs import cmp_using, evolve, field, frozen
+from attrs import Factory, cmp_using, evolve, field, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
-from workhold.geometry.segment import Box
 from workhold.limits import real, refuse_strong
 from workhold.model.cutting_tool import ANY, DIRECTIONS, CuttingData, CuttingDirection, Tool
-from workhold.model.moves import Moves, floats
+from workhold.model.moves import Moves, Stretches, floats, integers
 
-__all__ = ["ALLOWANCE", "CuttingForces", "above_block", "beside_block", "forces_on"]
-
-# Of the raw block around the part and above it, in mm.
-ALLOWANCE = 5.0
+__all__ = ["CUT_KINDS", "DRILLING", "MILLING", "NO_CUT", "PLUNGING", "CuttingForces", "forces_on"]
 
 Floats = NDArray[np.float64]
 SAME = cmp_using(eq=np.array_equal)
@@ -51,6 +47,9 @@ HELIX = 30.0
 THRUST = 1.4
 # Places of the teeth in a pitch at which their forces are added up.
 STEPS = 360
+# What a move does, by its number.
+NO_CUT, MILLING, DRILLING, PLUNGING = range(4)
+CUT_KINDS = ("", "milling", "drilling", "plunging")
 
 
 def words_of(values: Mapping[int, str]) -> dict[int, str]:
@@ -64,12 +63,14 @@ class CuttingForces:
 
     Parameters
     ----------
-    force : (M,) in the plane, in N; 0 where a move does not cut, and where it drills.
+    force : (M,) in the plane, in N; 0 where a move does not cut, and where it drills or plunges.
     torque : (M,) in N mm.
     axial : (M, 2) least and greatest, in N.
     height : (M,) above the tip at which the force acts, in mm.
     direction : ``any``, or ``feed`` for within 60 degrees of against the feed.
-    reasons : for each tool in a sentence what its force is, and from what it follows.
+    reasons : for each tool, in words, from what its force follows.
+    kind : (M,) what a move does, numbers of :data:`CUT_KINDS`.
+    stretches : where it does it; all along the moves that do anything if None.
 
     Raises
     ------
@@ -83,10 +84,22 @@ class CuttingForces:
     height: Floats = field(converter=floats, eq=SAME, hash=False, repr=False)
     direction: CuttingDirection = ANY
     reasons: Mapping[int, str] = field(factory=dict, converter=words_of, hash=False)
+    kind: NDArray[np.int64] = field(
+        default=Factory(lambda self: kinds_of(self.force, self.torque), takes_self=True),
+        converter=integers,
+        eq=SAME,
+        hash=False,
+        repr=False,
+    )
+    stretches: Stretches = field(
+        default=Factory(lambda self: Stretches.whole(self.acts), takes_self=True), repr=False
+    )
 
     def __attrs_post_init__(self) -> None:
         count = len(self.force)
-        if self.axial.shape != (count, 2) or not len(self.torque) == len(self.height) == count:
+        if self.axial.shape != (count, 2) or not (
+            len(self.torque) == len(self.height) == len(self.kind) == count
+        ):
             raise InputError("forces of a program lack something: give four numbers for each of its moves.")
         if self.direction not in DIRECTIONS:
             raise InputError(f"cutting forces are in {' or '.join(DIRECTIONS)} direction: give one of them.")
@@ -95,6 +108,16 @@ class CuttingForces:
         if not (np.isfinite(ends).all() and least >= 0.0):
             raise InputError("a force of the program is no number, or negative: give 0 or more.")
         refuse_strong("a force of the program", float(ends.max(initial=0.0)))
+        own, first, last = self.stretches.move, self.stretches.first, self.stretches.last
+        is_one = (first >= 0.0) & (first < last) & (last <= 1.0)
+        rise = (own[1:] > own[:-1]) | ((own[1:] == own[:-1]) & (first[1:] >= last[:-1]))
+        if not (is_one.all() and rise.all() and ((own >= 0) & (own < count)).all()):
+            raise InputError("a stretch of a cut is none: give shares from 0 to 1, the lower one first.")
+
+    @property
+    def acts(self) -> NDArray[np.bool_]:
+        """(M,) whether a move does anything."""
+        return np.asarray((self.force > 0.0) | (self.torque > 0.0))
 
     def entry(self, move: int) -> dict[str, Any]:
         """What a move does, as plain data; empty where it does nothing."""
@@ -102,15 +125,29 @@ class CuttingForces:
             return {}
         axial = self.axial[move].tolist()
         force, torque, height = (float(one[move]) for one in (self.force, self.torque, self.height))
-        return {"cutting": {"force": force, "torque": torque, "axial": axial, "height": height}}
+        return {
+            "cutting": {
+                "kind": CUT_KINDS[self.kind[move]],
+                "force": force,
+                "torque": torque,
+                "axial": axial,
+                "height": height,
+                "stretches": self.stretches.of_move(move),
+            }
+        }
 
-    def without(self, moves: NDArray[np.bool_]) -> CuttingForces:
-        """The forces with none on some moves (M,); itself where none acts there."""
-        if not (moves & ((self.force > 0.0) | (self.torque > 0.0))).any():
+    def along(self, stretches: Stretches) -> CuttingForces:
+        """The forces along some stretches alone, and none on moves that have none; itself where those are its
+        own."""
+        if stretches == self.stretches:
             return self
-        force, torque, height = (np.where(moves, 0.0, one) for one in (self.force, self.torque, self.height))
-        axial = np.where(moves[:, None], 0.0, self.axial)
-        return evolve(self, force=force, torque=torque, axial=axial, height=height)
+        gone = np.ones(len(self.force), np.bool_)
+        gone[stretches.move] = False
+        force, torque, height = (np.where(gone, 0.0, one) for one in (self.force, self.torque, self.height))
+        axial, kind = np.where(gone[:, None], 0.0, self.axial), np.where(gone, NO_CUT, self.kind)
+        return evolve(
+            self, force=force, torque=torque, axial=axial, height=height, kind=kind, stretches=stretches
+        )
 
     @classmethod
     def of_entries(cls, rows: list[Mapping[str, Any] | bytes], said: Mapping[str, Any]) -> CuttingForces:
@@ -125,20 +162,51 @@ class CuttingForces:
         taken = [none if isinstance(row, bytes) else row.get("cutting", none) for row in rows]
         force, torque, height = ([real(one[name]) for one in taken] for name in ("force", "torque", "height"))
         axial = np.array([[real(value) for value in one["axial"]] for one in taken]).reshape(-1, 2)
-        reasons = {int(number): str(words) for number, words in said["tools"].items()}
-        return cls(force, torque, axial, height, said["direction"], reasons)
+        # What stands before the words that follow the number says how large it is.
+        reasons = {int(key): str(words).partition(" N ")[2] for key, words in said["tools"].items()}
+        usual = kinds_of(np.array(force), np.array(torque)).tolist()
+        kind = [
+            CUT_KINDS.index(one["kind"]) if "kind" in one else number
+            for one, number in zip(taken, usual, strict=True)
+        ]
+        each = [
+            one.get("stretches", [[0.0, 1.0]] if number else [])
+            for one, number in zip(taken, kind, strict=True)
+        ]
+        shares = [(real(one), real(other)) for rows in each for one, other in rows]
+        move = np.repeat(np.arange(len(each)), [len(rows) for rows in each])
+        first, last = np.array(shares).reshape(-1, 2).T
+        return cls(
+            force, torque, axial, height, said["direction"], reasons, kind, Stretches(move, first, last)
+        )
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self, moves: Moves, tools: Mapping[int, Tool]) -> dict[str, Any]:
         """What is said of all moves, as plain data."""
-        return {"direction": self.direction, "tools": {str(k): words for k, words in self.reasons.items()}}
+        return {"direction": self.direction, "tools": {str(k): v for k, v in self.said(moves, tools).items()}}
+
+    def said(self, moves: Moves, tools: Mapping[int, Tool]) -> dict[int, str]:
+        """For each tool in a sentence how large its force is at most, and from what it follows."""
+        found = {}
+        for number, words in self.reasons.items():
+            most = float(self.torque[moves.tool == number].max(initial=0.0)) * 2 / tools[number].diameter
+            found[number] = f"T{number}: up to {most:.0f} N {words}"
+        return found
 
 
-def forces_on(moves: Moves, tools: Mapping[int, Tool], job: CuttingData) -> CuttingForces | None:
+def kinds_of(force: Floats, torque: Floats) -> NDArray[np.int64]:
+    """(M,) what moves do of which only the forces are known."""
+    return np.where(force > 0.0, MILLING, np.where(torque > 0.0, DRILLING, NO_CUT))
+
+
+def forces_on(
+    moves: Moves, tools: Mapping[int, Tool], job: CuttingData, within: Stretches | None = None
+) -> CuttingForces | None:
     """The forces on moves of some tools; None where nobody asks for any.
 
     Parameters
     ----------
     job : what holds for all tools that do not say otherwise.
+    within : the stretches on which a tool may cut; every cutting move all along if None.
 
     Raises
     ------
@@ -151,28 +219,39 @@ def forces_on(moves: Moves, tools: Mapping[int, Tool], job: CuttingData) -> Cutt
     force, torque, axial, height = np.zeros(count), np.zeros(count), np.zeros((count, 2)), np.zeros(count)
     sideways = (moves.start != moves.end)[:, :2].any(axis=1)
     down = moves.end[:, 2] < moves.start[:, 2]
+    cuts = moves.cutting & (sideways | down)
+    if within is not None:
+        meets = np.zeros(count, np.bool_)
+        meets[within.move] = True
+        cuts &= meets
+    drill = np.isin(moves.tool, [number for number, tool in tools.items() if tool.is_drill])
+    kind = np.where(sideways, MILLING, np.where(moves.cycle | drill, DRILLING, PLUNGING)) * cuts
     reasons = {}
     for number, tool in tools.items():
-        own = moves.cutting & (moves.tool == number) & (sideways | down)
+        own = cuts & (moves.tool == number)
         if not own.any():
             continue
         known, radius = tool.cutting.over(job), tool.diameter / 2
-        mills, drills = np.flatnonzero(own & sideways), np.flatnonzero(own & ~sideways)
-        for rows, drilling in ((mills, False), (drills, True)):
+        for which in (MILLING, DRILLING, PLUNGING):
+            rows = np.flatnonzero(own & (kind == which))
             if not len(rows):
                 continue
-            found = at_periphery(moves, rows, tool, known, drilling)
+            found = at_periphery(moves, rows, tool, known, which == DRILLING)
             torque[rows] = found * radius
-            if drilling:
-                axial[rows, 1] = THRUST * found
+            if which != MILLING:
+                axial[rows, 1] = found * (THRUST if which == DRILLING else 1.0)
                 continue
             force[rows], height[rows] = found, (known.cut_depth or 0.0) / 2
             helix = HELIX if known.helix_angle is None else known.helix_angle
             axial[rows, 0] = -found * tan(radians(helix))
             axial[rows, 1] = np.where(down[rows], found, 0.0)
-        most = float(torque[own].max()) / radius
-        reasons[number] = f"T{number}: up to {most:.0f} N {reason_words(known)}"
-    return CuttingForces(force, torque, axial, height, job.direction or ANY, reasons)
+        reasons[number] = reason_words(known)
+    kind = np.where(torque > 0.0, kind, NO_CUT)
+    whole = CuttingForces(force, torque, axial, height, job.direction or ANY, reasons, kind)
+    if within is None:
+        return whole
+    acts = whole.acts[within.move]
+    return whole.along(Stretches(within.move[acts], within.first[acts], within.last[acts]))
 
 
 def reason_words(known: CuttingData) -> str:
@@ -222,10 +301,11 @@ def refuse_lacking(tool: Tool, known: CuttingData, drilling: bool) -> None:
     if lacking:
         assert known.material is not None
         what = " and ".join(f"its {words}" for _, words in lacking)
+        drill_words = "" if tool.is_drill else "; of a drill say type drill"
         raise InputError(
             f"T{tool.number} lacks {what}, which its force in {known.material.name} follows from: give "
             f"{' and '.join(name for name, _ in lacking)} in the "
-            "table of tools or for the whole job, or its cutting_force."
+            f"table of tools or for the whole job, or its cutting_force{drill_words}."
         )
 
 
@@ -279,44 +359,3 @@ def teeth_together(teeth: int, engaged: float, exponent: float) -> float:
     angle = first[:, None] + pitch * np.arange(floor(engaged / pitch) + 1)
     cut = np.where(angle <= engaged * (1 + 1e-12), np.sin(np.clip(angle, 0.0, pi)), 0.0)
     return round(float((np.maximum(cut, 0.0) ** exponent).sum(axis=1).max()), 12)
-
-
-def above_block(moves: Moves, thickness: float) -> NDArray[np.bool_]:
-    """(M,) whether the tip stays above the block all the way; ``thickness`` of the part in mm."""
-    lowest = np.minimum(moves.start[:, 2], moves.end[:, 2])
-    return np.asarray(lowest >= thickness + ALLOWANCE)
-
-
-def beside_block(moves: Moves, tools: Mapping[int, Tool], part: Box) -> NDArray[np.bool_]:
-    """(M,) whether the tool's edge stays beside the block all the way.
-
-    Parameters
-    ----------
-    part : the part's outside dimensions, in mm.
-
-    Segments are clipped by the sides of the block, grown by the tool's radius (Y.-D. Liang and B. A. Barsky,
-    *A new concept and method for line clipping*, 1984). Of an arc the box around its circle counts.
-    """
-    room = np.full(len(moves), ALLOWANCE)
-    for number, tool in tools.items():
-        room[moves.tool == number] += tool.diameter / 2
-    low = np.array([part.x0, part.y0]) - room[:, None]
-    high = np.array([part.x1, part.y1]) + room[:, None]
-    start, end = moves.start[:, :2], moves.end[:, :2]
-    chord = end - start
-    with np.errstate(divide="ignore", invalid="ignore"):
-        one, other = (low - start) / chord, (high - start) / chord
-    still = chord == 0.0
-    within = (start >= low) & (start <= high)
-    first = np.where(still, np.where(within, 0.0, 2.0), np.minimum(one, other)).max(axis=1)
-    last = np.where(still, np.where(within, 1.0, -1.0), np.maximum(one, other)).min(axis=1)
-    misses = np.maximum(first, 0.0) > np.minimum(last, 1.0)
-    # The circle of an arc: no point is farther from the middle of the chord than twice its radius.
-    bulge = moves.bulge
-    round_ = bulge != 0.0
-    size = np.hypot(*chord.T)
-    safe = np.where(round_, np.abs(bulge), 1.0)
-    reach = (size * (1.0 + safe * safe) / (2.0 * safe))[:, None]
-    middle = (start + end) / 2
-    far = ((middle + reach < low) | (middle - reach > high)).any(axis=1)
-    return np.asarray(np.where(round_, far, misses))

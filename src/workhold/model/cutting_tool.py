@@ -41,6 +41,7 @@ DIRECTIONS = (ANY, FEED)
 # What the force follows from, of which one is given.
 FORCES = ("cutting_force", "power", "material")
 MOST_TEETH, MOST_POWER = 1000, 1e5
+DRILL = "drill"
 
 
 @frozen
@@ -287,6 +288,8 @@ class Tool:
     diameter : of the flute, in mm.
     name : what the workshop calls it.
     cutting : what is known of how it cuts; a file of a result has the forces instead.
+    flute_length : from the tip as far up as it cuts, in mm; None where it is as long as its lowest cylinder.
+    kind : what its table says it is, such as ``drill``; empty where it says nothing.
     has_holder : whether one of the cylinders is its holder; None where nobody says, and one of several
         cylinders is taken for it.
 
@@ -301,6 +304,8 @@ class Tool:
     diameter: float = field(converter=real)
     name: str = ""
     cutting: CuttingData = field(factory=CuttingData, eq=False)
+    flute_length: float | None = field(default=None, converter=optional(real))
+    kind: str = field(default="", converter=str, eq=False)
     has_holder: bool | None = field(default=None, eq=False)
 
     def __attrs_post_init__(self) -> None:
@@ -308,11 +313,27 @@ class Tool:
             raise InputError(f"tool {self.number} has no diameter: give one in mm.")
         if self.has_holder is None:
             object.__setattr__(self, "has_holder", len(self.cylinders) > 1)
+        if self.flute_length is not None and not 0.0 < self.flute_length < inf:
+            raise InputError(
+                f"tool {self.number} has a flute of {self.flute_length:g} mm: give a length above 0."
+            )
+
+    @property
+    def flute_end(self) -> float:
+        """The height above the tip up to which it cuts, in mm."""
+        lowest = min(self.cylinders, key=lambda one: one.low)
+        return lowest.high if self.flute_length is None else self.flute_length
+
+    @property
+    def is_drill(self) -> bool:
+        """Whether its table calls it a drill: by its kind or, where there is none, by the word in its name."""
+        return DRILL in (self.kind or self.name).lower()
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data as in a result file."""
         rows = [[one.low, one.high, one.radius] for one in self.cylinders]
-        return {"name": self.name, "diameter": self.diameter, "cylinders": rows}
+        flute = {} if self.flute_length is None else {"flute_length": self.flute_length}
+        return {"name": self.name, "diameter": self.diameter, **flute, "cylinders": rows}
 
     @classmethod
     def of_entries(cls, number: int, entries: Mapping[str, Any]) -> Tool:
@@ -324,4 +345,5 @@ class Tool:
             For entries that lack something, or hold what cannot be.
         """
         cylinders = [Cylinder(*row) for row in entries["cylinders"]]
-        return cls(number, cylinders, entries["diameter"], str(entries.get("name", "")))
+        name, flute = str(entries.get("name", "")), entries.get("flute_length")
+        return cls(number, cylinders, entries["diameter"], name, flute_length=flute)

@@ -18,7 +18,7 @@ from struct import Struct
 from typing import Any, Literal
 
 import numpy as np
-from attrs import cmp_using, field, frozen
+from attrs import Factory, cmp_using, field, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
@@ -32,9 +32,11 @@ __all__ = [
     "MoveKind",
     "Moves",
     "PathVertex",
+    "Stretches",
     "SweptPiece",
     "along",
     "box_path",
+    "bulge_of",
     "moves_of",
     "packed_piece",
     "shares_between",
@@ -99,6 +101,7 @@ class Moves:
     bulge : (M,) of the path in the plane.
     feed : (M,) along the path in mm/min, 0 for rapid moves and where none is given.
     spindle : (M,) revolutions per minute, 0 where none are given.
+    cycle : (M,) whether a drill cycle makes it; False where nobody knows, as of a file.
 
     Raises
     ------
@@ -114,10 +117,17 @@ class Moves:
     bulge: Floats = field(converter=floats, eq=SAME, hash=False, repr=False)
     feed: Floats = field(converter=floats, eq=SAME, hash=False, repr=False)
     spindle: Floats = field(converter=floats, eq=SAME, hash=False, repr=False)
+    cycle: NDArray[np.bool_] = field(
+        default=Factory(lambda self: np.zeros(len(self.line), np.bool_), takes_self=True),
+        converter=booleans,
+        eq=SAME,
+        hash=False,
+        repr=False,
+    )
 
     def __attrs_post_init__(self) -> None:
         count = len(self.line)
-        flat = (self.tool, self.cutting, self.bulge, self.feed, self.spindle)
+        flat = (self.tool, self.cutting, self.bulge, self.feed, self.spindle, self.cycle)
         if any(one.shape != (count,) for one in flat) or not (self.start.size == self.end.size == 3 * count):
             raise InputError("moves of a program lack something: give line, tool, ends and bulge of each.")
         if not count:
@@ -133,7 +143,7 @@ class Moves:
 
     @classmethod
     def of_rows(cls, rows: Sequence[tuple[Any, ...]]) -> Moves:
-        """Moves from rows of line, tool, cutting, start, end, bulge, feed and spindle.
+        """Moves from rows of line, tool, cutting, start, end, bulge, feed, spindle and, if given, cycle.
 
         Raises
         ------
@@ -144,6 +154,27 @@ class Moves:
         ends = [np.array(columns[k], dtype=float).reshape(-1, 3) for k in (3, 4)]
         return cls(*columns[:3], *ends, *columns[5:])
 
+    def cut_to(self, stretches: Stretches) -> Moves:
+        """The stretches of these moves as moves."""
+        move, first, last = stretches.move, stretches.first, stretches.last
+        start, end, bulge = self.start[move], self.end[move], self.bulge[move]
+        places = []
+        for share in (first, last):
+            height = start[:, 2] + share * (end - start)[:, 2]
+            height = np.where(share == 0.0, start[:, 2], np.where(share == 1.0, end[:, 2], height))
+            places.append(np.column_stack([along(start[:, :2], end[:, :2], bulge, share), height]))
+        return Moves(
+            self.line[move],
+            self.tool[move],
+            self.cutting[move],
+            places[0],
+            places[1],
+            bulge_of(bulge, last - first),
+            self.feed[move],
+            self.spindle[move],
+            self.cycle[move],
+        )
+
     @property
     def length(self) -> Floats:
         """(M,) length of each move in mm, of helices along the helix."""
@@ -153,6 +184,40 @@ class Moves:
             flat = np.where(half == 0.0, chord, chord * half / np.sin(half))
         length: Floats = np.hypot(flat, (self.end - self.start)[:, 2])
         return length
+
+
+@frozen
+class Stretches:
+    """K stretches of moves, by the moves' numbers and along each.
+
+    Parameters
+    ----------
+    move : (K,) numbers of moves, never falling.
+    first, last : (K,) shares from which and until which each goes.
+    """
+
+    move: NDArray[np.int64] = field(converter=integers, eq=SAME, hash=False, repr=False)
+    first: Floats = field(converter=floats, eq=SAME, hash=False, repr=False)
+    last: Floats = field(converter=floats, eq=SAME, hash=False, repr=False)
+
+    def __len__(self) -> int:
+        return len(self.move)
+
+    @classmethod
+    def whole(cls, moves: NDArray[np.bool_]) -> Stretches:
+        """All of those moves that a mask (M,) names."""
+        rows = np.flatnonzero(moves)
+        return cls(rows, np.zeros(len(rows)), np.ones(len(rows)))
+
+    def of_move(self, move: int) -> list[list[float]]:
+        """First and last share of each stretch of a move."""
+        own = slice(*np.searchsorted(self.move, [move, move + 1]).tolist())
+        return [list(pair) for pair in zip(self.first[own].tolist(), self.last[own].tolist(), strict=True)]
+
+
+def bulge_of(bulge: Floats, part: Floats) -> Floats:
+    """The bulges (N,) of parts of arcs, as shares of their sweeps."""
+    return np.where(part == 1.0, bulge, np.tan(part * np.arctan(bulge)))
 
 
 def shares_between(start: Floats, end: Floats, low: Floats, high: Floats) -> tuple[Floats, Floats]:

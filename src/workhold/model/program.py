@@ -21,9 +21,8 @@ from numpy.typing import NDArray
 
 from workhold.delegates import delegate
 from workhold.errors import InputError
-from workhold.geometry.segment import Box
 from workhold.limits import real, refuse_long
-from workhold.model.cutting_forces import CuttingForces, beside_block
+from workhold.model.cutting_forces import CuttingForces
 from workhold.model.cutting_tool import CuttingData, Cylinder, Tool
 from workhold.model.moves import (
     CUT,
@@ -34,12 +33,14 @@ from workhold.model.moves import (
     SweptPiece,
     along,
     box_path,
+    bulge_of,
     moves_of,
     packed_piece,
     shares_between,
 )
+from workhold.model.stock import Stock, stretches_in
 
-__all__ = ["Cylinder", "MoveKind", "PathVertex", "Program", "SweptPiece", "Tool"]
+__all__ = ["Cylinder", "MoveKind", "PathVertex", "Program", "Stock", "SweptPiece", "Tool"]
 
 WAYS = ("straight", "box")
 # Pieces made at a time.
@@ -104,6 +105,8 @@ class Program:
     skipped : lines with a move that was left out, such as one to a place of the machine's own.
     notes : sentences on what was read in one way where another is thinkable.
     forces : of the tools on the part, on every move; None where nobody asks for them.
+    stock : what the part is cut from, on which alone forces act; None where a file does not say.
+    is_placed : whether forces are those on a part already.
 
     Raises
     ------
@@ -123,6 +126,8 @@ class Program:
     skipped: tuple[int, ...] = field(default=(), converter=lines_of)
     notes: tuple[str, ...] = field(default=(), converter=notes_of)
     forces: CuttingForces | None = None
+    stock: Stock | None = field(factory=Stock)
+    is_placed: bool = field(default=False, eq=False)
 
     def __attrs_post_init__(self) -> None:
         if self.unit not in UNITS or self.rapid not in WAYS:
@@ -157,6 +162,7 @@ class Program:
         cutting: CuttingData | Mapping[str, Any] | None = None,
         start: Sequence[float] | None = None,
         whole_numbers: Literal["units", "thousandths"] = "units",
+        stock: Stock | Mapping[str, Any] | str | None = None,
     ) -> Program:
         """Reads a program of RS-274 (G-code).
 
@@ -176,6 +182,8 @@ class Program:
             program says it.
         whole_numbers : what a length without a decimal point counts: ``units``, or ``thousandths``, which are
             0.001 mm or 0.0001 inch.
+        stock : what the part is cut from, as a :class:`workhold.model.stock.Stock`, or its ``side``, ``top``
+            and ``shape`` by name; 5 mm around the outline and on top if None.
 
         Raises
         ------
@@ -195,6 +203,7 @@ class Program:
             cutting=cutting,
             start=start,
             whole_numbers=whole_numbers,
+            stock=stock,
         )
         return read
 
@@ -261,7 +270,7 @@ class Program:
             cutting=moves.cutting[row],
             start=along(start[:, :2], end[:, :2], bulge, first),
             end=along(start[:, :2], end[:, :2], bulge, last),
-            bulge=np.where(last - first == 1.0, bulge, np.tan((last - first) * np.arctan(bulge))),
+            bulge=bulge_of(bulge, last - first),
             tip_first=np.where(first == 0.0, start[:, 2], start[:, 2] + first * rise),
             tip_last=np.where(last == 1.0, end[:, 2], start[:, 2] + last * rise),
             cylinder=cylinder,
@@ -288,17 +297,18 @@ class Program:
         boxed: NDArray[np.bool_] = ~self.moves.cutting & (moved.sum(axis=1) > 1)
         return boxed
 
-    def pressing_on(self, part: Box) -> Program:
-        """The program without forces on moves that stay beside the raw block of a part.
+    def pressing_on(self, loops: Sequence[NDArray[np.float64]]) -> Program:
+        """The program with forces only on the stretches of moves on which a tool meets the stock of a part.
 
         Parameters
         ----------
-        part : its outside dimensions, in mm.
+        loops : the part's outer loops, (N, 3) vertices x, y in mm and bulge.
         """
-        if self.forces is None:
+        if self.forces is None or self.stock is None or self.is_placed:
             return self
-        forces = self.forces.without(beside_block(self.moves, self.tools, part))
-        return self if forces is self.forces else evolve(self, forces=forces)
+        border, acts = self.stock.border(loops), self.forces.acts
+        forces = self.forces.along(stretches_in(self.moves, self.tools, self.stock, border, acts))
+        return evolve(self, forces=forces, is_placed=True)
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data as in a result file."""
@@ -326,8 +336,15 @@ class Program:
             "tools": {str(number): tool.to_dict() for number, tool in self.tools.items()},
             "skipped": list(self.skipped),
             "notes": list(self.notes),
-            **({} if self.forces is None else {"forces": self.forces.to_dict()}),
+            **self.pressing(),
         }
+
+    def pressing(self) -> dict[str, Any]:
+        """What is said of forces on the part, as plain data; nothing without any."""
+        if self.forces is None:
+            return {}
+        stock = {} if self.stock is None else {"stock": self.stock.to_dict()}
+        return {**stock, "forces": self.forces.to_dict(self.moves, self.tools)}
 
     @classmethod
     def of_entries(cls, entries: Mapping[str, Any]) -> Program:
@@ -342,7 +359,7 @@ class Program:
         """
         tools = {int(key): Tool.of_entries(int(key), value) for key, value in entries["tools"].items()}
         x, y = (real(value) for value in entries["zero"])
-        rows, said = entries["pieces"], entries.get("forces")
+        rows, said, stock = entries["pieces"], entries.get("forces"), entries.get("stock")
         moves = moves_of([one if isinstance(one, bytes) else packed_piece(one) for one in rows], tools)
         # A move has a piece for each cylinder of its tool, all with the same force; packed ones have none.
         each = np.array([len(tools[number].cylinders) for number in moves.tool.tolist()], np.int64)
@@ -360,4 +377,6 @@ class Program:
             skipped=[int(line) for line in entries["skipped"]],
             notes=[str(note) for note in entries.get("notes", ())],
             forces=None if said is None else CuttingForces.of_entries(first, said),
+            stock=None if stock is None else Stock.of_entries(stock),
+            is_placed=True,
         )

@@ -12,7 +12,6 @@ from attrs import evolve, field, frozen
 
 from workhold.errors import InputError, refuse_kind
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.segment import Box
 from workhold.limits import counting_number, real, refuse_long, refuse_strong
 from workhold.model.own_outlines import met_by
 from workhold.model.program import Program
@@ -153,7 +152,7 @@ class Query:
         if PROGRAM_FIGURE.key in self.ranking and self.program is None:
             raise InputError(f"there is no program to rank by the {PROGRAM_FIGURE.words}: give one.")
         if self.program is not None:
-            object.__setattr__(self, "program", self.program.pressing_on(Box(*self.workpiece.bounds)))
+            object.__setattr__(self, "program", self.program.pressing_on(self.workpiece.outer_loops))
         if self.program is not None or self.peg_height is not None:
             object.__setattr__(self, "peg_height", height_of_pegs(self.peg_height, self.workpiece))
         if self.thickness is not None:

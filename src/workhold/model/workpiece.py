@@ -313,6 +313,11 @@ class Workpiece:
         return sum(len(loop) for loop in self.loops[: self.pieces])
 
     @property
+    def outer_loops(self) -> tuple[NDArray[np.float64], ...]:
+        """The vertices of the outer loops."""
+        return self.loops[: self.pieces]
+
+    @property
     def outer_faces(self) -> tuple[Face, ...]:
         """The faces of the outer loops."""
         return tuple(face for face in self.faces if face.number < self.outer_count)

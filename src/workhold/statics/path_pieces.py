@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from workhold.geometry.hull import convex_hull, half_hull
 from workhold.model.cutting_tool import ANY
+from workhold.model.moves import Stretches
 from workhold.model.program import Program
 from workhold.statics.path_forces import EVERY, WITHIN, PathForces
 
@@ -38,13 +39,12 @@ def path_forces(program: Program, center: tuple[float, float]) -> PathForces:
 
 
 def all_pieces(program: Program, center: tuple[float, float]) -> PathForces:
-    """Both ends of every move with a force, and the insides of arcs."""
-    moves, forces = program.moves, program.forces
-    does = np.zeros(0, np.int64)
-    if forces is not None:
-        does = np.flatnonzero((forces.force > 0.0) | (forces.torque > 0.0))
-    start, end = (one[does, :2] - np.array(center) for one in (moves.start, moves.end))
-    chord, bulge = end - start, moves.bulge[does]
+    """Both ends of every stretch with a force, and the insides of arcs."""
+    forces = program.forces
+    stretches = Stretches((), (), ()) if forces is None else forces.stretches
+    does, moves = stretches.move, program.moves.cut_to(stretches)
+    start, end = (one[:, :2] - np.array(center) for one in (moves.start, moves.end))
+    chord, bulge = end - start, moves.bulge
     round_ = (bulge != 0.0) & (chord != 0.0).any(axis=1)
     turn = np.where(round_, 4.0 * np.arctan(bulge), 0.0)
     heading = np.arctan2(chord[:, 1], chord[:, 0]) + pi

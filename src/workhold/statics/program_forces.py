@@ -13,11 +13,13 @@ from math import ceil, floor, inf, log10
 from typing import Any
 
 import numpy as np
-from attrs import asdict, evolve, frozen
+from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.fixels.toolkit import Toolkit
+from workhold.model.cutting_forces import CUT_KINDS, MILLING
 from workhold.model.fixture_table import FixtureTable, peg_places
+from workhold.model.moves import Stretches
 from workhold.model.program import Program
 from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
@@ -35,6 +37,62 @@ BLOCK = 1 << 12
 
 
 @frozen
+class CutDone:
+    """What of a move cuts; lengths in mm.
+
+    Parameters
+    ----------
+    kind : one of ``model.cutting_forces.CUT_KINDS``.
+    start, end : where the tip is as it begins to cut and as it stops, from the program's own zero.
+    length, whole : how far it cuts, in as many stretches as there are, and of what length.
+    name : of the tool, empty where it has none.
+    """
+
+    kind: str
+    start: tuple[float, float, float]
+    end: tuple[float, float, float]
+    length: float
+    whole: float
+    name: str = ""
+
+    def words(self, unit: Unit) -> str:
+        """What cuts and where, to follow the tool's number.
+
+        Examples
+        --------
+        >>> from workhold.units import MILLIMETRE
+        >>> CutDone("milling", (-11, 20, -2), (131, 20, -2), 142, 200, "face mill").words(MILLIMETRE)
+        'face mill, milling from X-11 Y20 Z-2 to X131 Y20 Z-2, 142 of 200 mm'
+        >>> CutDone("drilling", (20, 20, 5), (20, 20, -17), 22, 24).words(MILLIMETRE)
+        'drilling at X20 Y20 from Z5 to Z-17, 22 of 24 mm'
+        """
+
+        def place(axes: str, values: Sequence[float]) -> str:
+            numbers = (short(value, unit) for value in values)
+            return " ".join(f"{axis}{number}" for axis, number in zip(axes, numbers, strict=True))
+
+        upright = self.start[:2] == self.end[:2]
+        if upright and self.kind != CUT_KINDS[MILLING]:
+            where = f"at {place('XY', self.start)} from {place('Z', self.start[2:])} to {place('Z', self.end[2:])}"
+        else:
+            where = f"from {place('XYZ', self.start)} to {place('XYZ', self.end)}"
+        far = f"{short(self.length, unit)} of {short(self.whole, unit)} {unit.abbreviation}"
+        if self.length >= self.whole * (1.0 - 1e-9):
+            far = f"all {short(self.whole, unit)} {unit.abbreviation}"
+        return f"{self.name + ', ' if self.name else ''}{self.kind} {where}, {far}"
+
+
+def short(value: float, unit: Unit) -> str:
+    """A length in mm as programs write it: in its unit, without zeros that say nothing.
+
+    >>> from workhold.units import INCH, MILLIMETRE
+    >>> short(20.0, MILLIMETRE), short(-0.00001, MILLIMETRE), short(25.4, INCH)
+    ('20', '0', '1')
+    """
+    return f"{round(value / unit.millimetres, 2 if unit.millimetres == 1 else 3) + 0.0:.10g}"
+
+
+@frozen
 class AskedForce:
     """A force that a program asks for.
 
@@ -43,12 +101,23 @@ class AskedForce:
     force : in N.
     line, tool : of the program, where it does; None where the force is the same without any tool.
     element : the contact that it is about, such as "peg L-A1"; None where no tool pushes the part off one.
+    done : what of that line cuts; None where it is not told.
     """
 
     force: float
     line: int | None
     tool: int | None
     element: str | None
+    done: CutDone | None = None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data as in a result file."""
+        return {name: getattr(self, name) for name in ("force", "line", "tool", "element")}
+
+    def place(self, unit: Unit) -> str:
+        """Line and tool, and what of it cuts, in words."""
+        done = "" if self.done is None else f" ({self.done.words(unit)})"
+        return f"line {self.line}, T{self.tool}{done}"
 
 
 @frozen
@@ -70,7 +139,8 @@ class CuttingNeed:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data as in a result file."""
-        return asdict(self)
+        asked = {"jaw": self.jaw.to_dict(), "contact": self.contact.to_dict()}
+        return asked | {"jaw_force": self.jaw_force, "room": self.room}
 
     def in_holes(self, before: Sequence[str], after: Sequence[str]) -> CuttingNeed:
         """Renames the holes, contact by contact."""
@@ -107,8 +177,8 @@ class CuttingNeed:
             return [f"The tools of the program push the part off nothing, at any {mover} force."]
         name = mover[:1].upper() + mover[1:] + " force" + " of both together" * (movers > 1)
         said = [
-            f"{name} at least {force_up(self.jaw.force, unit)}, asked for by line {self.jaw.line}, "
-            f"T{self.jaw.tool}: with less the part leaves {self.jaw.element}."
+            f"{name} at least {force_up(self.jaw.force, unit)}, asked for by {self.jaw.place(unit)}: "
+            f"with less the part leaves {self.jaw.element}."
         ]
         if self.room is not None:
             given = unit.force_words(self.jaw_force)
@@ -118,7 +188,9 @@ class CuttingNeed:
                 lacking = f"{unit.force_above(-self.room)} {unit.force}"
                 said.append(f"The {given} given are {lacking} too little.")
         most = force_up(self.contact.force, unit)
-        at = f"in line {self.contact.line}, T{self.contact.tool}"
+        same = (self.contact.line, self.contact.tool) == (self.jaw.line, self.jaw.tool)
+        # What is said of the first force is not said again.
+        at = f"in {(evolve(self.contact, done=None) if same else self.contact).place(unit)}"
         if self.contact.line is None:
             at = "whatever the tools do"
         with_ = f"With {unit.force_words(self.jaw_force)} {self.contact.element}"
@@ -240,7 +312,32 @@ def asked_force(
     name = None if contact < 0 else element_name(table, toolkit, row, contact)
     if move < 0:
         return AskedForce(value, None, None, name)
-    return AskedForce(value, int(program.moves.line[move]), int(program.moves.tool[move]), name)
+    moves = program.moves
+    return AskedForce(value, int(moves.line[move]), int(moves.tool[move]), name, done_on(program, move))
+
+
+def done_on(program: Program, move: int) -> CutDone | None:
+    """What of a move cuts; None without forces."""
+    forces, moves = program.forces, program.moves
+    if forces is None:
+        return None
+    own = np.flatnonzero(forces.stretches.move == move)
+    some = forces.stretches
+    parts = moves.cut_to(Stretches(some.move[own], some.first[own], some.last[own]))
+    shift = np.array([*program.zero, program.z_zero])
+
+    def place(point: Array) -> tuple[float, float, float]:
+        x, y, z = (point - shift).tolist()
+        return x, y, z
+
+    return CutDone(
+        CUT_KINDS[forces.kind[move]],
+        place(parts.start[0]),
+        place(parts.end[-1]),
+        float(parts.length.sum()),
+        float(moves.length[move]),
+        program.tools[int(moves.tool[move])].name,
+    )
 
 
 def cutting_need_of(

@@ -1,7 +1,7 @@
 """What a program asks of supports: its forces as loads in space, and keep-out zones of what it sweeps.
 
-Cutting forces are loads with heights, the thrust of drills and the pull of helices. For each tool, what mills
-and what drills are loads of their own, with every force that it has; where it has more than a few, with the
+Cutting forces are loads with heights, the thrust of drills and the pull of helices. For each tool, what mills,
+what drills and what plunges are loads of their own, with every force that it has; where it has more than a few, with the
 largest. A path counts as the hull of its places. Arcs are taken in polygons around them, so that nothing is
 less than it is, and a force may act in any direction.
 
@@ -29,8 +29,9 @@ from numpy.typing import NDArray
 
 from workhold.contact.swept import Swept, path_of
 from workhold.contact.trimming import distances
-from workhold.model.cutting_forces import CuttingForces
+from workhold.model.cutting_forces import CUT_KINDS, DRILLING, MILLING, PLUNGING, CuttingForces
 from workhold.model.cutting_tool import ANY
+from workhold.model.moves import Stretches
 from workhold.model.program import PathVertex, Program, SweptPiece
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Zone, zone_of
@@ -65,13 +66,11 @@ def cutting_loads(program: Program, thickness: float) -> tuple[SpatialLoad, ...]
     if forces is None:
         return ()
     found = list[SpatialLoad]()
-    acts = (forces.torque > 0.0) | (forces.force > 0.0)
     for tool in program.tools:
-        own = acts & (program.moves.tool == tool)
-        for drills, word in ((False, "milling"), (True, "drilling")):
-            rows = np.flatnonzero(own & ((forces.force == 0.0) == drills))
+        for kind in (MILLING, DRILLING, PLUNGING):
+            rows = np.flatnonzero((forces.kind == kind) & (program.moves.tool == tool))
             for group in alike(forces, rows):
-                found += loads_of(program, forces, group, thickness, f"T{tool} {word}")
+                found += loads_of(program, forces, group, thickness, f"T{tool} {CUT_KINDS[kind]}")
     return tuple(found)
 
 
@@ -87,19 +86,22 @@ def alike(forces: CuttingForces, rows: IntArray) -> Iterator[IntArray]:
 def loads_of(
     program: Program, forces: CuttingForces, rows: IntArray, thickness: float, name: str
 ) -> Iterator[SpatialLoad]:
-    """The loads of some moves, with the torque either way round."""
-    moves = program.moves
-    only = np.zeros(len(moves))
+    """The loads of some moves on their stretches, with the torque either way round."""
+    count, own = len(program.moves), np.isin(forces.stretches.move, rows)
+    only = np.zeros(count)
     only[rows] = 1.0
-    none = np.zeros(len(moves))
-    any_way = CuttingForces(only, none, np.zeros((len(moves), 2)), none, ANY)
+    none = np.zeros(count)
+    cut = forces.stretches
+    cut = Stretches(cut.move[own], cut.first[own], cut.last[own])
+    any_way = CuttingForces(only, none, np.zeros((count, 2)), none, ANY, stretches=cut)
     pieces = all_pieces(evolve(program, forces=any_way), (0.0, 0.0))
     is_arc = pieces.radius > 0.0
     x, y = around_arcs(pieces, np.flatnonzero(is_arc))
     points = np.concatenate(
         [np.stack([pieces.x[~is_arc], pieces.y[~is_arc]], axis=1), np.stack([x.ravel(), y.ravel()], axis=1)]
     )
-    tip = np.concatenate([moves.start[rows, 2], moves.end[rows, 2]]) + np.tile(forces.height[rows], 2)
+    parts = program.moves.cut_to(cut)
+    tip = np.concatenate([parts.start[:, 2], parts.end[:, 2]]) + np.tile(forces.height[cut.move], 2)
     # What a tool does below the part or over it acts at its lower or upper side.
     heights = np.clip([tip.min(), tip.max()], 0.0, thickness)
     load = SpatialLoad(

@@ -49,13 +49,13 @@ SIXTY = pi / 3
 
 @frozen(eq=False)
 class ForceWalk:
-    """The moves of a program that press on the part.
+    """The stretches of a program's moves that press on the part.
 
     Parameters
     ----------
-    walk : where they go.
-    forces : on all moves.
-    move : (R,) numbers of the moves that press.
+    walk : where the moves go.
+    forces : on all moves, and the stretches.
+    move : (R,) numbers of the moves of which the stretches are.
     first : (B,) where blocks of them begin.
     center, reach : (B, 2) and (B,) circles around blocks, in mm.
     force, torque : (B,) the largest of each block.
@@ -75,10 +75,10 @@ class ForceWalk:
     @classmethod
     def of(cls, program: Program, forces: CuttingForces) -> ForceWalk:
         """The walk along a program with its forces."""
-        walk, moves = walk_of(program), program.moves
-        move = np.flatnonzero((forces.force != 0.0) | (forces.torque != 0.0))
+        walk, stretches = walk_of(program), forces.stretches
+        move = stretches.move
         first = np.arange(0, len(move), RUN)
-        ends = [moves.start[move, :2], moves.end[move, :2]]
+        ends = [walk.at(move, share) for share in (stretches.first, stretches.last)]
         bulging = np.where(walk.is_round[move], walk.radius[move], 0.0)[:, None]
         middle = np.where(walk.is_round[move, None], walk.center[move], ends[0])
         low = np.minimum(np.minimum(*ends), middle - bulging)
@@ -117,7 +117,7 @@ class ForceWalk:
         else:
             moves = self.walk.program.moves
             own = (moves.line[self.move] == line) & (moves.tool[self.move] == tool)
-            found, most = self.look(self.move[own], *middle, known), float(self.force.max(initial=0.0))
+            found, most = self.look(np.flatnonzero(own), *middle, known), float(self.force.max(initial=0.0))
         turning = float(self.torque.max(initial=0.0)) + most * self.far
         spare = most * (off[0] + off[1]) + turning * off[2]
         size = most * (abs(middle[0]) + abs(middle[1])) + turning * abs(middle[2])
@@ -131,12 +131,17 @@ class ForceWalk:
         for block in np.argsort(-bounds):
             if bounds[block] <= found:
                 break
-            found = self.look(self.move[self.first[block] : self.first[block] + RUN], a, b, c, found)
+            rows = np.arange(self.first[block], min(self.first[block] + RUN, len(self.move)))
+            found = self.look(rows, a, b, c, found)
         return found
 
-    def look(self, moves: IntArray, a: float, b: float, c: float, found: float) -> float:
-        """The largest value on some moves, to a part of it; ``found`` if that is more."""
-        low, high = np.zeros(len(moves)), np.ones(len(moves))
+    def look(self, rows: IntArray, a: float, b: float, c: float, found: float) -> float:
+        """The largest value on some stretches, to a part of it; ``found`` if that is more."""
+        moves, low, high = (
+            self.move[rows],
+            self.forces.stretches.first[rows],
+            self.forces.stretches.last[rows],
+        )
         ends = [self.at(moves, share, a, b, c) for share in (low, high)]
         found = max(found, float(np.maximum(*ends).max(initial=0.0)))
         round_ = self.walk.is_round[moves] & (self.forces.force[moves] > 0.0)

@@ -32,6 +32,7 @@ from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.seat import SeatBalance
 from workhold.verification.seat_clamps import SeatOnPlate
 from workhold.verification.seating import SeatingJudge
+from workhold.verification.stock_walk import stock_faults
 from workhold.verification.tolerances import AGREEMENT, Finding, number, rule
 from workhold.verification.tool_walk import program_fault
 from workhold.verification.touching import touching_findings
@@ -360,6 +361,7 @@ def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verifi
         *order_faults(everything, query, judge.hardware),
         *pattern_faults(everything, query),
         *seat_faults(listing, refuted),
+        *stock_faults(query),
     ]
     if not refuted and turning.is_certain:
         faults += distinct_faults(listing, seen)

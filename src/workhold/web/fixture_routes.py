@@ -29,7 +29,7 @@ from workhold.web.fixture_tasks import (
 )
 from workhold.web.forms import LoadsForm, asked_loads
 from workhold.web.job_routes import attachment, found_job, result_of_job
-from workhold.web.program_forms import passing_answer
+from workhold.web.program_forms import forces_answer, passing_answer
 from workhold.web.request_forms import ChosenSupportsForm, FirstSideForm, SupportsForm, asked_of
 from workhold.web.state import CheckedRoute, at_desk, at_desk_while_heard, state_of
 from workhold.web.support_tasks import SupportsOrder
@@ -126,13 +126,15 @@ async def fixture(request: Request, name: str, rank: Rank, revision: Revision = 
     """The row of a fixture, with contacts and outward normals in the vise frame.
 
     With a program ``passing`` is the move that comes nearest to what holds the part, with line, tool, and
-    distance in mm. Its path is that of the tool's axis there, in the part's coordinates.
+    distance in mm. Its path is that of the tool's axis there, in the part's coordinates. With cutting forces
+    ``program_forces`` says which force they ask for, and what of which line does.
     """
     result = result_of_job(found_job(request, name), revision)
     index = ranked(result, rank)
     row = rows_answer(result.table.take(slice(index, index + 1)), result.workpiece, result.toolkit, [rank])[0]
     contacts = contact_answer(result[index], result.workpiece, result.toolkit)
-    return {**row, **contacts, "passing": passing_answer(result, index)}
+    passing, forces = passing_answer(result, index), forces_answer(result, index)
+    return {**row, **contacts, "passing": passing, "program_forces": forces}
 
 
 @router.post("/loads", summary="What loads do to a fixture")

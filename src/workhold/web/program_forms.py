@@ -15,6 +15,7 @@ from pydantic import ConfigDict, Field
 from workhold.errors import InputError
 from workhold.model.program import Program
 from workhold.model.solid import SolidOutline
+from workhold.units import MILLIMETRE
 from workhold.web.request_forms import LARGEST, Form, Name, Point
 from workhold.web.worker import Order
 
@@ -47,6 +48,26 @@ class ToolTableForm(Form):
     text: Annotated[str, Field(max_length=MOST_TABLE)]
 
 
+class CuttingForm(Form):
+    """How tools cut of which the table does not say it: a force in N, a power in kW, or a material."""
+
+    cutting_force: Annotated[float, Field(ge=0)] | None = None
+    power: Annotated[float, Field(gt=0)] | None = None
+    material: Name | None = None
+    teeth: Annotated[int, Field(ge=1)] | None = None
+    cut_depth: Thick | None = None
+    cut_width: Thick | None = None
+    direction: Literal["any", "feed"] | None = None
+
+
+class StockForm(Form):
+    """What the part is cut from: its outline or the block around it, with so much around and on top."""
+
+    side: Annotated[float, Field(ge=0, le=LARGEST)] = 5.0
+    top: Annotated[float, Field(ge=0, le=LARGEST)] = 5.0
+    shape: Literal["outline", "block"] = "outline"
+
+
 class ProgramForm(Form):
     """A program (G-code) whose tools keep clear of all that holds the part; lengths in mm.
 
@@ -54,7 +75,8 @@ class ProgramForm(Form):
     on the part. ``z_zero`` is where its Z0 is, a height above the part's lower side. Of a solid both heights
     are known, ``thickness`` and ``peg_height``, up to which pegs, clamps and walls reach. ``start`` is where
     the tip is at the start, from the program's own zero, where the program does not say it. ``whole_numbers``
-    is what lengths without a decimal point count: thousandths are 0.001 mm or 0.0001 inch.
+    is what lengths without a decimal point count: thousandths are 0.001 mm or 0.0001 inch. With ``cutting``, or
+    a table that says how tools cut, they press on the part where they meet the ``stock``.
     """
 
     model_config = ConfigDict(json_schema_extra={"examples": [EXAMPLE]})
@@ -69,6 +91,8 @@ class ProgramForm(Form):
     unit: Literal["mm", "inch"] | None = None
     start: Start | None = None
     whole_numbers: Literal["units", "thousandths"] = "units"
+    cutting: CuttingForm | None = None
+    stock: StockForm | None = None
     thickness: Thick | None = None
     peg_height: Thick | None = None
 
@@ -126,6 +150,8 @@ def read_sent_program(form: ProgramForm, thickness: float | None) -> ReadProgram
             unit=form.unit,
             start=form.start,
             whole_numbers=form.whole_numbers,
+            cutting=None if form.cutting is None else form.cutting.model_dump(),
+            stock=None if form.stock is None else form.stock.model_dump(),
             called=CALLED,
         )
 
@@ -232,3 +258,15 @@ def passing_answer(result: Any, index: int) -> dict[str, Any] | None:
 
     near = passing_of(result, index)
     return None if near is None or not isfinite(near.distance) else asdict(near)
+
+
+def forces_answer(result: Any, index: int) -> dict[str, Any] | None:
+    """What the tools of a result's program ask of a fixture, in N and in sentences; None without forces."""
+    from workhold.statics.program_forces import cutting_need_of
+
+    need = cutting_need_of(result, index)
+    if need is None:
+        return None
+    return need.to_dict() | {
+        "words": need.words(result.toolkit.moving.noun, MILLIMETRE, result.toolkit.travels)
+    }

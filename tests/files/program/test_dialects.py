@@ -27,6 +27,10 @@ READ = {
         {1: 25.4 * (0.225 + 1.5 + np.pi + np.hypot(np.pi / 2, 0.125) + 0.5)},
     ),
     "mach3.tap": (14, (), {4: 12 + 2 * 5 * np.pi + 20 + 2 * 6}),
+    "estlcam.nc": (8, (), {0: 0.5 + 2 * np.hypot(np.pi * 4, 1.5) + 8 * np.pi}),
+    "vectric.tap": (7, (), {1: 8 + 40 + np.pi / 2 * 3}),
+    "mastercam.nc": (12, (18, 19, 28), {4: 5 + 50, 9: 2 * 2 * 17}),
+    "hsmworks_haas.nc": (18, (7, 22, 35), {2: 7 + 40 + 2 * (2 + 30 + 2 + 30), 6: 2 * 12}),
     "increments.nc": (26, (), {7: 5 * 12 + 5 + 5 * np.pi / 2 + 5 * 1.5 * np.pi}),
 }
 
@@ -34,8 +38,8 @@ READ = {
 @pytest.mark.parametrize("name", READ)
 def test_a_program_is_read(name: str) -> None:
     """Every line of it."""
-    tools = {3: 6.0} if name == "freecad_grbl.ngc" else dict.fromkeys((1, 4, 7, 17), 6.0)
-    given = None if name in ("haas.nc", "fanuc.nc", "grbl.nc") else tools
+    tools = {3: 6.0} if name == "freecad_grbl.ngc" else dict.fromkeys((0, 1, 4, 7, 9, 17), 6.0)
+    given = None if name in ("haas.nc", "fanuc.nc", "grbl.nc", "hsmworks_haas.nc") else tools
     program = Program.read(PROGRAMS / name, given, z_zero=0)
     moves, skipped, cutting = READ[name]
     assert program.skipped == skipped
@@ -64,6 +68,16 @@ def test_comments_in_a_western_encoding_are_passed_over(tmp_path: Path) -> None:
         path = tmp_path / "haas.nc"
         path.write_bytes(text.replace("Contour1", "Außenkontur Ø6").replace("\n", "\r\n").encode(encoding))
         assert Program.read(path, z_zero=0).pieces == plain.pieces
+
+
+def test_a_comment_with_another_at_its_end_is_one(tmp_path: Path) -> None:
+    """Wherever a control ends it, the same words are left."""
+    path = tmp_path / "p.nc"
+    found = []
+    for comment in ("", "(slot at (5, 7.5) )", "(((slot)))", "(a) (T1 D=6 (carbide))"):
+        path.write_text(f"G21 G90\nT1 M6\nG0 X0 Y0 Z5\n{comment}\nG1 {comment} X9 {comment} F90\nM30\n")
+        found.append(Program.read(path, {1: 6.0}, z_zero=0).pieces)
+    assert found[1:] == [found[0]] * 3
 
 
 @pytest.mark.parametrize("plane", ["G18", "G19"])

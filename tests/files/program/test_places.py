@@ -159,6 +159,8 @@ def test_a_plunge_from_a_height_that_is_not_known_is_where_it_arrives(tmp_path: 
         ("G154 P1.5\n", r"P1\.5 is not the number of a zero"),
         ("G0 X0. Y0. Z5.\nG92.1\nG92 X5.\n", "line 5: G92 sets another zero"),
         ("G92 X0. Y0. Z5.\nG1 X5. F100\nG92.1\n", "line 5: G92.1 sets another zero"),
+        ("G92 X0. Y0. Z5.\nG92 X9.\n", "line 4: G92 sets another zero"),
+        ("G0 X5.\nG92 X0. Y0. Z5.\n", "line 4: G92 sets another zero"),
         ("G0 X0. Y0. Z5.\nG52 X0. Y1.\n", "line 4: G52 sets another zero"),
     ],
 )
@@ -412,3 +414,35 @@ def test_the_second_place_of_the_machine_has_a_number(tmp_path: Path) -> None:
     """G30 P2 goes there, and the height is not known."""
     with pytest.raises(InputError, match=r"line 5: .*line 4 goes to a place of the machine's own"):
         read_text(tmp_path, START + "G91 G30 P2 Z0\nG90 G1 X5. F100\n")
+
+
+def test_a_word_for_the_machines_own_places_without_an_axis_moves_none(tmp_path: Path) -> None:
+    """G53 alone goes nowhere, as G28 alone goes home with all of them."""
+    read = read_text(tmp_path, START + "G53 G0\nG1 Z-5. F100\n")
+    assert read.moves.end.tolist() == [[0, 0, 20], [0, 0, -5]]
+
+
+def test_an_axis_that_comes_back_from_the_machines_own_place_may_cut(tmp_path: Path) -> None:
+    """To where it stood before."""
+    cut = "G90 G0 A0.\nG1 Z-2. F200\n"
+    read = read_text(tmp_path, HEAD + "G0 X23. Y9.6 Z10. A0.\nG28 G91 A0.\n" + cut)
+    assert read.moves.end[-1].tolist() == [23, 9.6, -2]
+
+
+def test_the_length_of_the_tool_in_the_spindle_is_no_others(tmp_path: Path) -> None:
+    """G43 takes it without H too."""
+    for length, is_noted in (("", False), (" H1", False), (" H2", True)):
+        read = read_text(tmp_path, START + f"G43{length} Z20.\n")
+        assert any("takes the length of another tool" in note for note in read.notes) == is_noted
+
+
+def test_a_cycle_after_another_goes_back_to_the_height_before_both(tmp_path: Path) -> None:
+    """G98 is the height at which the first of them began."""
+    read = read_text(tmp_path, START + "G99 G81 X5. Z-5. R2. F100\nG98 G82 X9. Z-5. R2. P1\nG80\n")
+    assert read.moves.end[-1].tolist() == [9, 0, 20]
+
+
+def test_g92_behind_a_circle_from_a_given_start_sets_another_zero(tmp_path: Path) -> None:
+    """Though nothing has named X, Y or Z so far."""
+    with pytest.raises(InputError, match="line 4: G92 sets another zero"):
+        read_text(tmp_path, HEAD + "G2 I5. F100\nG92 X1.\n", start=(0, 0, -1))

@@ -25,6 +25,14 @@ WRITTEN_OUT = {
         "G81 X1. Y1. Z-3. R2. F1\nM98 P2\nM30\nO2\nX5.\nX9. M99\n",
         "G81 X1. Y1. Z-3. R2. F1\nX5.\nX9.\n",
     ),
+    "words beside the call": ("G91 M98 P2\nG90\nM30\nO2\nG1 X5. F1\nX5.\nM99\n", "G91\nG1 X5. F1\nX5.\n"),
+    "ten deep": (
+        "M98 P2\nM30\n"
+        + "".join(f"O{k}\nM98 P{k + 1}\nM99\n" for k in range(2, 11))
+        + "O11\nG1 X5. F1\nM99\n",
+        "G1 X5. F1\n",
+    ),
+    "an end inside, behind a switch": ("M98 P2\nM30\nO2\nG1 X5. F1\n/M30\n", "G1 X5. F1\n"),
     "an end inside": ("M98 P2\nG1 X9.\nM30\nO2\nG1 X5. F1\nM30\n", "G1 X5. F1\n"),
 }
 
@@ -44,10 +52,19 @@ def test_a_call_is_what_it_calls(tmp_path: Path, name: str) -> None:
     ("text", "line", "words"),
     [
         ("M98 P2\nM30\nO2\nM98 P2\nM99\n", 10, "more than 10 deep"),
+        (
+            "M98 P2\nM30\n" + "".join(f"O{k}\nM98 P{k + 1}\nM99\n" for k in range(2, 12)) + "O12\nM99\n",
+            37,
+            "more than 10 deep",
+        ),
         ("M98 P2\nM30\n", 7, "calls the subprogram O2, which is not in this file"),
         ("M97 P2\nM30\nO2\nM99\n", 7, "calls the subprogram N2, which is not"),
         ("M98 L2\nM30\n", 7, "without its number P"),
         ("M98 P2 L0\nM30\nO2\nM99\n", 7, "runs O2 0 times"),
+        ("M98 P2 L1.5\nM30\nO2\nM99\n", 7, "runs O2 1.5 times"),
+        ("M98 P30100 L2\nM30\nO100\nM99\n", 7, "calls the subprogram O30100, which is not in this file"),
+        ("M98 P2 M30\nO2\nM99\n", 7, "in a block with a move, a tool change or the end"),
+        ("T1\nM6 M98 P2\nM30\nO2\nM99\n", 8, "a tool change"),
         ("M98 P2\nM30\nO2\nG1 X5. F1\n", 7, "without an end: write M99"),
         ("M98 P2\nM30\nO2\nG1 X5. F1\nO3\nM99\n", 7, "without an end: write M99"),
         ("M98 P2\nM30\nO2\nM99\nO2\nM99\n", 7, "more than once"),

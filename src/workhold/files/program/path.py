@@ -216,7 +216,8 @@ class PathWriter:
             feed *= {"94": 1.0, "95": modes.spindle, "93": 0.0}[modes.feed_kind]
         self.budget.spend()
         tool = -1 if modes.tool is None else modes.tool
-        self.rows.append((self.line, tool, cutting, start, end, bulge, feed, modes.spindle))
+        in_cycle = modes.cycle is not None
+        self.rows.append((self.line, tool, cutting, start, end, bulge, feed, modes.spindle, in_cycle))
 
 
 def refuse_unknown(path: PathWriter, place: Reached, what: str = "the tool cuts at a place") -> NoReturn:

@@ -21,10 +21,11 @@ from workhold.files.program.words import UNITS, VISITS, ProgramBlock, ProgramTex
 from workhold.files.questions import START, worded
 from workhold.files.text import read_limited
 from workhold.limits import real, refuse_long
-from workhold.model.cutting_forces import above_block, forces_on
+from workhold.model.cutting_forces import forces_on
 from workhold.model.cutting_tool import CuttingData, Tool
 from workhold.model.moves import Moves
 from workhold.model.program import Program
+from workhold.model.stock import Stock, stretches_in
 from workhold.units import Unit
 
 __all__ = ["ReadProgram", "read_program", "read_program_with_calls"]
@@ -80,6 +81,7 @@ def read_program_with_calls(
     cutting: CuttingData | Mapping[str, Any] | None = None,
     start: Sequence[float] | None = None,
     whole_numbers: WholeNumbers = "units",
+    stock: Stock | Mapping[str, Any] | str | None = None,
     called: Mapping[str, str] | None = None,
 ) -> ReadProgram:
     """Reads a program and says which tools it calls.
@@ -104,6 +106,7 @@ def read_program_with_calls(
             "one of them."
         )
     begin = None if start is None else place_of(start)
+    cut_from = Stock.of(stock, None if thickness is None else real(thickness))
     try:
         content = read_limited(path, LIMITS["program"])
         listing = with_calls(program_text(decoded(content)))
@@ -130,15 +133,16 @@ def read_program_with_calls(
         tools=found,
         skipped=sorted({*control.skipped, *control.path.unplaced, *control.path.nose}),
         notes=[*notes_on(control, listing), *notes],
+        stock=cut_from,
     )
     # Where it runs is checked by now.
     moves = moves_of(control, found, np.array([*program.zero, height]))
     try:
-        forces = forces_on(moves, found, CuttingData.of(cutting))
+        # Beside the part no tool is known to be before the part is.
+        within = stretches_in(moves, found, cut_from, None, moves.cutting)
+        forces = forces_on(moves, found, CuttingData.of(cutting), within)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
-    if forces is not None and thickness is not None:
-        forces = forces.without(above_block(moves, thickness))
     program = evolve(program, moves=moves, forces=forces)
     return ReadProgram(program, tuple(control.calls), content.count(b"\n") + 1)
 

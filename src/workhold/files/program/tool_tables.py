@@ -6,6 +6,7 @@ A TOML file has a table for each tool; without a unit, lengths are in the progra
 
     [tool.1]
     name = "end mill"
+    type = "mill"               # or "drill", of which the word in the name is enough
     diameter = 10
     flute_length = 22
     stickout = 40               # from the tip to the holder
@@ -47,7 +48,7 @@ CUTTING = (
     "helix_angle",
 )
 OTHERS = ("corner_radius", "flutes")
-FIELDS = ("name", "unit", *LENGTHS, *CUTTING, *OTHERS)
+FIELDS = ("name", "unit", "type", *LENGTHS, *CUTTING, *OTHERS)
 UNSURE = ("teeth", "point_angle")
 SHAPE = (
     "tool.{number} = {{diameter = 10, flute_length = 22, stickout = 40, holder_diameter = 40, "
@@ -108,8 +109,9 @@ def tool_of_fields(number: int, fields: Mapping[str, Any], place: str, unit: Uni
     try:
         cutting = cutting_of(fields, unit)
         name = str(fields.get("name") or "")
+        flute, kind = lengths.get("flute_length"), str(fields.get("type") or "")
         cylinders, has_holder = stack(lengths, place), "holder_diameter" in lengths
-        return Tool(number, cylinders, lengths["diameter"], name, cutting, has_holder)
+        return Tool(number, cylinders, lengths["diameter"], name, cutting, flute, kind, has_holder)
     except InputError as error:
         raise InputError(str(error) if str(error).startswith(place) else f"{place}: {error}") from error
 

@@ -146,6 +146,8 @@ NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
 WORD = re.compile(rf"([A-Z])[ \t]*({NUMBER})[ \t]*")
 BLOCK = re.compile(rf"[ \t]*(?:[A-Z][ \t]*{NUMBER}[ \t]*)*")
 COMMENT = re.compile(r"\(([^()]*)\)|;(.*)")
+# A comment with others within, behind the first end of which nothing stands but further ends.
+WITHIN = re.compile(r"\(([^();]*\([^);]*\)(?:[ \t]*\))*[ \t]*)\)")
 # Programs have a number on Fanuc and Haas, alone in its block.
 PROGRAM_NUMBER = re.compile(r"[ \t]*(?:O|:)[ \t]*[0-9]+[ \t]*")
 MACRO = re.compile(
@@ -367,9 +369,19 @@ def numbered(text: str) -> Iterator[tuple[int, str]]:
 
 
 def without_comments(line: int, content: str, comments: list[tuple[int, str]]) -> str:
-    """A line without its comments, which are added to a list; refuses a parenthesis without its partner."""
+    """A line without its comments, which are added to a list; refuses a parenthesis without its partner.
+
+    Of a comment within another one control ends the outer one at the first parenthesis, another at the last.
+    Where nothing stands between the two, all read the same words.
+    """
     if "(" not in content and ";" not in content and ")" not in content:
         return content
+    if content.count("(") > 1 and len(content) <= LONGEST:
+        for match in WITHIN.finditer(content):
+            whole = match[0]
+            if whole.count("(") == whole.count(")") and ";" not in content[: match.start()]:
+                comments.append((line, match[1].strip()))
+                content = content.replace(whole, " ", 1)
     for match in COMMENT.finditer(content):
         comments.append((line, (match[1] or match[2] or "").strip()))
     code = COMMENT.sub(" ", content)

@@ -6,9 +6,9 @@ import { byId, field, make, quiet, show } from "./dom.js";
 import { colourOf } from "./program-drawing.js";
 import { fixtureDrawing, partDrawing } from "./stage-panel.js";
 import { change, on, programRequest, state } from "./state.js";
-import { bareLength, countText, fieldLength, length, number, readLength } from "./units.js";
+import { bareLength, countText, fieldLength, length, number, readLength, readNumber } from "./units.js";
 
-/** @typedef {{name: string, text: string, tools: {name: string, text: string}|null, zero: number[], z_zero: "top"|"bottom"|number, clearance: number, rapid: "straight"|"box", unit: "mm"|"inch"|null, start: number[]|null, whole_numbers: "units"|"thousandths", thickness: number|null, peg_height: number|null}} Wish */
+/** @typedef {{name: string, text: string, tools: {name: string, text: string}|null, zero: number[], z_zero: "top"|"bottom"|number, clearance: number, rapid: "straight"|"box", unit: "mm"|"inch"|null, start: number[]|null, whole_numbers: "units"|"thousandths", cutting: {cutting_force: number}|null, stock: {side: number, top: number, shape: "outline"|"block"}|null, thickness: number|null, peg_height: number|null}} Wish */
 
 const PROGRAMS = /\.(nc|ngc|cnc|tap|gcode|gc|mpf|eia|iso|min|fnc|h|txt)$/i;
 const TABLES = /\.(toml|csv|tbl)$/i;
@@ -59,7 +59,7 @@ export async function openProgram(files) {
     say(`${table?.name} is a table of tools: open the program that uses them too.`);
     return;
   }
-  const known = before ?? { zero: [0, 0], z_zero: "top", clearance: 1, rapid: "straight", unit: null, start: null, whole_numbers: "units", thickness: state.supports.thickness ?? state.sheet.thickness ?? null, peg_height: state.sheet.peg_height ?? null };
+  const known = before ?? { zero: [0, 0], z_zero: "top", clearance: 1, rapid: "straight", unit: null, start: null, whole_numbers: "units", cutting: null, stock: null, thickness: state.supports.thickness ?? state.sheet.thickness ?? null, peg_height: state.sheet.peg_height ?? null };
   const file = program ? { name: program.name, text: await program.text() } : { name: known.name, text: known.text };
   change({ program: { ...known, ...file, tools: tools ?? waiting } });
   waiting = null;
@@ -95,11 +95,19 @@ function takeFields() {
     unit: field("program-unit").value || null,
     start: startOf(field("program-start").value),
     whole_numbers: field("program-whole").value,
+    cutting: forceOf(field("program-force").value),
+    stock: { side: size("program-side") ?? 5, top: size("program-top") ?? 5, shape: field("program-stock").value },
   };
   const { thickness } = program;
   const sheet = thickness && !state.sheet.thickness ? { sheet: { ...state.sheet, thickness } } : {};
   const supports = thickness && !state.supports.thickness ? { supports: { ...state.supports, thickness } } : {};
   change({ program, ...sheet, ...supports });
+}
+
+/** A force in N for every tool, or null. @param {string} words */
+function forceOf(words) {
+  const value = readNumber(words);
+  return value === null || !Number.isFinite(value) || value < 0 ? null : { cutting_force: value };
 }
 
 /** Three lengths in mm of a place with commas or spaces between them, or null. @param {string} words */
@@ -129,6 +137,11 @@ function writeFields() {
   field("program-unit").value = program.unit ?? "";
   field("program-start").value = program.start ? program.start.map((value) => fieldLength(value)).join(", ") : "";
   field("program-whole").value = program.whole_numbers ?? "units";
+  field("program-force").value = program.cutting ? String(program.cutting.cutting_force) : "";
+  const { side = 5, top = 5, shape = "outline" } = program.stock ?? {};
+  field("program-side").value = side === 5 ? "" : fieldLength(side);
+  field("program-top").value = top === 5 ? "" : fieldLength(top);
+  field("program-stock").value = shape;
 }
 
 /** Have the program read as it stands now. */
@@ -209,12 +222,13 @@ async function tellPassing() {
   fixtureDrawing.showPassing(null);
   if (!selected?.rank || !job?.job || !program) return;
   try {
-    const { passing } = await ask(`jobs/${encodeURIComponent(job.job)}/fixtures/${selected.rank}`);
+    const { passing, program_forces: asksFor } = await ask(`jobs/${encodeURIComponent(job.job)}/fixtures/${selected.rank}`);
     if (mine !== asked) return;
     fixtureDrawing.showPassing(passing);
     byId("passing").textContent = passing
       ? `T${passing.tool} comes nearest in line ${passing.line}: ${length(passing.distance)} from the ${passing.element}. ${number(program.clearance, 2)} mm are asked for.`
       : "No tool comes down to where anything holds the part.";
+    byId("passing").append(...(asksFor ? [make("br"), asksFor.words.join(" ")] : []));
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
   }

@@ -1,0 +1,234 @@
+"""Whether forces stand on the stretches of a program's moves on which its tools meet the stock.
+
+A file states the stretches. Along them the tool's disc has to meet the stock all the way, and beside them
+nowhere. Moves are walked between bounds. On a piece of a move that lies within its sagitta of its chord, the
+distance from a straight edge of the border is at most that of the chord's ends and at least that of the
+chord; from a bent edge it is that of the middle, give or take half the way. Pieces that say too little are
+halved, until what is in doubt is within ``OFF`` of touching.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from math import inf, pi
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.model.program import Program
+from workhold.model.query import Query
+from workhold.verification.tool_walk import ToolWalk, do_cross, pieces_to_point, point_to_piece, walk_of
+
+__all__ = ["stock_faults"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+Mask = NDArray[np.bool_]
+# mm. By so much a stretch may be longer or shorter than it is.
+OFF = 1e-3
+MOST_HALVINGS = 60
+AT_ONCE = 1 << 12
+
+
+@frozen(eq=False)
+class Edge:
+    """A piece of the border of what is grown to the stock; a bent one has a centre, a radius and a turn."""
+
+    start: Array
+    end: Array
+    bulge: float
+    center: Array
+    radius: float
+
+    @classmethod
+    def of(cls, start: Array, end: Array, bulge: float) -> Edge:
+        """The edge between two ends."""
+        (x, y), half = end - start, 2.0 * np.arctan(bulge)
+        if bulge == 0.0:
+            return cls(start, end, bulge, start, 0.0)
+        # The apothem, on the left of the chord, over half the chord is the cotangent of half the sweep.
+        center = (start + end) / 2 + np.array([-y, x]) / (2.0 * np.tan(half))
+        return cls(start, end, bulge, center, float(np.hypot(*(start - center))))
+
+    def distance(self, points: Array) -> Array:
+        """Distances (N,) of points."""
+        if self.bulge == 0.0:
+            return point_to_piece(points, self.start, self.end)
+        way = np.angle(np.exp(1j * self.angle(points)))
+        on_rim = np.abs(np.hypot(*(points - self.center).T) - self.radius)
+        ends = np.minimum(np.hypot(*(points - self.start).T), np.hypot(*(points - self.end).T))
+        return np.asarray(np.where(np.abs(way) <= 2.0 * np.arctan(abs(self.bulge)), on_rim, ends))
+
+    def angle(self, points: Array) -> Array:
+        """How far points (N, 2) are turned about the centre from the middle of the arc, in radians."""
+        chord = self.end - self.start
+        # The middle of the arc is on the right of its chord where it runs counter-clockwise.
+        right = np.array([chord[1], -chord[0]]) * np.sign(self.bulge)
+        arm = points - self.center
+        return np.asarray(np.arctan2(arm[:, 1], arm[:, 0]) - np.arctan2(right[1], right[0]))
+
+    def turns(self, points: Array) -> Array:
+        """The angle (N,) in radians that it turns around points."""
+        one, other = self.start - points, self.end - points
+        cross = one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0] + 0.0
+        angle = np.arctan2(cross, (one * other).sum(axis=1))
+        if self.bulge == 0.0:
+            return np.asarray(angle)
+        beyond = cross < 0.0 if self.bulge > 0.0 else cross >= 0.0
+        between = beyond & (np.hypot(*(points - self.center).T) < self.radius)
+        return np.asarray(angle + 2 * pi * np.sign(self.bulge) * between)
+
+
+@frozen(eq=False)
+class Ground:
+    """What is grown to the stock: its loops, edge by edge."""
+
+    loops: tuple[tuple[Edge, ...], ...]
+
+    @classmethod
+    def of(cls, loops: Sequence[Array], is_block: bool) -> Ground:
+        """The ground of outer loops (N, 3), or the box around them."""
+        found = []
+        for loop in loops:
+            ends = np.roll(loop[:, :2], -1, axis=0)
+            rows = zip(loop[:, :2], ends, loop[:, 2].tolist(), strict=True)
+            found.append(tuple(Edge.of(*row) for row in rows))
+        if not is_block:
+            return cls(tuple(found))
+        edges = [edge for loop in found for edge in loop]
+        points = [np.array([edge.start for edge in edges])]
+        for edge in edges:
+            if edge.bulge:
+                far = edge.center + edge.radius * np.array([(1, 0), (0, 1), (-1, 0), (0, -1)])
+                points.append(far[edge.distance(far) <= 1e-9 * edge.radius])
+        (x0, y0), (x1, y1) = np.concatenate(points).min(axis=0), np.concatenate(points).max(axis=0)
+        return cls.of([np.array([[x0, y0, 0], [x1, y0, 0], [x1, y1, 0], [x0, y1, 0.0]])], False)
+
+    def encloses(self, points: Array) -> Mask:
+        """(N,) whether points lie within a loop."""
+        each = [np.abs(sum(edge.turns(points) for edge in loop)) > pi for loop in self.loops]
+        return np.asarray(np.logical_or.reduce(each))
+
+    def bounds(
+        self, one: Array, other: Array, middle: Array, half: Array, sagitta: Array
+    ) -> tuple[Array, Array]:
+        """The least distance of pieces of a path from the border at least, and how far one is at most (N,).
+
+        Parameters
+        ----------
+        one, other, middle : (N, 2) both ends and the middle of each.
+        half, sagitta : (N,) half the way, and how far it leaves its chord.
+        """
+        low, high = np.full(len(half), inf), np.full(len(half), inf)
+        for loop in self.loops:
+            for edge in loop:
+                if edge.bulge:
+                    away = edge.distance(middle)
+                    near, far = away - half, away + half
+                else:
+                    ends = [edge.distance(one), edge.distance(other)]
+                    others = [pieces_to_point(one, other, edge.start), pieces_to_point(one, other, edge.end)]
+                    apart = np.minimum.reduce(ends + others)
+                    near = np.where(do_cross(one, other, edge.start, edge.end), 0.0, apart) - sagitta
+                    far = np.maximum(*ends) + sagitta
+                low, high = np.minimum(low, near), np.minimum(high, far)
+        return low, high
+
+
+def stock_faults(query: Query) -> Iterator[str]:
+    """What is wrong with the stretches on which a program's forces are said to act, in a sentence each.
+
+    Nothing where the file does not say what the part is cut from.
+    """
+    program = query.program
+    if program is None or program.forces is None or program.stock is None:
+        return
+    forces, line = program.forces, program.moves.line
+    ground = Ground.of(query.workpiece.outer_loops, program.stock.shape == "block")
+    acts = np.flatnonzero((forces.force != 0.0) | (forces.torque != 0.0))
+    missing = np.setdiff1d(acts, forces.stretches.move)
+    if len(missing):
+        yield f"line {line[missing[0]]} of the program has a force, and no stretch on which it acts"
+        return
+    rows = list(ranges_of(program, acts))
+    for begin in range(0, len(rows), AT_ONCE):
+        move, first, last, within = (
+            np.array(one) for one in zip(*rows[begin : begin + AT_ONCE], strict=True)
+        )
+        at = wrong_piece(walk_of(program), ground, move, first, last, within)
+        if at >= 0:
+            yield f"the tool in line {line[at]} of the program meets the stock elsewhere than is said"
+            return
+
+
+def ranges_of(program: Program, acts: IntArray) -> Iterator[tuple[int, float, float, bool]]:
+    """The parts of moves with forces on which their tools are said to meet the stock, and those between them at
+    whose heights the tool could."""
+    forces, stock, moves = program.forces, program.stock, program.moves
+    assert forces is not None and stock is not None
+    top, long = inf if stock.height is None else stock.height + stock.top, moves.length
+    for move in acts.tolist():
+        tool = program.tools[int(moves.tool[move])]
+        begin, rise = moves.start[move, 2], moves.end[move, 2] - moves.start[move, 2]
+        low, high = 0.0, 1.0
+        if rise == 0.0:
+            high = 1.0 if begin < top and begin + tool.flute_end > 0.0 else 0.0
+        else:
+            cuts = sorted(((top - begin) / rise, (-tool.flute_end - begin) / rise))
+            low, high = max(0.0, cuts[0]), min(1.0, cuts[1])
+        at, least = low, OFF / max(float(long[move]), OFF)
+        for first, last in forces.stretches.of_move(move):
+            yield move, first, last, True
+            if max(low - first, last - high) * abs(rise) > OFF or high <= low:
+                # At these heights nothing can be cut.
+                yield move, first, last, False
+            if first > at + least:
+                yield move, at, first, False
+            at = max(at, last)
+        if high > at + least:
+            yield move, at, high, False
+
+
+def wrong_piece(
+    walk: ToolWalk, ground: Ground, move: IntArray, first: Array, last: Array, within: Mask
+) -> int:
+    """The number of a move of which a part is within reach of the stock and said not to be, or the other way
+    round; -1 where there is none."""
+    program = walk.program
+    stock, moves = program.stock, program.moves
+    assert stock is not None
+    reach = np.array([program.tools[int(n)].diameter / 2 + stock.side for n in moves.tool[move]])
+    long = np.hypot(*(moves.end - moves.start)[:, :2].T)
+    long = np.where(walk.is_round, walk.radius * np.abs(walk.sweep), long)
+    for _ in range(MOST_HALVINGS):
+        middle = walk.at(move, (first + last) / 2)
+        one, other = walk.at(move, first), walk.at(move, last)
+        half = long[move] * (last - first) / 2
+        turned = np.minimum(np.abs(walk.sweep[move]) * (last - first), 2 * pi)
+        sagitta = np.where(walk.is_round[move], walk.radius[move] * (1.0 - np.cos(turned / 2)), 0.0)
+        low, high = ground.bounds(one, other, middle, half, sagitta)
+        inside = ground.encloses(middle)
+        sure = np.where(
+            within, (high <= reach + OFF) | (inside & (low > 0.0)), ~inside & (low >= reach - OFF)
+        )
+        left = np.flatnonzero(~sure)
+        if not len(left):
+            return -1
+        # What is wrong in the middle is wrong.
+        point = middle[left]
+        away = np.min([edge.distance(point) for loop in ground.loops for edge in loop], axis=0)
+        meets = inside[left] | (away < reach[left])
+        wrong = (meets != within[left]) & (inside[left] | (np.abs(away - reach[left]) > OFF))
+        if wrong.any():
+            return int(move[left[np.argmax(wrong)]])
+        middles = (first[left] + last[left]) / 2
+        first, last = np.concatenate([first[left], middles]), np.concatenate([middles, last[left]])
+        left = np.concatenate([left, left])
+        # What cannot be halved any more only touches.
+        long_enough = last - first >= 1e-13
+        first, last, left = first[long_enough], last[long_enough], left[long_enough]
+        move, within, reach = move[left], within[left], reach[left]
+        if not len(move):
+            return -1
+    return int(move[0])

@@ -1,0 +1,18 @@
+(Project plate)
+(Created by Estlcam version 11 build 11.244)
+(Machining time about 00:04:10 hours)
+(Required tools:)
+(End mill 6mm)
+G21
+G90
+M03 S18000
+G00 Z5.0000
+(No. 1: Hole 1)
+G00 X20.0000 Y15.0000
+G00 Z0.5000
+G01 Z0.0000 F600 S18000
+G03 X20.0000 Y15.0000 I-4.0000 J0.0000 Z-3.0000 F900
+G03 X20.0000 Y15.0000 I-4.0000 J0.0000
+G00 Z5.0000
+M05
+M30
