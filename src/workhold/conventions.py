@@ -266,6 +266,21 @@ MAIN_DIRECTION = 0.99
 SMALL_FACE = 0.1
 # No unit. A peg that pushes with more than so many times the jaw force asks for care.
 GENTLE_PEG = 1.5
+# MPa. Young's modulus and the shear modulus of the hardened steel that pins are of.
+ELASTIC_MODULUS, SHEAR_MODULUS = 210_000.0, 81_000.0
+# N. What bending is stated for where nobody says how hard the jaws press.
+STATED_FORCE = 1000.0
+# MPa. A pin that is bent harder may stay bent, where the toolkit says nothing else: a third of the yield of a pin
+# of the softest core that ASME B18.8.5M allows, HRC 47. That is HV 471 (ASTM E140, table 1), and HV 471 yields at
+# 2.876 x 471 - 90.7 = 1264 MPa (E. J. Pavlina, C. J. Van Tyne, J. Mater. Eng. Perform. 17, 2008, 888-893).
+PIN_STRESS_LIMIT = 421.0
+# mm. Pins that give way may move a point of the part so far, where the toolkit says nothing else: half of the
+# general tolerance of short lengths, +-0.1 mm (ISO 2768-1, class m, up to 6 mm).
+PIN_MOVEMENT_LIMIT = 0.05
+# Diameters that a dowel sits in its hole at least.
+DOWEL_DEPTH = 1.5
+# Diameters that a dowel stands out where nobody asks for more.
+DOWEL_STANDOUT = 2.0
 # Points against a fixture: so many for ten times the location error, and for a tilt, a peg that is not
 # gentle, a small face.
 POINTS_PER_DECADE = 20

@@ -121,7 +121,6 @@ def test_search_with_supports(run: Run, tmp_path: Path) -> None:
     ("words", "sentence"),
     [
         (("--supports",), "how thick the part is, is not known: give --thickness."),
-        (("--thickness", "4"), "--thickness is of supports: give --supports, or leave it out."),
         (("--supports", "--thickness", "4", "--json"), "--supports prints a table: leave --json out"),
         (("--not-on-faces-cut-in", "RESULT"), "needs the faces of one solid in both"),
     ],

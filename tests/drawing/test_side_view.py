@@ -31,6 +31,7 @@ from workhold.drawing.sheet_writing import heights_of
 from workhold.drawing.side_view import WAYS, apart, side_view
 from workhold.errors import InputError
 from workhold.fixels.plate import Plate
+from workhold.model.dowel_lengths import dowel_for
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.pose import Pose
 from workhold.model.workpiece import Workpiece
@@ -93,7 +94,7 @@ def test_view_is_true_to_the_scale_that_is_written(name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_pegs_stand_from_the_plate_to_their_height(name: str) -> None:
-    """Each peg is as wide as it is, ends at the peg height, and stands in the plate as far as that is thick."""
+    """Each peg is as wide as it is, ends at the peg height, and sits in the plate as deep as a dowel that is sold."""
     result, lift = result_of(name, False), chosen(name)
     lifted = 0.0 if lift is None else 6.0
     page = side_page(
@@ -111,8 +112,11 @@ def test_pegs_stand_from_the_plate_to_their_height(name: str) -> None:
         widths.add(round(width / matrix(group)[0], 2))
     radii = {round(2 * one.peg_radius, 2) for one in result.toolkit.plates}
     assert widths == radii
+    diameter = result.toolkit.peg_diameter
+    dowel = dowel_for(diameter, 9.0)
+    deep = 1.5 * diameter if dowel is None else dowel.depth
     for _, low, _, high in boxes(page, "peg-foot"):
-        assert (low, high) == pytest.approx((-lifted - 15.0, -lifted), abs=2e-3)
+        assert (low, high) == pytest.approx((-lifted - deep, -lifted), abs=2e-3)
 
 
 @pytest.mark.sampled(2)
@@ -133,6 +137,8 @@ def test_every_height_is_in_the_pdf(unit: object, size: str) -> None:
     scale = 1.0 if unit is MILLIMETRE else 25.4
     result = result_of("plate")
     words = printed(sheet(result, unit=unit, plate_thickness=15.0))
+    dowel = dowel_for(result.toolkit.peg_diameter, PEG_HEIGHT)
+    assert dowel is not None
 
     def told(length: float) -> str:
         return size.format(length / scale)
@@ -147,7 +153,8 @@ def test_every_height_is_in_the_pdf(unit: object, size: str) -> None:
         f"pegs {told(PEG_HEIGHT)} {sign}",
         f"head room above the pegs {told(HEAD_ROOM)} {sign}",
         f"Up to {told(PEG_HEIGHT + HEAD_ROOM)} {sign} the part is drawn as wide as all that pegs can meet",
-        f"{told(PEG_HEIGHT)} {sign} beside the part + {told(15.0)} {sign} in the plate.",
+        f"{told(PEG_HEIGHT)} {sign} beside the part + {told(dowel.depth)} {sign} in the plate.",
+        f"locators: dowels of {dowel.name} each sits in the plate {told(dowel.depth)} {sign}",
     ):
         assert wanted in words
     assert SOLID.solid is not None
@@ -170,7 +177,7 @@ def test_supports_lift_everything() -> None:
         "pegs 14.000 mm",
         "pegs above the plate 14.000 mm",
         "+8.000 top of the pegs",
-        "8.000 mm beside the part + 6.000 mm of supports + 10.000 mm in the plate (assumed)",
+        "Dowels of 6 × 24 mm, ISO 8734: 8.000 mm beside the part + 6.000 mm of supports + 10.000 mm in the plate",
         "3 locators 6 24.000",
         "3 supports 4 6.000",
         "1 clamp on top 5 –",

@@ -15,6 +15,7 @@ from workhold.drawing.hardware_table import hardware_of
 from workhold.drawing.scene import LengthUnit
 from workhold.drawing.supports_drawn import counting_words
 from workhold.drawing.upper_side import side_up_words
+from workhold.model.dowel_lengths import dowel_for
 from workhold.model.first_side import FirstSide
 from workhold.model.setup import part_zero
 from workhold.model.solid import SolidOutline
@@ -164,7 +165,9 @@ def test_pegs_as_high_as_the_part_may_be_as_short_as_they_press(name: str, high:
     tall = evolve(SOLID, solid=evolve(SOLID.solid, peg_height=HEIGHT, bands=bands))
     text = printed(sheet(design(tall, TOOLKITS[name], best=1)))
     peg = TOOLKITS[name].plates[0].peg
-    words = f"No {peg} presses above {high:.3f} mm, so {peg}s of {high + 10:.3f} mm do as well."
+    shorter = dowel_for(TOOLKITS[name].peg_diameter, high)
+    dowels = "shorter ones" if shorter is None else f"dowels of {shorter.name}"
+    words = f"No {peg} presses above {high:.3f} mm, so {dowels} do as well."
     assert (words in text) is said and ("do as well" in text) is said
     if not said:
         return

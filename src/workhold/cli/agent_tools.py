@@ -29,7 +29,7 @@ from workhold.cli.show_command import passing_words
 from workhold.errors import InputError
 from workhold.files.input_forms import LoadTable
 from workhold.files.loads_file import load_from_words
-from workhold.files.part.load import Loaded, read_workpiece
+from workhold.files.part.load import Loaded, read_workpiece, refuse_unsure_numbers
 from workhold.files.result.save import save
 from workhold.files.toolkit_file import load_toolkit
 from workhold.fixels.kinds import ALIASES, KINDS, toolkit_of
@@ -126,8 +126,9 @@ def answered(asked: DesignArguments, cancel: Event) -> tuple[Loaded, Result]:
     """
     from workhold.search.design import answer
 
-    loaded = read_workpiece(asked.part, **asked.reading())
     toolkit, tolerance = held_in(asked.toolkit, asked.fields)
+    loaded = read_workpiece(asked.part, **asked.reading(), peg_diameter=toolkit.peg_diameter)
+    refuse_unsure_numbers(loaded, asked.avoid)
     loads = loads_of(asked.loads)
     zones = [
         circle_zone(*one.circle) if hasattr(one, "circle") else polygon_zone(one.polygon)

@@ -14,7 +14,7 @@ from workhold.cli.commands import flag, option, print_remark, spread
 from workhold.cli.ending import INTERRUPTED, ask_to_stop, keep_what_is_found
 from workhold.cli.options import PartWords
 from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output_folder
-from workhold.cli.program_options import ProgramWords
+from workhold.cli.program_options import SOLIDS, ProgramWords
 from workhold.cli.progress import batch_progress
 from workhold.cli.search_options import QueryWords, SeatingWords
 from workhold.cli.table import plural, print_tables
@@ -22,6 +22,7 @@ from workhold.cli.toolkit_lists import (
     ListWords,
     Named,
     heights_of_all,
+    peg_diameter_of,
     query_of,
     toolkits_to_try,
     words_of,
@@ -274,12 +275,28 @@ def requests_in(
 
     asked = asked_of(words, reading)
     held_in = [HeldIn(one.name, query_of(ANY_PART, one, asked)) for one in toolkits]
+    # With a program heights are among what is asked.
+    known = (
+        words[2].heights(length_unit(reading.unit), reading.peg_height) if words[2].program is None else {}
+    )
+    drawn_in = [HeldIn(one.name, query_of(ANY_PART, one, asked | known)) for one in toolkits]
     listed, heights = part_list(parts, [folder]), heights_of_all(toolkits)
     of_carriers = {"heights": heights} if heights else {}
-    return [
-        Request(part, words[2].reading(part.name, reading).options() | of_carriers, held_in)
-        for part in listed
-    ]
+    by_pegs: dict[float | None, list[HeldIn]] = {}
+    for one, named in zip(held_in, toolkits, strict=True):
+        by_pegs.setdefault(peg_diameter_of(named), []).append(one)
+    requests = []
+    for part in listed:
+        options = words[2].reading(part.name, reading).options() | of_carriers
+        if part.path.suffix.lower() not in SOLIDS:
+            requests.append(Request(part, options, drawn_in))
+            continue
+        if options["peg_height"] is not None:
+            requests.append(Request(part, options, held_in))
+            continue
+        # Pegs of each diameter reach as high as they must, and the outline is what those meet.
+        requests += [Request(part, options | {"peg_diameter": d}, some) for d, some in by_pegs.items()]
+    return requests
 
 
 def asked_toolkits(

@@ -154,10 +154,10 @@ def own_figures(loaded: LoadedToolkit, unit: Unit) -> Iterator[tuple[str, str]]:
     from workhold.fixels.kinds import table_of
 
     toolkit = loaded.toolkit
-    for hardware in (toolkit.supports, toolkit.top_clamp):
+    for hardware in (toolkit.supports, toolkit.top_clamp, toolkit.pins):
         for row in () if hardware is None else hardware.table.fields:
             value = getattr(hardware, row.name)
-            if row.form == "length" and value is not None:
+            if row.form in ("length", "stress") and value is not None:
                 yield row.figure, words_of_value(row.form, value, unit)
             elif value is not None:
                 each = (f"{words_of_value(row.form, one, unit).replace(' to ', ', ')}" for one in value)
@@ -177,6 +177,8 @@ def words_of_value(form: Form, value: Any, unit: Unit) -> str:
     """The value of a field of some form, as it stands among the figures of a toolkit."""
     if form == "count":
         return str(value)
+    if form == "stress":
+        return f"{value:g} MPa"
     if form == "holes":
         return " ".join(holes.name for holes in value)
     if form == "directions":
@@ -202,6 +204,13 @@ def features(
     *,
     draw: str | None = option(None, "FILE", "Draw them into this file, whose name ends in .svg or .png."),
     force: bool = FORCE,
+    toolkit: str | None = option(
+        None,
+        "NAME|FILE",
+        "What the part will be held in: of a STEP file the faces as design --toolkit numbers them, with pegs no "
+        "higher than they must be.",
+        "--toolkit",
+    ),
     peg_radius: str | None = option(
         None, "LENGTH", "Draw also where the centres of pegs of this radius can be."
     ),
@@ -225,7 +234,13 @@ def features(
     if parts and picture is None and Path(part).suffix.lower() in (".step", ".stp"):
         list_solids(part, shown_unit, json_)
         return
-    loaded = reading.load(part)
+    if toolkit is None:
+        loaded = reading.load(part)
+    else:
+        from workhold.files.toolkit_file import load_toolkit
+
+        held_in = load_toolkit(toolkit).toolkit
+        loaded = reading.load(part, held_in.heights, held_in.peg_diameter)
     workpiece = loaded.workpiece
 
     from workhold.cli.tables import band_table, face_table, height_table, jumps_sentence

@@ -13,7 +13,7 @@ import typer
 from workhold.cli.commands import flag, option, print_remark, spread
 from workhold.cli.design_report import NEAREST_MISS, draw_best, draw_one, explain_none, picture_names
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
-from workhold.cli.options import PartArgument, PartWords
+from workhold.cli.options import CALLED, PartArgument, PartWords
 from workhold.cli.outputs import (
     FORCE,
     FORMAT,
@@ -135,6 +135,7 @@ def design(
     asked = words.asked(shown, machined.program is not None, machined.has_forces) | seated_by.asked(shown)
     asked["tolerance"] = with_fit_of(asked["tolerance"], tolerance)
     type_ = choice("--type", type_, (*toolkit.types, EVERY_TYPE))
+    from workhold.files.part.load import refuse_unsure_numbers
     from workhold.geometry.segment import Box
     from workhold.kernels.base.compiling import is_first_run
     from workhold.model.query import Query
@@ -145,7 +146,8 @@ def design(
         from workhold.cli.warming import begin_compiling, compile_kernels
 
         second = begin_compiling()
-    loaded = machined.reading(part, reading).load(part, toolkit.heights)
+    loaded = machined.reading(part, reading).load(part, toolkit.heights, toolkit.peg_diameter)
+    refuse_unsure_numbers(loaded, asked["restrictions"].avoid, CALLED)
     workpiece = loaded.workpiece
     asked |= machined.asked(shown, reading.peg_height, workpiece)
     asked["restrictions"] = without_faces_cut(asked["restrictions"], workpiece, words.not_on_faces_cut_in)

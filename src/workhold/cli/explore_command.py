@@ -11,19 +11,27 @@ import typer
 
 from workhold.cli.commands import option, print_remark, spread
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
-from workhold.cli.options import PartArgument, PartWords
+from workhold.cli.options import CALLED, PartArgument, PartWords
 from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output
-from workhold.cli.program_options import ProgramWords
+from workhold.cli.program_options import SOLIDS, ProgramWords
 from workhold.cli.progress import search_progress
 from workhold.cli.search_options import QueryWords
 from workhold.cli.table import Table, print_tables
-from workhold.cli.toolkit_lists import SWEEP, ListWords, heights_of_all, query_of, toolkits_to_try
+from workhold.cli.toolkit_lists import (
+    SWEEP,
+    ListWords,
+    heights_of_all,
+    peg_diameter_of,
+    query_of,
+    toolkits_to_try,
+)
 from workhold.cli.toolkit_options import TOOLKIT
 from workhold.cli.values import length_unit
 from workhold.errors import InputError
 from workhold.units import Unit
 
 if TYPE_CHECKING:
+    from workhold.files.part.loaded import Loaded
     from workhold.search.design import Explored
 
 __all__ = ["explore"]
@@ -61,8 +69,19 @@ def explore(
     if out is not None:
         named = (name for names in vise or () for name in names.split(","))
         refuse_output(out, (part, words.loads, *machined.files, *named), force)
-    workpiece = machined.reading(part, reading).load(part, heights_of_all(toolkits)).workpiece
-    asked |= machined.asked(shown, reading.peg_height, workpiece)
+    heights, read_as = heights_of_all(toolkits), machined.reading(part, reading)
+    # Pegs of each diameter reach as high as they must beside a solid, and the outline is what those meet.
+    is_solid = reading.peg_height is None and Path(part).suffix.lower() in SOLIDS
+    diameters = [peg_diameter_of(one) if is_solid else None for one in toolkits]
+    loaded: dict[float | None, Loaded] = {}
+    for one in dict.fromkeys(diameters):
+        said = {remark for each in loaded.values() for remark in each.remarks}
+        loaded[one] = read_as.load(part, heights, one, said)
+    from workhold.files.part.load import refuse_unsure_numbers
+
+    for each in loaded.values():
+        refuse_unsure_numbers(each, asked["restrictions"].avoid, CALLED)
+    further = {one: machined.asked(shown, reading.peg_height, each.workpiece) for one, each in loaded.items()}
     from workhold.cli.warming import compile_on_first_run
     from workhold.contact.features import face_of_segment
     from workhold.files.atomic import text_file
@@ -72,8 +91,12 @@ def explore(
 
     # Faces that do not exist are refused before any toolkit is tried.
     for number in asked["restrictions"].avoid:
-        face_of_segment(workpiece, number)
-    queries = [(one.name, query_of(workpiece, one, asked)) for one in toolkits]
+        for each in loaded.values():
+            face_of_segment(each.workpiece, number)
+    queries = [
+        (one.name, query_of(loaded[diameter].workpiece, one, asked | further[diameter]))
+        for one, diameter in zip(toolkits, diameters, strict=True)
+    ]
     found: list[Explored] = []
     with ask_to_stop("what was tried so far is kept") as cancel:
         compile_on_first_run(cancel)

@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from attrs import AttrsInstance, evolve, fields_dict, frozen
 
 from workhold.cli.commands import print_remark
-from workhold.cli.options import PartWords
+from workhold.cli.options import CALLED, PartWords
 from workhold.cli.program_options import ProgramWords
 from workhold.cli.search_options import QueryWords, SeatingWords, with_fit_of
 from workhold.cli.values import length_unit
@@ -295,6 +295,7 @@ def asked_of(
 
     from workhold.family.family import Asked, LeftOut
     from workhold.family.members import OTHER_SIDE, RANKINGS
+    from workhold.files.part.load import refuse_unsure_numbers
     from workhold.files.part_list import read_listed
     from workhold.model.query import Query
     from workhold.model.setup import part_zero
@@ -303,7 +304,11 @@ def asked_of(
     usual = RANKINGS[toolkit.travels]
     members, left_out = [], []
     for job in jobs:
-        options = {**job.reading.options(), "heights": toolkit.heights}
+        options = {
+            **job.reading.options(),
+            "heights": toolkit.heights,
+            "peg_diameter": toolkit.peg_diameter,
+        }
         read, path = read_listed(job.listed, **options), job.listed.path
         if read.loaded is None:
             left_out.append(LeftOut(job.name, str(path), read.refusal.rstrip(".")))
@@ -315,6 +320,10 @@ def asked_of(
         asked["tolerance"] = with_fit_of(asked["tolerance"], tolerance)
         asked["ranking"] = asked["ranking"] or usual
         workpiece = read.loaded.workpiece
+        try:
+            refuse_unsure_numbers(read.loaded, asked["restrictions"].avoid, CALLED)
+        except InputError as error:
+            raise InputError(f"{job.name}: {error}") from error
         digest = sha256(Path(path).read_bytes()).hexdigest() if Path(path).is_file() else ""
         try:
             at = part_zero(workpiece, zero, unit)

@@ -7,7 +7,7 @@ Words that describe a toolkit stand in :mod:`workhold.cli.toolkit_options`, word
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -151,7 +151,8 @@ class PartWords:
         READING,
         "HEIGHT",
         "STEP files: how far pegs reach above the plane on which the part lies. The outline is what they can "
-        "meet there, and only upright faces are touched.",
+        "meet there, and only upright faces are touched. If not given, no higher than dowels must stand out. "
+        "Of a drawing it says how high the pegs are, for how far they bend.",
     )
     head_room: str | None = option(
         READING, "LENGTH", "With --peg-height: what is kept free above the pegs; 0.5mm if not given."
@@ -202,13 +203,20 @@ class PartWords:
             "called": CALLED,
         }
 
-    def load(self, part: str, heights: Mapping[str, Sequence[float]] | None = None) -> Loaded:
+    def load(
+        self,
+        part: str,
+        heights: Mapping[str, Sequence[float]] | None = None,
+        peg_diameter: float | None = None,
+        said: Collection[str] = (),
+    ) -> Loaded:
         """Reads a part and prints remarks about the drawing on stderr.
 
         Parameters
         ----------
         part : a file or a built-in name.
-        heights : as of :func:`workhold.load`.
+        heights, peg_diameter : as of ``files.part.load.read_workpiece``.
+        said : remarks that are not printed once more.
 
         Raises
         ------
@@ -219,7 +227,7 @@ class PartWords:
         from workhold.files.part.load import read_workpiece
         from workhold.files.questions import UnitAskedError
 
-        read = partial(read_workpiece, part, **options, heights=heights)
+        read = partial(read_workpiece, part, **options, heights=heights, peg_diameter=peg_diameter)
         try:
             loaded = read()
         except UnitAskedError as question:
@@ -229,5 +237,6 @@ class PartWords:
             pixels = "; px72, px90 or px96 for pixels" if "px72" in str(question) else ""
             loaded = read(unit=typer.prompt(f"Unit of the drawing (mm, inch, cm, m{pixels})", err=True))
         for remark in loaded.remarks:
-            print_remark(remark)
+            if remark not in said:
+                print_remark(remark)
         return loaded

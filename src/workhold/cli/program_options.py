@@ -39,6 +39,7 @@ __all__ = [
     "CUT_WIDTH",
     "MATERIAL",
     "POWER",
+    "SOLIDS",
     "ProgramWords",
     "START_WORDS",
     "STOCK",
@@ -161,9 +162,9 @@ class ProgramWords:
         return any(tool.cutting.asks_for_forces for tool in tools.values())
 
     def reading(self, part: str, reading: PartWords) -> PartWords:
-        """How a part is read: of a drawing the peg height is no question of the reader but of the program."""
+        """How a part is read: of a drawing the peg height is no question of the reader but of the fixtures."""
         is_drawing = Path(part).suffix.lower() not in SOLIDS
-        return evolve(reading, peg_height=None) if self.program is not None and is_drawing else reading
+        return evolve(reading, peg_height=None) if is_drawing else reading
 
     def asked(self, unit: Unit, peg_height: str | None, workpiece: Workpiece | None = None) -> dict[str, Any]:
         """Keyword arguments of a query; reads the program, and prints remarks on it on stderr.
@@ -191,10 +192,11 @@ class ProgramWords:
                 raise InputError(
                     f"--{given[0].replace('_', '-')} says something of a program: name it with --program."
                 )
-            return {}
         solid = None if workpiece is None else workpiece.solid
-        thick = optional_positive_length("--thickness", self.thickness, unit)
-        high = optional_positive_length("--peg-height", peg_height, unit)
+        if self.program is None:
+            # Of a part that is read later nobody knows yet whether it has heights of its own.
+            return self.heights(unit, peg_height) if workpiece is not None and solid is None else {}
+        thick, high = self.heights(unit, peg_height).values()
         if solid is not None:
             thick, high = thick or solid.height, solid.peg_height
         if thick is None and (self.z_zero == "top" or high is None):
@@ -203,7 +205,21 @@ class ProgramWords:
                 "pegs: give its --thickness, and --peg-height where pegs are not as high."
             )
         zero = zero_on(workpiece, self.zero, unit)
-        return {"program": read_once(self, unit, thick, zero), "peg_height": high or thick}
+        heights = {"thickness": None if solid is not None else thick, "peg_height": high or thick}
+        return {"program": read_once(self, unit, thick, zero), **heights}
+
+    def heights(self, unit: Unit, peg_height: str | None) -> dict[str, float | None]:
+        """The thickness of a drawn part and the height of the pegs in mm, None where they are not given.
+
+        Raises
+        ------
+        InputError
+            For what is no length above 0.
+        """
+        return {
+            "thickness": optional_positive_length("--thickness", self.thickness, unit),
+            "peg_height": optional_positive_length("--peg-height", peg_height, unit),
+        }
 
 
 def asked_cutting(typed: ProgramWords, unit: Unit) -> CuttingData:

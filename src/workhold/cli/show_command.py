@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from workhold.fixels.toolkit import Toolkit
     from workhold.model.fixture import Fixture
     from workhold.model.result import Result
+    from workhold.statics.bent_pegs import BentPegs
     from workhold.statics.loads import LoadCase
 
 __all__ = ["load_tables", "show"]
@@ -108,6 +109,7 @@ def show(
         print_json(
             fixture=fixture_data(fixture, result.toolkit, rank),
             **passing_data(result, rank, closing_force, stiffness),
+            **bending_data(result, rank, closing_force),
             listed=len(result),
             complete=bool(result.complete),
             loads=[load_case_data(case) for case in cases],
@@ -129,14 +131,77 @@ def print_fixture(
     from workhold.cli.tables import fixture_tables, quality_table, standing_sentences
 
     fixture, toolkit = result[rank - 1], result.toolkit
-    quality = quality_table(fixture, toolkit.moving.noun, unit)
+    quality = quality_table(fixture, toolkit.moving.noun, unit, result.query.jaw_force)
     standing = standing_sentences(fixture, result, unit)
     print_tables(*fixture_tables(fixture, toolkit, rank, len(result), unit), *standing, "", quality)
     if fixture.seating is not None:
         print_tables(*seating_words(fixture, result, unit))
     elif not toolkit.closes_at_once and rank <= (result.query.seating or 0):
         print_tables(*by_hand_words(rank, result, unit))
-    print_tables(*passing_words(result, rank, unit, *closing), *load_tables(cases, fixture, toolkit, unit))
+    print_tables(
+        *bending_words(result, rank, unit, closing[0]),
+        *passing_words(result, rank, unit, *closing),
+        *load_tables(cases, fixture, toolkit, unit),
+    )
+
+
+def bent_pegs_of(result: Result, rank: int, jaw_force: float | None) -> BentPegs | None:
+    """Finds how far the pegs of the fixture of a rank bend, at a jaw force in N or at the result's."""
+    from workhold.statics.bent_pegs import bent_pegs
+
+    query = result.query
+    return bent_pegs(
+        result[rank - 1],
+        result.workpiece,
+        result.toolkit,
+        pressed_up_to=query.pressed_up_to,
+        jaw_force=query.jaw_force if jaw_force is None else jaw_force,
+    )
+
+
+def bending_words(result: Result, rank: int, unit: Unit, jaw_force: float | None) -> list[Table | str]:
+    """Says how far each peg bends, and what that moves the part by; nothing where no heights are known.
+
+    Parameters
+    ----------
+    jaw_force : in N, instead of the result's.
+    """
+    bent = bent_pegs_of(result, rank, jaw_force)
+    if bent is None:
+        return []
+    of, mover = unit.abbreviation, result.toolkit.moving.noun
+    force, pressure = unit.force, "MPa"
+    table = Table(
+        (
+            "peg",
+            f">Ø {of}",
+            f">pressed at {of}",
+            f">force {force}",
+            f">gives way {of}",
+            f">at worst {of}",
+            f">stress {pressure}",
+            f">at worst {pressure}",
+        )
+    )
+    for peg in bent.pegs:
+        table.add_row(
+            peg.hole,
+            unit.figure(peg.diameter),
+            unit.number(peg.height, unit.decimals - 1),
+            f"{peg.force / unit.newtons:.0f}",
+            unit.number(peg.deflection),
+            unit.number(peg.worst_deflection),
+            f"{peg.stress:.0f}",
+            f"{peg.worst_stress:.0f}",
+        )
+    error = result[rank - 1].figures.get("location_error")
+    return [
+        "",
+        f"Pegs bend, {bent.at_force(mover, unit)}, built in at the plate; a real hole gives more:",
+        table,
+        bent.sentence(mover, unit, error),
+        *(f"Beware: {sentence}" for sentence in bent.cautions(mover, unit)),
+    ]
 
 
 def load_tables(
@@ -206,6 +271,12 @@ def passing_data(
     passing = {} if near is None else {name: getattr(near, name) for name in names}
     data = {"program_clearance": passing} if passing else {}
     return data if need is None else data | {"program_forces": need.to_dict()}
+
+
+def bending_data(result: Result, rank: int, jaw_force: float | None = None) -> dict[str, Any]:
+    """Returns how far pegs bend as plain data; nothing where no heights are known."""
+    bent = bent_pegs_of(result, rank, jaw_force)
+    return {} if bent is None else {"pins": bent.to_dict()}
 
 
 def passing_words(

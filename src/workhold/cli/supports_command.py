@@ -193,11 +193,11 @@ def asked_thickness(wanted: bool, text: str | None, workpiece: Workpiece, unit: 
     Raises
     ------
     InputError
-        Where nobody knows, or no supports are wanted.
+        Where nobody knows, or it is said of a solid without supports.
     """
     if not wanted:
-        if text is not None:
-            raise InputError("--thickness is of supports: give --supports, or leave it out.")
+        if text is not None and workpiece.solid is not None:
+            raise InputError("how thick the part is, its solid says: leave --thickness out.")
         return None
     solid = workpiece.solid
     high = optional_length("--thickness", text, unit) or (None if solid is None else solid.height)

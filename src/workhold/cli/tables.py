@@ -170,11 +170,17 @@ def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILL
     return table
 
 
-def quality_table(fixture: Fixture, mover: str, unit: Unit = MILLIMETRE) -> Table:
+def quality_table(
+    fixture: Fixture, mover: str, unit: Unit = MILLIMETRE, jaw_force: float | None = None
+) -> Table:
     """Tabulates the figures of quality of a fixture, and their meaning where ``mover`` (such as a jaw)
     presses.
+
+    Parameters
+    ----------
+    jaw_force : in N, at which pegs bend; None where it is not known.
     """
-    from workhold.model.quality import FIGURES, PROGRAM_FIGURE
+    from workhold.model.quality import FIGURES, PIN_KEYS, PROGRAM_FIGURE
 
     table = Table(("figure", ">value", "unit", "better", "meaning"))
     for figure in (*FIGURES, PROGRAM_FIGURE):
@@ -183,6 +189,13 @@ def quality_table(fixture: Fixture, mover: str, unit: Unit = MILLIMETRE) -> Tabl
             better = "more" if figure.more_is_better else "less"
             value = figure_text(figure, fixture.quality[figure.key], unit)
             words, meaning = figure.named_for(mover)
+            if figure.key in PIN_KEYS:
+                at = (
+                    f"for each kN of {mover} force"
+                    if jaw_force is None
+                    else f"at {unit.force_words(jaw_force)}"
+                )
+                meaning = meaning.replace(f"at the {mover} force or for each kN of it", at)
             table.add_row(words, value, of, better, meaning)
     return table
 

@@ -26,7 +26,15 @@ if TYPE_CHECKING:
     from workhold.model.requirements import Tolerance
     from workhold.model.workpiece import Workpiece
 
-__all__ = ["ListWords", "Named", "heights_of_all", "query_of", "toolkits_to_try", "words_of"]
+__all__ = [
+    "ListWords",
+    "Named",
+    "heights_of_all",
+    "peg_diameter_of",
+    "query_of",
+    "toolkits_to_try",
+    "words_of",
+]
 
 # How the entries of a list look, by the form of a field. What is no number is not varied.
 ENTRIES: dict[Form, str] = {
@@ -133,6 +141,16 @@ def heights_of_all(toolkits: Sequence[Named]) -> dict[str, tuple[float, ...]]:
                     "try those of one height at a time."
                 )
     return found
+
+
+def peg_diameter_of(named: Named) -> float | None:
+    """Finds the diameter of a toolkit's pegs in mm; None where there is no such toolkit."""
+    from workhold.fixels.kinds import toolkit_of
+
+    try:
+        return toolkit_of(named.kind, named.fields).peg_diameter
+    except InputError:
+        return None
 
 
 def toolkits_to_try(

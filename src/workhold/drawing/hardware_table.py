@@ -10,6 +10,7 @@ from workhold.drawing.panel import TextColumn
 from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, SheetHeights, heading
 from workhold.fixels.contacts import CLAMP_TIP, WALL_END
 from workhold.fixels.toolkit import Toolkit
+from workhold.model.dowel_lengths import dowel_for
 from workhold.model.fixture import Fixture
 
 __all__ = ["HardwareItem", "hardware_of", "write_hardware"]
@@ -54,18 +55,27 @@ def write_hardware(column: TextColumn, sheet: Sheet) -> None:
         column.paragraph(f"{plate.peg.capitalize()}s: {sheet.dowel}.", NOTE)
     if heights is None or details.peg_length is not None or "peg_top" in heights.assumed:
         return
-    parts = [f"{lengths.words(heights.peg_top)} beside the part"]
+    out = [f"{lengths.words(heights.peg_top)} beside the part"]
     if heights.supported_by:
-        parts.append(f"{lengths.words(heights.supported_by)} of supports{heights.sure('supported_by')}")
-    parts.append(
-        f"{lengths.words(heights.plate_thickness)} in the {plate.noun}{heights.sure('plate_thickness')}"
-    )
-    column.paragraph(f"Length of a {plate.peg}: {' + '.join(parts)}.", NOTE)
+        out.append(f"{lengths.words(heights.supported_by)} of supports{heights.sure('supported_by')}")
+    sold, least = heights.dowel, "" if heights.dowel is not None else "at least "
+    deep = heights.peg_length - heights.above_plate
+    out.append(f"{least}{lengths.words(deep)} in the {plate.noun}")
+    name = f"Length of a {plate.peg}" if sold is None else f"Dowels of {sold.name}, {sold.standard}"
+    column.paragraph(f"{name}: {' + '.join(out)}.", NOTE)
+    if deep > heights.plate_thickness and "plate_thickness" not in heights.assumed:
+        column.paragraph(
+            f"They reach {lengths.words(deep - heights.plate_thickness)} below the {plate.noun}: leave room "
+            "for that.",
+            NOTE,
+        )
     pressed = pressed_up_to(sheet, heights)
     if pressed is not None:
-        shorter = lengths.words(pressed + heights.supported_by + heights.plate_thickness)
-        words = f"No {plate.peg} presses above {lengths.words(pressed)}"
-        column.paragraph(f"{words}, so {plate.peg}s of {shorter} do as well.", NOTE)
+        shorter = dowel_for(sheet.toolkit.peg_diameter, pressed + heights.supported_by)
+        what = "shorter ones" if shorter is None else f"dowels of {shorter.name}"
+        column.paragraph(
+            f"No {plate.peg} presses above {lengths.words(pressed)}, so {what} do as well.", NOTE
+        )
 
 
 def pressed_up_to(sheet: Sheet, heights: SheetHeights) -> float | None:

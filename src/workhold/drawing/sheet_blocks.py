@@ -135,6 +135,27 @@ def write_loads(column: TextColumn, sheet: Sheet) -> None:
     )
 
 
+def write_bending(column: TextColumn, sheet: Sheet) -> None:
+    """Writes how far each peg bends, and what that moves the part by."""
+    bent, lengths, mover = sheet.details.bent, sheet.lengths, sheet.toolkit.moving.noun
+    assert bent is not None
+    heading(column, f"{sheet.toolkit.plates[0].peg.capitalize()}s bend")
+    at = bent.at_force(mover, lengths.unit)
+    header = ["", f"pressed at {lengths.sign}", f"gives way {lengths.sign}", "stress MPa"]
+    rows = [
+        [peg.hole, lengths.number(peg.height), lengths.number(peg.deflection), f"{peg.stress:.0f}"]
+        for peg in bent.pegs
+    ]
+    column.table(header, rows, BODY)
+    column.fact("moves the part by up to", lengths.words(bent.movement))
+    column.fact("with forces at the top", lengths.words(bent.worst_movement))
+    column.paragraph(
+        f"{at[0].upper()}{at[1:]}, beside the location error. Built in at the {sheet.plates_noun}, Ø "
+        f"{lengths.short(bent.most.diameter)}; a real hole gives more.",
+        NOTE,
+    )
+
+
 NAME_SIZES = (26.0, 22.0, 18.0)
 MOST_NAME_LINES = 3
 # What a sheet says of what moves, by what is set on it.
@@ -161,6 +182,8 @@ def blocks_of(sheet: Sheet) -> tuple[list[Block], list[Block]]:
         others.append(write_seating)
     if sheet.details.loads:
         others.append(write_loads)
+    if sheet.details.bent is not None:
+        others.append(write_bending)
     others += [write_quality, write_counting, write_legend]
 
     def bound(writer: Writer) -> Block:

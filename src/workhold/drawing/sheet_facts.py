@@ -29,6 +29,7 @@ from workhold.model.support_bodies import height_of_supports
 from workhold.model.support_triples import ChosenSupports
 from workhold.model.workpiece import Workpiece
 from workhold.seating.clamping import ByHand, by_hand
+from workhold.statics.bent_pegs import BentPegs, bent_pegs
 from workhold.statics.contact_matrix import Touched
 from workhold.statics.judging import is_astray, is_near_edge, is_strong, is_unfit, is_weak, lets_go
 from workhold.statics.loads import LoadCase, load_cases
@@ -88,6 +89,7 @@ class SheetDetails:
     program, passing : what the machine does while the part is held, and where its tools come nearest to what
         holds it; None where that is not known.
     cutting : the jaw force that the program's tools ask for; None where their forces are not known.
+    bent : how far the pegs bend; None where nobody knows how high they press.
     listed_as : what ``number`` counts.
     moved : by how many columns and rows all stands further on than the fixture is listed.
     is_asked_place : whether somebody said where.
@@ -122,6 +124,7 @@ class SheetDetails:
     program: Program | None = None
     passing: Passing | None = None
     cutting: CuttingNeed | None = None
+    bent: BentPegs | None = None
     listed_as: str = "Fixture"
     moved: tuple[int, int] = (0, 0)
     is_asked_place: bool = False
@@ -143,8 +146,8 @@ class Caution:
 
     Parameters
     ----------
-    kind : "unfit", "zero", "edge", "closure", "amplification", "location", "load", "capture", "reading" or
-        "pose".
+    kind : "unfit", "zero", "edge", "closure", "amplification", "location", "bending", "load", "capture",
+        "reading" or "pose".
     sentence : for people; lengths in it are in mm or inch as asked for.
     """
 
@@ -248,6 +251,9 @@ def cautions_of(
     if is_astray(error, off):
         words = f"Pegs and faces within tolerance may still shift the part by {lengths.words(error)}"
         found.append(Caution("location", f"{words}: probe it after clamping."))
+    if details.bent is not None:
+        of_pegs = details.bent.cautions(toolkit.moving.noun, lengths.unit)
+        found += [Caution("bending", one) for one in of_pegs]
     if details.jaw_force is not None:
         lifting = [
             (n, case)
@@ -292,6 +298,22 @@ def lift_of(supports: ChosenSupports | None, support_height: float | None) -> fl
         return 0.0
     own = height_of_supports(supports.supports.query.toolkit) if support_height is None else support_height
     return SUPPORT_HEIGHT if own is None else own
+
+
+def pressed_height(
+    thickness: float | None, peg_height: float | None, supports: ChosenSupports | None, lift: float
+) -> float | None:
+    """The height up to which pegs press on a prism in mm; None where neither height is known.
+
+    Parameters
+    ----------
+    thickness : of the part, or that which supports were asked for.
+    peg_height : above the plates, over which the part lies by ``lift``.
+    """
+    if thickness is None and supports is not None:
+        thickness = supports.supports.request.thickness
+    known = [one for one in (thickness, None if peg_height is None else peg_height - lift) if one is not None]
+    return max(min(known), 0.0) if known else None
 
 
 def result_cautions(result: Result, rank: int, **asked: Any) -> list[Caution]:
@@ -384,6 +406,18 @@ def result_details(
     if passing is not None:
         passing = passing.in_holes(*named)
     cases = load_cases(fixture, workpiece, toolkit, asked, jaw_force, friction, jaw)
+    if result.query.thickness is not None:
+        further.setdefault("thickness", None)
+        further["thickness"] = further["thickness"] or result.query.thickness
+    lift = lift_of(supports, support_height)
+    bent = bent_pegs(
+        fixture,
+        workpiece,
+        toolkit,
+        pressed_up_to=pressed_height(further.get("thickness"), peg_height, supports, lift),
+        jaw_force=jaw_force,
+        lift=lift,
+    )
     if program is not None and zero is None:
         # Where the program counts from is what the machinist sets.
         place = PartZero(program.zero, "place given" if any(program.zero) else "origin of the drawing")
@@ -413,6 +447,7 @@ def result_details(
         cutting=cutting,
         moved=move,
         is_asked_place=at is not None,
+        bent=bent,
         **further,
     )
     return fixture, details

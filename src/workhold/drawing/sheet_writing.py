@@ -15,6 +15,7 @@ from functools import lru_cache
 
 from attrs import field, frozen
 
+from workhold.conventions import DOWEL_DEPTH, DOWEL_STANDOUT, SAME_HEIGHT
 from workhold.drawing.panel import FACT_NAME, TextColumn, pegs_words
 from workhold.drawing.scene import BLACK, GREY, LengthUnit, Scene, text_width
 from workhold.drawing.seating_words import SeatingSentences
@@ -25,6 +26,7 @@ from workhold.fixels.setup_words import Datum
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Point
 from workhold.model.bodies import THICKNESS
+from workhold.model.dowel_lengths import SoldDowel, dowel_for, standouts
 from workhold.model.dowels import fit_words
 from workhold.model.fixture import Fixture
 from workhold.model.own_outlines import numbered_solid
@@ -74,6 +76,7 @@ class SheetHeights:
     plate_thickness : of the plates, through which pegs stand.
     peg_length : of the pegs.
     clamped_height : of the face on which the clamp on top presses; None without one.
+    dowel : that is sold and stands out so far, where no length of the pegs was given; None where none is.
     bands : of each peg of the fixture the heights at which it presses; None where nobody knows.
     assumed : names of those of these that nobody said.
     """
@@ -87,6 +90,7 @@ class SheetHeights:
     bands: tuple[Band | None, ...]
     assumed: frozenset[str] = field(default=frozenset())
     clamped_height: float | None = None
+    dowel: SoldDowel | None = None
 
     @property
     def above_plate(self) -> float:
@@ -133,13 +137,19 @@ def heights_of(
             f"pegs {details.peg_height:g} mm high end below the part, which lies {lift:g} mm above the "
             "plates: give a larger peg height, or lower supports."
         )
+    diameter, length = toolkit.peg_diameter, details.peg_length
+    dowel = None if length is not None else dowel_for(diameter, top + lift)
+    if length is None:
+        # A peg that is not sold is made as long as it must be to sit as deep as one that is.
+        deep = DOWEL_DEPTH * diameter or plate
+        length = top + lift + deep if dowel is None else dowel.length
     is_assumed = {
         "supported_by": supports is not None
         and details.support_height is None
         and height_of_supports(toolkit) is None,
         "plate_thickness": details.plate_thickness is None,
         "peg_top": details.peg_height is None and solid is None,
-        "peg_length": details.peg_length is None,
+        "peg_length": details.peg_length is None and dowel is None,
     }
     return SheetHeights(
         thickness=thickness,
@@ -147,10 +157,11 @@ def heights_of(
         head_room=None if solid is None else solid.head_room,
         supported_by=lift,
         plate_thickness=plate,
-        peg_length=top + lift + plate if details.peg_length is None else details.peg_length,
+        peg_length=length,
         bands=bands_of_pegs(fixture, workpiece, details, thickness, top),
         assumed=frozenset(name for name, is_so in is_assumed.items() if is_so),
         clamped_height=clamped_at(supports, thickness),
+        dowel=dowel,
     )
 
 
@@ -355,10 +366,28 @@ def write_dowel(column: TextColumn, sheet: Sheet) -> None:
             f"{lengths.short_number(low)} to {lengths.short(high)}" for low, high in (fit.pin, fit.hole)
         )
         column.paragraph(f"Pin of {pin} in a hole of {hole_limits}.", NOTE)
-    length, height, mark = details.peg_length, details.peg_height, ""
-    known = sheet.heights
-    if known is not None and "peg_top" not in known.assumed:
-        length, height, mark = known.peg_length, known.above_plate, known.sure("peg_length")
-    peg, above = sheet.toolkit.plates[0].peg, f"height above the {sheet.plates_noun}"
-    for name, size in ((f"{peg} length{mark}", length), (above, height)):
-        fact_or_field(column, name, None if size is None else lengths.words(size))
+    known, peg, above = sheet.heights, sheet.toolkit.plates[0].peg, f"height above the {sheet.plates_noun}"
+    if known is None or "peg_top" in known.assumed:
+        for name, size in ((f"{peg} length", details.peg_length), (above, details.peg_height)):
+            fact_or_field(column, name, None if size is None else lengths.words(size))
+        usual = None if known is None else usual_dowel(sheet, known)
+        if usual is not None:
+            words = f"Dowels of {usual.name} would do: they stand out {lengths.words(usual.standout)}."
+            column.paragraph(words, NOTE)
+        return
+    if known.dowel is not None:
+        noun = sheet.toolkit.plates[0].noun
+        column.fact(f"{peg}s: dowels of", known.dowel.name, bold=True)
+        column.fact(f"each sits in the {noun}", lengths.words(known.dowel.depth), bold=True)
+    else:
+        at_least = " at least" if "peg_length" in known.assumed else ""
+        column.fact(f"{peg} length{at_least}", lengths.words(known.peg_length), bold=True)
+    column.fact(above, lengths.words(known.above_plate), bold=True)
+
+
+def usual_dowel(sheet: Sheet, heights: SheetHeights) -> SoldDowel | None:
+    """The dowel that is no higher than it must be beside a prism; None where none is sold that is not higher."""
+    diameter = sheet.toolkit.peg_diameter
+    usual = min(DOWEL_STANDOUT * diameter, heights.peg_top) + SAME_HEIGHT
+    low = [one for one in standouts(diameter) if one <= usual]
+    return dowel_for(diameter, max(low)) if low else None

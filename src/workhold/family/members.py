@@ -23,7 +23,14 @@ from workhold.family.patterns import half_turn, pattern_words, turned, zero_word
 from workhold.listing.canonical_form import changes
 from workhold.listing.ranking import measured
 from workhold.model.fixture_table import FixtureTable
-from workhold.model.quality import DEFAULT_RANKING, FIGURES, PAIR_RANKING, Figure, figure_number
+from workhold.model.quality import (
+    DEFAULT_RANKING,
+    FIGURES,
+    PAIR_RANKING,
+    Figure,
+    figure_column,
+    figure_number,
+)
 from workhold.model.query import Query
 from workhold.model.requirements import ANY_DIRECTION, Load, Restrictions, Tolerance, zone_of
 from workhold.model.result import Result
@@ -119,7 +126,7 @@ def may_be_used(
     """
     good = np.ones(len(table), np.bool_) if with_unfit else ~unfit(table.quality, tolerance)
     for one in thresholds:
-        values = np.round(table.quality[:, FIGURES.index(one.figure)], FIGURE_DECIMALS)
+        values = np.round(figure_column(table.quality, one.figure), FIGURE_DECIMALS)
         good &= values >= one.value if one.figure.more_is_better else values <= one.value
     return good
 
@@ -274,7 +281,7 @@ def member_of(
     query = result.query
     figure = FIGURES[figure_number(query.ranking[0]) or 0]
     table, number = with_half_turns(result.table, query)
-    values = table.quality[:, FIGURES.index(figure)]
+    values = figure_column(table.quality, figure)
     good = may_be_used(table, (), query.tolerance, unfit)
     loss = np.full(len(table), np.inf)
     loss[good] = losses(values[good], figure)

@@ -173,6 +173,7 @@ WANTED = {
     "pin_diameter": "write the smallest and the largest diameter, such as [5.982, 6.0]",
     "hole_diameter": "write the smallest and the largest diameter, such as [6.0, 6.012]",
     "supports": "write a table of numbers, such as [supports] and below it pad_radius = 4",
+    "pins": "write a table of numbers, such as [pins] and below it movement_limit = 0.03",
     "top-clamp": "write a table, such as [top-clamp] and below it tip_radius = 5, reach = [[0, 0, 10, 90]]",
 } | {row.name: row.entry for row in OPTIONS if row.entry}
 

@@ -190,7 +190,11 @@ def described_toolkit(name: str, entries: Mapping[str, Any]) -> LoadedToolkit:
     fields: dict[str, Any] = {**said, **given}
     for key in HARDWARE:
         if key in entries:
-            figures = {figure: lengths_in_mm(value, unit) for figure, value in entries[key].items()}
+            stresses = {row.name for row in HARDWARE[key].table.fields if row.form == "stress"}
+            figures = {
+                figure: value if figure in stresses else lengths_in_mm(value, unit)
+                for figure, value in entries[key].items()
+            }
             fields[key] = hardware_of(key, figures)
     refuse_wide_pads(toolkit_of(kind, fields))
     return LoadedToolkit(

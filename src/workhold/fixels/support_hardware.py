@@ -1,6 +1,6 @@
-"""Supports and a clamp on top that an owner of a toolkit has: defaults of what is asked in three dimensions.
+"""Supports, a clamp on top and limits of pins that an owner of a toolkit has: what is usual there.
 
-Every kind of toolkit may have both. Each figure is a row, of which files, requests and the constructors are
+Every kind of toolkit may have all of them. Each figure is a row, of which files, requests and the constructors are
 made; one that is not given is None and stays the usual one. Files say nothing of a toolkit without them.
 """
 
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from math import isfinite
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeAlias
 
 from attrs import field, frozen
 from attrs.converters import optional
@@ -17,10 +17,10 @@ from workhold.errors import InputError
 from workhold.fixels.table import FieldTable, PageLabel, ToolkitField
 from workhold.limits import real, refuse_long
 
-__all__ = ["HARDWARE", "SUPPORTS", "TOP_CLAMP", "SupportPads", "TopClamp", "hardware_of"]
+__all__ = ["HARDWARE", "PINS", "SUPPORTS", "TOP_CLAMP", "PinLimits", "SupportPads", "TopClamp", "hardware_of"]
 
 # What the tables are called in a toolkit's file, and in all that the program writes.
-SUPPORTS, TOP_CLAMP = "supports", "top_clamp"
+SUPPORTS, TOP_CLAMP, PINS = "supports", "top_clamp", "pins"
 
 Rings = tuple[tuple[float, ...], ...]
 # What stands in a field of the page that is empty.
@@ -62,9 +62,28 @@ CLAMP = FieldTable(
         ),
     ),
 )
+LIMITS = FieldTable(
+    PINS,
+    "What pins may take",
+    (
+        ToolkitField(
+            "stress_limit",
+            "stress",
+            "largest bending stress of a pin",
+            (PageLabel("Bending stress, MPa", USUAL),),
+            figure="largest bending stress of a pin",
+        ),
+        length_row(
+            "movement_limit",
+            "above 0",
+            "farthest that pins may give way under the part",
+            "Part moved by bending pins",
+        ),
+    ),
+)
 
 
-def refuse_wrong(hardware: SupportPads | TopClamp) -> None:
+def refuse_wrong(hardware: Hardware) -> None:
     """Refuses lengths that cannot be.
 
     Raises
@@ -74,9 +93,10 @@ def refuse_wrong(hardware: SupportPads | TopClamp) -> None:
     """
     for row in hardware.table.fields:
         value, words = getattr(hardware, row.name), f"{hardware.table.noun.replace('_', '-')}: {row.words}"
-        if row.form == "length" and value is not None:
+        if row.form in ("length", "stress") and value is not None:
             if not isfinite(value) or value < 0 or (value == 0 and row.least == "above 0"):
-                least = "0 or more" if row.least == "0" else "a length above 0"
+                above = "a length above 0" if row.form == "length" else "MPa above 0"
+                least = "0 or more" if row.least == "0" else above
                 raise InputError(f"{words} {value:g} cannot be used: give {least}.")
             refuse_long(words, value)
         if row.form == "rings":
@@ -146,12 +166,37 @@ class TopClamp:
         refuse_wrong(self)
 
 
+@frozen(kw_only=True)
+class PinLimits:
+    """What pegs may bend before there is a warning; None for the usual limits (``conventions``).
+
+    Parameters
+    ----------
+    stress_limit : largest bending stress in MPa.
+    movement_limit : farthest in mm that bending pegs may move a point of the part.
+
+    Raises
+    ------
+    InputError
+        For numbers that cannot be.
+    """
+
+    table: ClassVar[FieldTable] = LIMITS
+
+    stress_limit: float | None = field(default=None, converter=optional(real))
+    movement_limit: float | None = field(default=None, converter=optional(real))
+
+    def __attrs_post_init__(self) -> None:
+        refuse_wrong(self)
+
+
+Hardware: TypeAlias = SupportPads | TopClamp | PinLimits
 # The classes by the names of the toolkits' fields.
-HARDWARE: Mapping[str, type[SupportPads] | type[TopClamp]] = {SUPPORTS: SupportPads, TOP_CLAMP: TopClamp}
+HARDWARE: Mapping[str, type[Hardware]] = {SUPPORTS: SupportPads, TOP_CLAMP: TopClamp, PINS: PinLimits}
 
 
-def hardware_of(name: str, value: Any) -> SupportPads | TopClamp | None:
-    """Supports or the clamp from a mapping of their figures.
+def hardware_of(name: str, value: Any) -> Hardware | None:
+    """Supports, the clamp or limits of pins from a mapping of their figures.
 
     Parameters
     ----------

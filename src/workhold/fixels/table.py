@@ -29,8 +29,10 @@ __all__ = [
 
 # What a value looks like: a whole number; lengths, one or two for x and y, or the least and the most; a
 # flat's distance with or without half its width; the heights between which something touches; names of holes;
-# directions or pairs of them; rings about points.
-Form = Literal["count", "length", "pitch", "span", "flat", "heights", "holes", "directions", "rings"]
+# directions or pairs of them; rings about points; a stress in MPa.
+Form = Literal[
+    "count", "length", "pitch", "span", "flat", "heights", "holes", "directions", "rings", "stress"
+]
 # What stands for a value of a form in the help of the command.
 METAVARS: Mapping[Form, str] = {
     "count": "N",
@@ -42,6 +44,7 @@ METAVARS: Mapping[Form, str] = {
     "holes": "HOLES",
     "directions": "LIST",
     "rings": "X,Y,LEAST,MOST",
+    "stress": "MPA",
 }
 # Forms of which files say nothing where there is none.
 SILENT: frozenset[Form] = frozenset({"flat", "heights"})

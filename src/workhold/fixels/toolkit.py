@@ -29,7 +29,7 @@ from workhold.errors import InputError
 from workhold.fixels.carrier import Carrier, Heights, Travel
 from workhold.fixels.contacts import CLAMP_TIP, Arrangement, ContactKind, Symmetry
 from workhold.fixels.setup_words import Datum, PageWords, SetupWords
-from workhold.fixels.support_hardware import SupportPads, TopClamp
+from workhold.fixels.support_hardware import PinLimits, SupportPads, TopClamp
 from workhold.fixels.table import FieldTable, ToolkitField
 from workhold.units import Unit
 
@@ -123,6 +123,7 @@ class Toolkit:
     setup_words : what setting it up is called on sheets, pictures and pages.
     page : what the page calls it.
     supports, top_clamp : the supports and the clamp on top that its owner has; None where nobody says.
+    pins : what its pegs may bend; None for the usual limits.
     tolerance : how far its pegs and the faces they touch may be off (``model.requirements.Tolerance``), as its
         preset or file says; None where nobody says. A query takes it where it is given no other.
     """
@@ -135,6 +136,7 @@ class Toolkit:
 
         supports: SupportPads | None
         top_clamp: TopClamp | None
+        pins: PinLimits | None
         tolerance: Any
 
     kind: ClassVar[str]
@@ -168,6 +170,16 @@ class Toolkit:
     def plates(self) -> tuple[Carrier, ...]:
         """The carriers that have a lattice of holes."""
         return tuple(carrier for carrier in self.carriers if carrier.has_lattice)
+
+    @property
+    def peg_diameter(self) -> float:
+        """Diameter in mm of the pegs that stand in its plates.
+
+        >>> from workhold import Vise
+        >>> Vise(pitch=20, columns=3, peg_radius=3).peg_diameter
+        6.0
+        """
+        return 2 * self.plates[0].peg_radius
 
     @property
     def is_in_inches(self) -> bool:

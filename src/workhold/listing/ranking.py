@@ -68,6 +68,7 @@ def measured_as(table: FixtureTable, query: Query, touched: Touched) -> FixtureT
         touched=touched,
         jaw_force=query.jaw_force,
         passed=query.passed,
+        pressed_up_to=query.pressed_up_to,
     )
     quality[:, [CLOSURE_MARGIN, CLAMP_FREEDOM]] = table.quality[:, [CLOSURE_MARGIN, CLAMP_FREEDOM]]
     return evolve(table, quality=quality)

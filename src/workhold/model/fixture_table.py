@@ -15,7 +15,7 @@ from workhold.geometry.segment import Line
 from workhold.model.clamps import ratios, working_forces
 from workhold.model.fixture import Fixture, Listed, Pair, Peg
 from workhold.model.pose import ENDS, Pose
-from workhold.model.quality import CLOSURE_MARGIN, FIGURES, known_figures_of
+from workhold.model.quality import BEFORE_PINS, CLOSURE_MARGIN, known_figures_of
 from workhold.model.wall_ends import wall_ends
 from workhold.model.workpiece import Workpiece
 
@@ -160,7 +160,7 @@ class FixtureTable:
 
 def unknown_quality(closure_margin: NDArray[np.float64]) -> NDArray[np.float64]:
     """Figures of quality (N, Q) of which only the closure margin (N,) is known."""
-    quality = np.full((len(closure_margin), len(FIGURES)), np.nan)
+    quality = np.full((len(closure_margin), BEFORE_PINS), np.nan)
     quality[:, CLOSURE_MARGIN] = closure_margin
     return quality
 

@@ -10,7 +10,9 @@ from collections.abc import Iterable, Sequence
 from math import isnan
 from typing import TypeVar
 
+import numpy as np
 from attrs import frozen
+from numpy.typing import NDArray
 
 from workhold.errors import InputError
 from workhold.model.requirements import Load
@@ -28,7 +30,13 @@ __all__ = [
     "LOAD_REACTION",
     "LOCATION_ERROR",
     "PAIR_RANKING",
+    "BEFORE_PINS",
     "PENALTY",
+    "PIN_DEFLECTION",
+    "PIN_FIGURES",
+    "PIN_KEYS",
+    "PIN_MOVEMENT",
+    "PIN_STRESS",
     "PREFERENCES",
     "PROGRAM_CLEARANCE",
     "PROGRAM_FIGURE",
@@ -42,12 +50,14 @@ __all__ = [
     "Loaded",
     "asked_ranking",
     "chosen_ranking",
+    "figure_column",
     "figure_number",
     "figures_in",
     "for_loads",
     "known_figures_of",
     "listed",
     "ranked_number",
+    "whole_rows",
     "words",
 ]
 
@@ -82,7 +92,7 @@ class Figure:
     Parameters
     ----------
     key : its name in files.
-    unit : "" (a plain number), "mm", "N" or "deg".
+    unit : "" (a plain number), "mm", "N", "MPa" or "deg".
     more_is_better : which way is better.
     meaning : what it means, in one sentence.
     decimals : with which it is shown; lengths have those of their unit.
@@ -166,11 +176,36 @@ FIGURES = (
         True,
         "How long the part lies on a flat jaw that has ends, from the first to the last point of contact.",
     ),
+    Figure(
+        "pin_deflection",
+        "mm",
+        False,
+        "How far the peg that bends most gives way, at the jaw force or for each kN of it.",
+    ),
+    Figure(
+        "pin_stress",
+        "MPa",
+        False,
+        "The largest bending stress in a peg, at the jaw force or for each kN of it.",
+        1,
+    ),
+    Figure(
+        "pin_movement",
+        "mm",
+        False,
+        "The farthest that bending pegs move a point of the part, at the jaw force or for each kN of it.",
+    ),
 )
 CLOSURE_MARGIN, CLAMP_AMPLIFICATION, WRENCH_RADIUS, LOCATION_ERROR, END_DISTANCE, LOAD_REACTION = range(6)
 EDGE_DISTANCE, JAW_FORCE_NEEDED, TILT, SMALLEST_FACE, WARNINGS, PENALTY, CLAMP_FREEDOM, JAW_CONTACT = range(
     6, 14
 )
+PIN_DEFLECTION, PIN_STRESS, PIN_MOVEMENT = range(14, 17)
+# Those of how far pegs bend: at the jaw force, for each kN of it where none is known.
+PIN_FIGURES = PIN_DEFLECTION, PIN_STRESS, PIN_MOVEMENT
+PIN_KEYS = tuple(FIGURES[number].key for number in PIN_FIGURES)
+# The figures that files had before there were these.
+BEFORE_PINS = PIN_DEFLECTION
 
 # Of the fixtures whose seating is asked for (docs/seating.md).
 SEATING_FIGURES = (
@@ -204,16 +239,34 @@ RANKED = (*FIGURES, *SEATING_FIGURES, PROGRAM_FIGURE)
 def figures_in(columns: int) -> tuple[Figure, ...]:
     """The figures of quality that stand in so many columns, without any seating.
 
-    >>> figures_in(len(FIGURES) + 1)[PROGRAM_CLEARANCE].words
-    'program clearance'
+    Those of how far pegs bend are left out where nobody knows at which heights pegs touch the part.
+
+    >>> figures_in(len(FIGURES) + 1)[PROGRAM_CLEARANCE].words, figures_in(BEFORE_PINS)[-1].words
+    ('program clearance', 'jaw contact')
     """
-    return FIGURES if columns == len(FIGURES) else (*FIGURES, PROGRAM_FIGURE)
+    known = FIGURES if columns >= len(FIGURES) else FIGURES[:BEFORE_PINS]
+    return known if columns == len(known) else (*known, PROGRAM_FIGURE)
+
+
+def whole_rows(quality: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Figures (N, F) with a column for each of :data:`FIGURES`, NaN where there was none."""
+    figures = figures_in(quality.shape[1])
+    if len(figures) >= len(FIGURES):
+        return quality
+    unknown = np.full((len(quality), len(PIN_FIGURES)), np.nan)
+    return np.hstack([quality[:, :BEFORE_PINS], unknown, quality[:, BEFORE_PINS:]])
+
+
+def figure_column(quality: NDArray[np.float64], figure: Figure) -> NDArray[np.float64]:
+    """The column (N,) of a figure of :data:`FIGURES` in figures (N, F); NaN where it is not known."""
+    figures = figures_in(quality.shape[1])
+    return quality[:, figures.index(figure)] if figure in figures else np.full(len(quality), np.nan)
 
 
 def known_figures_of(values: Sequence[float]) -> dict[str, float]:
     """The figures of a fixture by their keys, without those that are not known, from a row of a table.
 
-    >>> known_figures_of([0.25, *[float("nan")] * 13, 4.5])
+    >>> known_figures_of([0.25, *[float("nan")] * 16, 4.5])
     {'closure_margin': 0.25, 'program_clearance': 4.5}
     """
     named = zip(figures_in(len(values)), values, strict=True)

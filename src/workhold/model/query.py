@@ -21,6 +21,7 @@ from workhold.model.quality import (
     FIGURES,
     JAW_FORCE_NEEDED,
     LOAD_REACTION,
+    PIN_KEYS,
     PROGRAM_FIGURE,
     SEATING_FIGURES,
     chosen_ranking,
@@ -104,8 +105,10 @@ class Query:
         one.
     program : of the machine: list only fixtures that its tools do not come near, and judge them under its
         forces; None where it is not known.
-    peg_height : of pegs, clamps and walls over the plane on which the part lies, in mm, where there is a
-        program; the solid's where the part is read from one.
+    peg_height : of pegs, clamps and walls over the plane on which the part lies, in mm; None where nobody says.
+        With a program it is needed; where the part is read from a solid it is the solid's.
+    thickness : of the part in mm, for how far pegs bend; None where it is not known, and of a solid, which says
+        it itself.
 
     Raises
     ------
@@ -130,6 +133,7 @@ class Query:
     foolproof: bool = False
     program: Program | None = None
     peg_height: float | None = None
+    thickness: float | None = None
 
     def __attrs_post_init__(self) -> None:
         given: Any = self.tolerance
@@ -148,7 +152,23 @@ class Query:
             raise InputError(f"there is no program to rank by the {PROGRAM_FIGURE.words}: give one.")
         if self.program is not None:
             object.__setattr__(self, "program", self.program.pressing_on(self.workpiece.outer_loops))
+        if self.program is not None or self.peg_height is not None:
             object.__setattr__(self, "peg_height", height_of_pegs(self.peg_height, self.workpiece))
+        if self.thickness is not None:
+            thickness = real(self.thickness)
+            if not (isfinite(thickness) and thickness > 0):
+                raise InputError(f"thickness {thickness:g} is not a length: give more than 0, in mm.")
+            refuse_long("thickness", thickness)
+            object.__setattr__(self, "thickness", thickness)
+        if self.workpiece.solid is not None:
+            object.__setattr__(self, "thickness", None)
+            if self.program is None:
+                object.__setattr__(self, "peg_height", None)
+        if not self.knows_heights and not set(PIN_KEYS).isdisjoint(self.ranking):
+            raise InputError(
+                "how far pegs bend is known where it is known how high they touch the part: give its thickness, "
+                "or how high the pegs are."
+            )
         if self.listing is not None and (not pairs or self.listing not in LISTINGS):
             remedy = f"choose {' or '.join(LISTINGS)}" if pairs else "only fixtures with two clamps have one"
             raise InputError(f"the listing cannot be {self.listing!r}: {remedy}.")
@@ -182,6 +202,17 @@ class Query:
     def has_seating_rules(self) -> bool:
         """Whether fixtures are ruled out by their seating."""
         return self.foolproof or self.opening is not None
+
+    @property
+    def pressed_up_to(self) -> float | None:
+        """The height in mm up to which pegs touch a prism; None where nobody knows, and of a solid."""
+        known = [one for one in (self.thickness, self.peg_height) if one is not None]
+        return min(known) if known and self.workpiece.solid is None else None
+
+    @property
+    def knows_heights(self) -> bool:
+        """Whether it is known at which heights pegs touch the part."""
+        return self.workpiece.solid is not None or self.pressed_up_to is not None
 
     @property
     def passed(self) -> tuple[Program, float] | None:
@@ -225,7 +256,7 @@ class Query:
         """The query of fixtures that no program has to pass."""
         of_program = {PROGRAM_FIGURE.key} if self.loads else {PROGRAM_FIGURE.key, *LOAD_KEYS}
         ranking = [key for key in self.ranking if key not in of_program]
-        return evolve(self, program=None, peg_height=None, ranking=ranking or None)
+        return evolve(self, program=None, ranking=ranking or None)
 
     @property
     def without_seating(self) -> Query:

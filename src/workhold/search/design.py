@@ -70,6 +70,8 @@ def design(
     seating: int | None = None,
     opening: float | None = None,
     foolproof: bool = False,
+    thickness: float | None = None,
+    peg_height: float | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
     cancel: Event | None = None,
@@ -81,7 +83,7 @@ def design(
     ----------
     workpiece, toolkit, contact_margin, restrictions, tolerance, loads, best, jaw_force, listing : see
         :class:`workhold.model.query.Query`.
-    seating, opening, foolproof : the same.
+    seating, opening, foolproof, thickness, peg_height : the same.
     types : names of arrangements: of a vise "I" (two pegs on each jaw), "II" (three and one), or both; None
         is all.
     rank_by : the query's ranking.
@@ -111,7 +113,16 @@ def design(
     """
     ranking = asked_ranking(rank_by, prefer, loads)
     asked = types, contact_margin, restrictions, ranking, tolerance, loads, best, jaw_force, listing
-    query = Query(workpiece, toolkit, *asked, seating, opening, foolproof)
+    query = Query(
+        workpiece,
+        toolkit,
+        *asked,
+        seating,
+        opening,
+        foolproof,
+        peg_height=peg_height,
+        thickness=thickness,
+    )
     return answer(query, threads=threads, progress=progress, cancel=cancel, preview=preview)
 
 

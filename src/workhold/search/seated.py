@@ -23,7 +23,7 @@ from workhold.errors import InputError
 from workhold.listing.ranking import rank
 from workhold.listing.results import stage
 from workhold.model.fixture_table import FixtureTable
-from workhold.model.quality import FIGURES, SEATING_FIGURES, WARNINGS
+from workhold.model.quality import FIGURES, SEATING_FIGURES, WARNINGS, whole_rows
 from workhold.model.query import SEATING_KEYS, Query
 from workhold.model.result import Result
 from workhold.model.search_report import best_note, by_hand_note, cut_note, seated_note
@@ -207,7 +207,8 @@ def order_of(table: FixtureTable, seatings: Sequence[Seating], query: Query) -> 
     further = [[one.figures[figure.key] for figure in SEATING_FIGURES] for one in seatings]
     seating = np.array(further).reshape(len(seatings), len(SEATING_FIGURES))
     # What there is of a program stays the last column.
-    quality = np.hstack([table.quality[:, : len(FIGURES)], seating, table.quality[:, len(FIGURES) :]])
+    whole = whole_rows(table.quality)
+    quality = np.hstack([whole[:, : len(FIGURES)], seating, whole[:, len(FIGURES) :]])
     quality[:, WARNINGS] += [one.warning_count for one in seatings]
     return rank(quality, query.ranking, query.tolerance)
 

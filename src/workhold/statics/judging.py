@@ -3,7 +3,8 @@
 Glossary
 --------
 warning : a contact near an edge (one for each), a weak closure, a strong peg, a large location error, a peg
-    that lets go under a load.
+    that lets go under a load. At a jaw force that is known also a peg that is bent too hard, and pegs that give
+    way too far.
 unfit : of a fixture that is none for a workshop, because the part lies anywhere or one peg hardly holds.
 penalty : points against a fixture. One stands for a location error 12 % larger (ISO 3, series R20). Tilt, a
     strong peg and a small face cost so many points each.
@@ -23,6 +24,8 @@ from workhold.conventions import (
     LARGE_LOCATION_ERROR,
     NEAR_EDGE,
     NO_FORCE,
+    PIN_MOVEMENT_LIMIT,
+    PIN_STRESS_LIMIT,
     POINTS_PER_DECADE,
     SMALL_FACE,
     SMALL_FACE_POINTS,
@@ -39,12 +42,26 @@ from workhold.model.quality import (
     CLOSURE_MARGIN,
     JAW_FORCE_NEEDED,
     LOCATION_ERROR,
+    PIN_MOVEMENT,
+    PIN_STRESS,
     SMALLEST_FACE,
     TILT,
+    figures_in,
 )
 from workhold.model.requirements import Tolerance
+from workhold.statics.pins import limits_of
 
-__all__ = ["Judging", "is_astray", "is_near_edge", "is_strong", "is_unfit", "is_weak", "lets_go", "unfit"]
+__all__ = [
+    "Judging",
+    "is_astray",
+    "is_beyond",
+    "is_near_edge",
+    "is_strong",
+    "is_unfit",
+    "is_weak",
+    "lets_go",
+    "unfit",
+]
 
 Array = NDArray[np.float64]
 
@@ -58,12 +75,14 @@ class Judging:
     off : sum of the tolerances of peg and face in mm.
     small_face : in mm; a face is small below it.
     jaw_force : that the vise is closed with, in N; None where it is not known, and no peg is warned of that
-        lets go.
+        lets go, or bends.
+    bending : largest bending stress of a pin in MPa, and farthest that pins may move the part in mm.
     """
 
     off: float
     small_face: float
     jaw_force: float | None
+    bending: tuple[float, float] = (PIN_STRESS_LIMIT, PIN_MOVEMENT_LIMIT)
 
     @classmethod
     def of(
@@ -74,7 +93,7 @@ class Judging:
         The length L of the wrenches in mm is half the part's diameter and the radius of the largest peg.
         """
         diameter = 2 * (length - max(carrier.peg_radius for carrier in toolkit.carriers))
-        return cls(tolerance.peg + tolerance.face, SMALL_FACE * diameter, jaw_force)
+        return cls(tolerance.peg + tolerance.face, SMALL_FACE * diameter, jaw_force, limits_of(toolkit))
 
     def warnings(self, quality: Array, edges: Array) -> Array:
         """Numbers of warnings (N,) from figures (N, 12) and contacts' distances from edges (N, 4)."""
@@ -86,6 +105,10 @@ class Judging:
         )
         if self.jaw_force is not None:
             count = count + lets_go(quality[:, JAW_FORCE_NEEDED], self.jaw_force)
+            if len(figures_in(quality.shape[1])) > PIN_MOVEMENT:
+                stress, movement = self.bending
+                count = count + is_beyond(quality[:, PIN_STRESS], stress)
+                count = count + is_beyond(quality[:, PIN_MOVEMENT], movement)
         return np.asarray(count, np.float64)
 
     def penalty(self, quality: Array) -> Array:
@@ -127,6 +150,11 @@ def is_astray(error: Any, off: float) -> Any:
 def lets_go(needed: Any, jaw_force: float) -> Any:
     """Whether a peg lets go at a jaw force, from the one needed or an array of them, all in N."""
     return needed > jaw_force * (1.0 + NO_FORCE)
+
+
+def is_beyond(value: Any, limit: float) -> Any:
+    """Whether a bending stress or a movement by bent pegs, or an array of them, is beyond its limit."""
+    return np.round(value, FIGURE_DECIMALS) > limit
 
 
 def is_unfit(margin: Any, error: Any, off: float) -> Any:

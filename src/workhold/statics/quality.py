@@ -28,6 +28,7 @@ from workhold.model.fixture import Fixture
 from workhold.model.fixture_table import FixtureTable, fixture_at, peg_places
 from workhold.model.program import Program
 from workhold.model.quality import (
+    BEFORE_PINS,
     CLAMP_FREEDOM,
     CLOSURE_MARGIN,
     FIGURES,
@@ -35,6 +36,7 @@ from workhold.model.quality import (
     JAW_FORCE_NEEDED,
     LOAD_REACTION,
     PENALTY,
+    PIN_FIGURES,
     PROGRAM_CLEARANCE,
     SMALLEST_FACE,
     TILT,
@@ -45,13 +47,14 @@ from workhold.model.result import Result
 from workhold.model.wall_ends import wall_ends
 from workhold.model.workpiece import Workpiece
 from workhold.rowwise import smallest
-from workhold.statics.contact_matrix import Touched
+from workhold.statics.contact_matrix import ContactMatrices, Touched
 from workhold.statics.judging import Judging
 from workhold.statics.loads import jaw_forces_needed
+from workhold.statics.pins import PinRuns, bent_pins
 from workhold.statics.program_clearance import nearest_moves
 from workhold.statics.program_forces import cutting_figures
 
-__all__ = ["face_sizes", "load_rows", "main_direction", "measured_fixture", "quality_of", "tilts"]
+__all__ = ["extremes", "face_sizes", "load_rows", "main_direction", "measured_fixture", "quality_of", "tilts"]
 
 Array = NDArray[np.float64]
 
@@ -105,6 +108,7 @@ def quality_of(
     touched: Touched | None = None,
     jaw_force: float | None = None,
     passed: tuple[Program, float] | None = None,
+    pressed_up_to: float | None = None,
 ) -> Array:
     """Figures of quality of a table of fixtures, from their holes, poses and faces alone.
 
@@ -119,10 +123,12 @@ def quality_of(
     jaw_force : in N, for the warning that a peg lets go under a load.
     passed : a program and the height of pegs in mm, for the program clearance in a column more; None without.
         Where it has forces they are loads like the others.
+    pressed_up_to : up to which height pegs press on a prism, in mm, for how far they bend; None where nobody
+        knows. A solid says it itself.
 
     Returns
     -------
-    (N, 14) array, columns in the order of ``model.quality.FIGURES``; NaN for figures of loads without loads,
+    (N, F) array, columns as ``model.quality.figures_in`` has them; NaN for figures of loads without loads,
     and for pegs whose contact equations have no single solution.
     """
     tolerance = tolerance or Tolerance()
@@ -132,7 +138,9 @@ def quality_of(
     tolerances = np.array([tolerance.peg, tolerance.face])
     direction, sizes = main_direction(workpiece), face_sizes(workpiece)
     judging = Judging.of(known.length, toolkit, tolerance, jaw_force)
-    out = np.empty((len(table), len(FIGURES) + (passed is not None)))
+    has_pins = workpiece.solid is not None or pressed_up_to is not None
+    known_figures = len(FIGURES) if has_pins else BEFORE_PINS
+    out = np.empty((len(table), known_figures + (passed is not None)))
 
     def fill(start: int) -> None:
         block = table.take(slice(start, start + BLOCK))
@@ -174,6 +182,10 @@ def quality_of(
             filled[:, JAW_CONTACT] = np.diff(x[:, ends], axis=1)[:, 0]
         filled[:, TILT] = tilts(block.theta, direction)
         filled[:, SMALLEST_FACE] = smallest(touched_sizes(block, toolkit, workpiece, sizes))
+        if has_pins:
+            runs = PinRuns.of(faces, carriers, workpiece, toolkit, contact_matrices.points, pressed_up_to)
+            silhouette = corners, arcs
+            filled[:, PIN_FIGURES] = most_bent(contact_matrices, runs, jaw_force, known.length, silhouette)
         filled[:, WARNINGS] = judging.warnings(filled, contact_matrices.edges)
         filled[:, PENALTY] = judging.penalty(filled)
         if passed is not None:
@@ -188,6 +200,24 @@ def quality_of(
         for start in starts:
             fill(start)
     return out
+
+
+def most_bent(
+    contacts: ContactMatrices,
+    runs: PinRuns,
+    jaw_force: float | None,
+    length: float,
+    silhouette: tuple[Array, Array],
+) -> Array:
+    """The largest deflection and stress of a peg, and what they move the part by, (N, 3); NaN where not known."""
+    bent = bent_pins(contacts, runs.diameter, runs.middle, jaw_force, length, silhouette)
+    is_peg = ~np.isnan(runs.diameter)
+    each = (
+        np.where(is_peg, values, 0.0).max(axis=1, initial=0.0) for values in (bent.deflection, bent.stress)
+    )
+    out = np.column_stack([*each, bent.movement])
+    out[~is_peg.any(axis=1)] = np.nan
+    return np.asarray(out)
 
 
 def closures(reactions: Array) -> Array:
@@ -233,6 +263,7 @@ def measured_fixture(
         asked,
         jaw_force=force,
         passed=result.query.passed,
+        pressed_up_to=result.query.pressed_up_to,
     )
     return fixture_at(evolve(row, quality=quality), result.toolkit, 0, result.workpiece)
 

@@ -23,7 +23,14 @@ from attrs import field, frozen
 from flint import arb, arb_mat
 
 from workhold.model.fixture import Fixture
-from workhold.model.quality import CLAMP_FREEDOM, FIGURES, JAW_CONTACT, JAW_FORCE_NEEDED, LOAD_REACTION
+from workhold.model.quality import (
+    CLAMP_FREEDOM,
+    FIGURES,
+    JAW_CONTACT,
+    JAW_FORCE_NEEDED,
+    LOAD_REACTION,
+    PIN_KEYS,
+)
 from workhold.model.query import Query
 from workhold.model.requirements import Load
 from workhold.verification.ball_geometry import (
@@ -50,10 +57,13 @@ from workhold.verification.contacts import (
 )
 from workhold.verification.force_walk import ForceWalk, force_walk_of
 from workhold.verification.judging import main_direction, penalty, tilt, warnings
+from workhold.verification.pins import PegBeam, stated_force
 from workhold.verification.seat import SeatBalance
 from workhold.verification.tolerances import (
     FILLED,
     HAIR,
+    PIN_MOVEMENT_LIMIT,
+    PIN_STRESS_LIMIT,
     SAME_END,
     TANGENT,
     Finding,
@@ -128,6 +138,8 @@ class Measure:
     direction : main direction of the part in degrees (``verification.judging``).
     jaw_force : in N, None where none was said.
     has_ends : whether the part lies on a wall that has ends.
+    stated_force : the jaw force in N for which bending is stated.
+    bending : largest stress of a pin in MPa, and farthest that pins may move the part in mm.
     beside : the barriers on the contact feature of each face and radius, as far as known
         (``verification.touching``).
     """
@@ -146,6 +158,8 @@ class Measure:
     direction: arb
     jaw_force: float | None
     has_ends: bool
+    stated_force: arb
+    bending: tuple[float, float]
     beside: dict[tuple[int, float, float], list[Barrier]] = field(factory=dict, init=False)
 
     @classmethod
@@ -170,6 +184,8 @@ class Measure:
             main_direction([side for face, side in outline.faces.items() if face < len(outline.segments)]),
             query.jaw_force,
             has_ends(query),
+            stated_force(query),
+            bending_of(query),
         )
 
     def figures(
@@ -178,8 +194,16 @@ class Measure:
         faces: Sequence[int],
         pose: BallPose,
         balance: Balance | SeatBalance,
+        beams: Sequence[PegBeam | None] | None = None,
+        states_bending: bool = True,
     ) -> Mapping[str, arb]:
-        """The figures of a fixture by their keys; no load reaction without loads."""
+        """The figures of a fixture by their keys; no load reaction without loads.
+
+        Parameters
+        ----------
+        beams : of the contacts, see ``verification.pins``; None where it is not known how far pegs bend.
+        states_bending : whether the file says how far they do.
+        """
         out = {"closure_margin": balance.margin, "clamp_amplification": largest(balance.forces)}
         if isinstance(balance, SeatBalance):
             out["clamp_freedom"] = balance.ratio.freedom
@@ -207,10 +231,27 @@ class Measure:
         if self.loads or self.walk is not None:
             out["load_reaction"] = self.load_reaction(balance)
             out["jaw_force_needed"] = self.jaw_force_needed(balance)
+        if beams is not None:
+            out |= self.bent(beams, balance.forces, balance.inverse)
         part = parts_spared(balance.forces)
-        out["warnings"] = warnings(out, edges, self.peg + self.face, self.jaw_force, part)
+        off = self.peg + self.face
+        out["warnings"] = warnings(out, edges, off, self.jaw_force, part, self.bending, states_bending)
         out["penalty"] = penalty(out, self.peg + self.face, self.diameter, part)
         return out
+
+    def bent(
+        self, beams: Sequence[PegBeam | None], forces: Sequence[arb], inverse: Sequence[Sequence[arb]]
+    ) -> dict[str, arb]:
+        """The largest deflection and stress of a peg, and the farthest that all of them move a point."""
+        pressed = [abs(force) * self.stated_force for force in forces]
+        pairs = list(zip(beams, pressed, strict=True))
+        ways = [arb(0) if beam is None else beam.gives_way(force) for beam, force in pairs]
+        moved = [sum((row[k] * ways[k] for k in range(len(row))), arb(0)) for row in inverse[:3]]
+        return {
+            "pin_deflection": largest(ways),
+            "pin_stress": largest([beam.stress(force) for beam, force in pairs if beam is not None]),
+            "pin_movement": self.farthest([moved]),
+        }
 
     def barriers(self, contact: BallContact, face: int) -> list[Barrier]:
         """The barriers on the contact feature of a face that a peg touches."""
@@ -296,6 +337,10 @@ class Measure:
             [sum((s * g[m] for s, g in zip(signs, free, strict=True)), last[m]) for m in range(3)]
             for signs in product((1, -1), repeat=len(free))
         ]
+        return self.farthest(movements)
+
+    def farthest(self, movements: Sequence[Sequence[arb]]) -> arb:
+        """Largest movement in mm of a point of the silhouette over some: shifts of the origin, and turns."""
         terms = arb_mat([[x * x + y * y, t * t, 2 * t * y, -2 * t * x] for x, y, t in movements]).transpose()
         most = root(largest((self.corners * terms).entries()))
         if self.arcs:
@@ -320,6 +365,13 @@ class Measure:
             ratio = balance.shares[j] / balance.shares[i]
             most = self.under_loads(most, *(row[j] - ratio * row[i] for row in rows))
         return most
+
+
+def bending_of(query: Query) -> tuple[float, float]:
+    """The largest stress of a pin in MPa and the farthest movement by pins in mm, of the toolkit or the usual."""
+    own = query.toolkit.pins
+    stress, movement = (None, None) if own is None else (own.stress_limit, own.movement_limit)
+    return stress or PIN_STRESS_LIMIT, movement or PIN_MOVEMENT_LIMIT
 
 
 def moved_arc(arc: ArcSide, x: arb, y: arb, turn: arb, known: arb) -> arb:
@@ -360,6 +412,10 @@ def figure_missing(fixture: Fixture, query: Query) -> str:
             wanted, why = len(fixture.travels) > 1, "no two clamps"
         if figure is FIGURES[JAW_CONTACT]:
             wanted, why = has_ends(query), "no ends of a jaw"
+        if figure.key in PIN_KEYS:
+            # Of files from before there was this figure none states it.
+            is_stated = any(key in fixture.quality for key in PIN_KEYS)
+            wanted, why = is_stated and query.knows_heights, "no heights at which pegs press"
         if wanted != (figure.key in fixture.quality):
             return f"its {figure.words} is " + ("missing" if wanted else f"given, and there are {why}")
     return ""

@@ -36,6 +36,8 @@ from workhold.verification.tolerances import (
     LARGE_LOCATION_ERROR,
     MAIN_DIRECTION,
     NEAR_EDGE,
+    PIN_MOVEMENT_LIMIT,
+    PIN_STRESS_LIMIT,
     POINTS_PER_DECADE,
     SAME,
     SMALL_CAPTURE,
@@ -106,17 +108,26 @@ def within_sum(pairs: Sequence[tuple[int, int]]) -> arb:
 
 
 def warnings(
-    figures: Mapping[str, arb], edges: Sequence[arb], off: arb, jaw_force: float | None, part: arb
+    figures: Mapping[str, arb],
+    edges: Sequence[arb],
+    off: arb,
+    jaw_force: float | None,
+    part: arb,
+    bending: tuple[float, float] = (PIN_STRESS_LIMIT, PIN_MOVEMENT_LIMIT),
+    states_bending: bool = True,
 ) -> arb:
     """How many warnings there are.
 
     They are for contacts near an edge, a weak closure, a strong peg, a large location error, and a peg that
-    lets go.
+    lets go. At a jaw force that is known they are for a peg that is bent too hard, and for pegs that give way.
 
     Parameters
     ----------
     off : the sum of the tolerances in mm.
     part : relative error of the file's figures.
+    bending : largest stress in MPa and farthest movement in mm by bent pegs.
+    states_bending : whether the file states how far pegs bend. Where it was made before there was that figure,
+        it may have counted it or not.
     """
     pairs = [over(-edge, -NEAR_EDGE, part) for edge in edges]
     pairs.append(over(-figures["closure_margin"], -WEAK_CLOSURE, part))
@@ -124,6 +135,10 @@ def warnings(
     pairs.append(over(figures["location_error"], LARGE_LOCATION_ERROR * off, part))
     if jaw_force is not None and "jaw_force_needed" in figures:
         pairs.append(over(figures["jaw_force_needed"], arb(jaw_force) * (1 + arb(HAIR)), part))
+    for key, limit in zip(("pin_stress", "pin_movement"), bending, strict=True):
+        if jaw_force is not None and key in figures:
+            low, high = over(figures[key], limit, part)
+            pairs.append((low if states_bending else 0, high))
     return within_sum(pairs)
 
 

@@ -319,7 +319,7 @@ def keys_missing(head: Head) -> list[str]:
     # nothing. A departure counts in the tolerance of the faces, which is there.
     spared = {"toolkit" if head.toolkit is None else "vise", "proof", "tolerance.fit"}
     # Where nobody counted pairs and seats a note says so, for which the account looks.
-    spared |= {"workpiece.departure", "tolerance.departure", "pairs", "seats"}
+    spared |= {"workpiece.departure", "tolerance.departure", "pairs", "seats", "thickness"}
     # A toolkit without flats, or heights of its own, says nothing of them.
     silent = [row.name for row in OPTIONS if row.form in SILENT] + list(HARDWARE)
     spared |= {f"{key}.{name}" for key in ("vise", "toolkit") for name in silent}

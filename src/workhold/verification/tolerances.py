@@ -102,6 +102,9 @@ UNFIT_LOCATION_ERROR, UNFIT_CLOSURE = 50.0, 0.0025
 SMALL_CAPTURE, CLOSE_READING = 1.0, 0.1
 # mm. Silhouettes that agree to this cover the same place; within this factor of it either may be said.
 SAME_PLACE, SAME_PLACE_SPARE = 1e-3, 2.0
+# MPa of steel, N where no jaw force is known, and what a pin may take in MPa and move the part by in mm.
+ELASTIC_MODULUS, SHEAR_MODULUS, STATED_FORCE = 210_000, 81_000, 1000
+PIN_STRESS_LIMIT, PIN_MOVEMENT_LIMIT = 421.0, 0.05
 SQUARE_TILT, MAIN_DIRECTION, SMALL_FACE, GENTLE_PEG = 0.01, 0.99, 0.1, 1.5
 POINTS_PER_DECADE, TILTED_POINTS, STRONG_POINTS, SMALL_FACE_POINTS = 20, 9, 4, 2
 

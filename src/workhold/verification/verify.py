@@ -14,6 +14,7 @@ from flint import arb, ctx
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.own_outlines import outline_diameter
+from workhold.model.quality import PIN_KEYS
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
@@ -24,6 +25,7 @@ from workhold.verification.figures import Measure, figure_missing, written_numbe
 from workhold.verification.force_walk import program_force_findings
 from workhold.verification.judging import order_faults
 from workhold.verification.listing import Listing, listing_of, read_listing
+from workhold.verification.pins import beams_of
 from workhold.verification.placing import broken_restriction, gap_findings, proven_pose, written_pose
 from workhold.verification.repeats import KnownFixtures, PartRotations, pattern_faults
 from workhold.verification.rules.hardware import ToolkitRules
@@ -204,7 +206,9 @@ class Judge:
     ) -> Iterator[Finding]:
         """Whether forces and figures of quality in the file are those derived from a balance."""
         names, faces = self.hardware.names, self.hardware.shared_faces(fixture, contacts)
-        figures = measure.figures(contacts, faces, pose, balance)
+        stated = any(key in fixture.quality for key in PIN_KEYS)
+        beams = beams_of(fixture, self.query)
+        figures = measure.figures(contacts, faces, pose, balance, beams, stated)
         yield from written_numbers(fixture, names, balance, figures)
         yield from program_force_findings(fixture, self.query, self.hardware, balance)
 

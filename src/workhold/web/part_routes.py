@@ -89,6 +89,14 @@ HeightGiven = Annotated[
     float | None,
     Query(gt=0, le=1e6, description="how far pegs reach above the plane the part lies on, in mm"),
 ]
+DiameterGiven = Annotated[
+    float | None,
+    Query(
+        gt=0,
+        le=1e6,
+        description="of the pegs in mm, which then are no higher than they must be where no height is given",
+    ),
+]
 RoomGiven = Annotated[float | None, Query(ge=0, le=1e6, description="kept free above the pegs, in mm")]
 BandGiven = Annotated[float | None, Query(ge=0, le=1e6, description="least height of a face to touch, in mm")]
 HeightsGiven = Annotated[
@@ -112,6 +120,7 @@ async def sent(
     head_room: RoomGiven = None,
     least_band: BandGiven = None,
     heights: HeightsGiven = None,
+    peg_diameter: DiameterGiven = None,
 ) -> Upload:
     """Collects a file that is sent, and the options of how to read it."""
     content = await request.body()
@@ -122,6 +131,7 @@ async def sent(
     if name.lower().endswith((".step", ".stp")):
         given |= {"axis": axis, "peg_height": peg_height, "head_room": head_room, "least_band": least_band}
         given["heights"] = asked_heights(heights)
+        given["peg_diameter"] = peg_diameter
     options = {key: value for key, value in given.items() if value is not None}
     return Upload(content, name, state_of(request).limits.segments, options)
 

@@ -184,8 +184,8 @@ def drawing_of_object(
     name = str(getattr(part, "label", "") or "shape")
     from workhold.files.step.by_height import HeightView, shapes_by_height, shapes_usual
 
-    keys = ("axis", "peg_height", "head_room", "least_band", "heights")
-    given = {key: view[key] for key in keys if view[key] is not None}
+    keys = ("axis", "peg_height", "head_room", "least_band", "heights", "peg_diameter")
+    given = {key: view[key] for key in keys if view.get(key) is not None}
     height_view = HeightView(**given, part_number=part_number)
     if by_height(view, fit):
         return ObjectPart(shapes_by_height(shapes, height_view), name, None)

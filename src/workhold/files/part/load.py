@@ -25,6 +25,7 @@ from workhold.files.part.loaded import (
 )
 from workhold.files.questions import (
     DRAWING_UNIT,
+    PEG_HEIGHT,
     UnitAskedError,
     by_height,
     number_or_name,
@@ -32,10 +33,11 @@ from workhold.files.questions import (
     refuse_layers,
     worded,
 )
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.units import drawing_unit
 
-__all__ = ["Loaded", "builtin_parts", "load", "read_workpiece"]
+__all__ = ["Loaded", "builtin_parts", "load", "read_workpiece", "refuse_unsure_numbers"]
 
 
 def load(
@@ -53,6 +55,7 @@ def load(
     head_room: float | None = None,
     least_band: float | None = None,
     heights: Mapping[str, Sequence[float]] | None = None,
+    toolkit: Toolkit | None = None,
 ) -> Workpiece:
     """Loads a part from a file, by the name of a built-in model, or from an object of another library.
 
@@ -81,7 +84,10 @@ def load(
     least_band : with a height of the pegs, how high an upright face must be there to be touched, in mm; 1
         when None.
     heights : of a STEP file's solid, from which to which height carriers with heights of their own reach, as
-        ``toolkit.heights`` says.
+        ``toolkit.heights`` says, or that of ``toolkit`` when None.
+    toolkit : what a STEP file's solid will be held in. When no height of the pegs is given they are then no higher
+        than they must be to touch half of what pegs can touch, and such as are sold. When None they are as tall
+        as the part.
 
     Raises
     ------
@@ -109,7 +115,8 @@ def load(
         peg_height=peg_height,
         head_room=head_room,
         least_band=least_band,
-        heights=heights,
+        heights=toolkit.heights if heights is None and toolkit is not None else heights,
+        peg_diameter=None if toolkit is None else toolkit.peg_diameter,
     )
     workpiece = evolve(loaded.workpiece, remarks=loaded.remarks)
     return workpiece if name is None else evolve(workpiece, name=name)
@@ -130,6 +137,7 @@ def read_workpiece(
     head_room: float | None = None,
     least_band: float | None = None,
     heights: Mapping[str, Sequence[float]] | None = None,
+    peg_diameter: float | None = None,
     called: Mapping[str, str] | None = None,
 ) -> Loaded:
     """Loads a part as :func:`load` does, with remarks and the list of all parts in the file.
@@ -138,6 +146,7 @@ def read_workpiece(
     ----------
     usual_unit : the unit of a drawing that does not say its own, when ``unit`` is None; the others are those
         of :func:`load`.
+    peg_diameter : of the pegs beside a solid in mm; None where it is not known.
     called : what the questions of ``files.questions`` are called where the part is asked for; None is for
         Python.
 
@@ -166,6 +175,7 @@ def read_workpiece(
         "head_room": head_room,
         "least_band": least_band,
         "heights": dict(heights or {}),
+        "peg_diameter": peg_diameter,
     }
     path = found(part) if isinstance(part, str | PathLike) else None
     try:
@@ -180,6 +190,32 @@ def read_workpiece(
         place = f"this {type(part).__name__}" if path is None else path.name
         raise kind_of_error(f"{place}: {worded(str(error), called)}") from error
     return evolve(loaded, remarks=tuple(worded(remark, called) for remark in loaded.remarks))
+
+
+def refuse_unsure_numbers(
+    loaded: Loaded, faces: Sequence[int], called: Mapping[str, str] | None = None
+) -> None:
+    """Refuses faces named by number where the numbers depend on a height of the pegs that nobody has said.
+
+    Parameters
+    ----------
+    called : see :func:`read_workpiece`.
+
+    Raises
+    ------
+    InputError
+        With both heights that may be meant.
+    """
+    usual = loaded.usual
+    if not faces or usual is None or usual.is_whole or not usual.decides_numbers:
+        return
+    one = f"face {faces[0]} is" if len(faces) == 1 else f"faces {', '.join(map(str, faces))} are"
+    sentence = (
+        f"{one} named by number, and numbers depend on how high pegs reach, which nobody has said: give "
+        f"{PEG_HEIGHT} {usual.peg_height:.6g}mm, no higher than they must be, or {PEG_HEIGHT} "
+        f"{usual.height:.6g}mm, as tall as the part, and the numbers that the part has with it."
+    )
+    raise InputError(worded(sentence, called))
 
 
 def from_object(part: Any, options: Mapping[str, Any], join_tolerance: float) -> Loaded:
@@ -234,7 +270,15 @@ def from_step(path: Path, content: bytes, options: Mapping[str, Any]) -> Loaded:
     if asked or (options["section"] is None and options["fit"] is None):
         from workhold.files.step.by_height import HeightView, read_by_height_apart
 
-        keys = ("axis", "peg_height", "head_room", "least_band", "part_number", "heights")
+        keys = (
+            "axis",
+            "peg_height",
+            "head_room",
+            "least_band",
+            "part_number",
+            "heights",
+            "peg_diameter",
+        )
         view = HeightView(**{key: options[key] for key in keys if options[key] is not None})
         read = read_by_height_apart(content, view, or_silhouette=not asked)
         if isinstance(read, Drawing):

@@ -39,6 +39,7 @@ from workhold.model.workpiece import Workpiece
 
 if TYPE_CHECKING:
     from workhold.files.step.by_height import HeightDrawing
+    from workhold.files.step.usual_height import UsualHeight
 
 __all__ = ["Loaded", "built", "from_drawing", "from_heights", "refuse_large", "solids_in", "with_solid_named"]
 
@@ -59,6 +60,7 @@ class Loaded:
     number : its number among them, from 1.
     heights : of a solid seen at the height of the pegs, what other heights offer.
     solids : all of a STEP file, the largest first.
+    usual : how high pegs beside a solid are taken to be where nobody says so, and they are known.
     """
 
     workpiece: Workpiece
@@ -67,6 +69,7 @@ class Loaded:
     number: int = 1
     heights: tuple[HeightRow, ...] = ()
     solids: tuple[FileSolid, ...] = ()
+    usual: UsualHeight | None = None
 
 
 def from_heights(name: str, drawing: HeightDrawing) -> Loaded:
@@ -89,7 +92,14 @@ def from_heights(name: str, drawing: HeightDrawing) -> Loaded:
     if own:
         workpiece = evolve(workpiece, outlines=tuple(own))
     remarks = (*drawing.remarks, *workpiece.remarks)
-    return Loaded(workpiece, remarks, (as_one(loops),), heights=drawing.heights, solids=drawing.solids)
+    return Loaded(
+        workpiece,
+        remarks,
+        (as_one(loops),),
+        heights=drawing.heights,
+        solids=drawing.solids,
+        usual=drawing.usual,
+    )
 
 
 def from_drawing(

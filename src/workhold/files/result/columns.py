@@ -25,6 +25,7 @@ from workhold.files.result.fixture_forms import checked_seating, seatings_of, wi
 from workhold.files.result.fixture_text import as_written, significant
 from workhold.files.result.parts import (
     HEAD,
+    PINS_KNOWN,
     checked_head,
     checked_query,
     columns_of,
@@ -36,6 +37,7 @@ from workhold.files.result.parts import (
 )
 from workhold.files.result.writer import FORMAT, head, head_texts
 from workhold.model.fixture_table import FixtureTable
+from workhold.model.quality import BEFORE_PINS, FIGURES
 from workhold.model.query import Query
 from workhold.model.result import Result
 
@@ -65,7 +67,9 @@ class ColumnsSink:
             When the file cannot be written.
         """
         counts = Counter[str]()
-        columns = columns_of(result.toolkit.travels, result.query.program is not None)
+        bends = result.query.knows_heights
+        figures = len(FIGURES) if bends else BEFORE_PINS
+        columns = columns_of(result.toolkit.travels, result.query.program is not None, figures)
         with binary_file(self.path) as stream:
             archive = ArchiveWriter(stream, columns, listed)
             for table in tables:
@@ -76,6 +80,8 @@ class ColumnsSink:
             if archive.done < listed:
                 result = result.cut_short(archive.done)
             text = head(result, with_pieces=False)
+            if bends:
+                text[PINS_KNOWN] = True
             text["counts"] = {name: counts[name] for name in result.toolkit.types}
             if result.query.seating is not None:
                 text["seatings"] = [one.as_fields() for one in result.seating]

@@ -278,6 +278,7 @@ class Head(FormPart):
     foolproof: bool = False
     program: dict[str, Any] | None = None
     peg_height: float | None = None
+    thickness: float | None = None
     pairs: Annotated[int, Field(ge=0)] | None = None
     seats: Annotated[int, Field(ge=0)] | None = None
 
@@ -332,6 +333,7 @@ class Head(FormPart):
             foolproof=self.foolproof,
             program=self.asked_program(),
             peg_height=self.peg_height,
+            thickness=self.thickness,
         )
 
     def asked_program(self) -> Program | None:

@@ -37,13 +37,14 @@ from workhold.fixels.fields import CLAMPS
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.moves import PIECE_KEYS, packed_piece
-from workhold.model.quality import FIGURES
+from workhold.model.quality import BEFORE_PINS, FIGURES
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.model.search_report import Proof
 
 __all__ = [
     "HEAD",
+    "PINS_KNOWN",
     "LARGEST_LENGTH",
     "LARGEST_NUMBER",
     "checked_head",
@@ -64,6 +65,8 @@ NOT_FINITE = "cannot be used: a length, an angle or a force is not a finite numb
 
 
 HEAD = "result.json"
+# The key of the head of a file in columns that says that these have figures of how far pegs bend.
+PINS_KNOWN = "bending"
 # Bytes of the line of a fixture, and of all that stands before and after the fixtures, as of the text of an
 # archive. What is looked through for the first fixture is read in such pieces.
 MOST_LINE, MOST_AROUND, CHUNK = 20_000_000, 50_000_000, 1 << 20
@@ -72,12 +75,13 @@ FIRST_LINE = re.compile(rb'"fixtures": \[[ \t\r]{0,99}\n')
 LONGEST_FIRST_LINE = 250
 
 
-def columns_of(travels: int, has_program: bool = False) -> Columns:
+def columns_of(travels: int, has_program: bool = False, figures: int = BEFORE_PINS) -> Columns:
     """What each column holds (docs/columns.md), by how many things move in a fixture.
 
     Parameters
     ----------
     has_program : whether the program clearance stands behind the figures of quality.
+    figures : how many figures of quality there are without it.
     """
     pegs, several = 3 + travels, (travels,) if travels > 1 else ()
     return {
@@ -87,7 +91,7 @@ def columns_of(travels: int, has_program: bool = False) -> Columns:
         "position": Column("<f8", (2,)),
         "jaw_separation": Column("<f8", several),
         "force": Column("<f8", (pegs, *several)),
-        "quality": Column("<f8", (len(FIGURES) + has_program,)),
+        "quality": Column("<f8", (figures + has_program,)),
         **({"pairs": Column("<i4")} if travels > 1 else {}),
     }
 
@@ -103,7 +107,8 @@ def columns_said(head: str) -> Columns:
         said = json.loads(head, object_hook=without_piece)
         toolkit = said.get("toolkit")
         travels = 2 if toolkit is not None and toolkit.get(CLAMPS.name) == 2 else 1
-        return columns_of(travels, said.get("program") is not None)
+        figures = len(FIGURES) if said.get(PINS_KNOWN) else BEFORE_PINS
+        return columns_of(travels, said.get("program") is not None, figures)
     except (ValueError, AttributeError, RecursionError):
         return columns_of(1)
 

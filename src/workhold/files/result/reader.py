@@ -36,7 +36,13 @@ from workhold.fixels.carrier import WALL
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture_table import FixtureTable, peg_places
 from workhold.model.pose import Pose
-from workhold.model.quality import FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION, PROGRAM_FIGURE
+from workhold.model.quality import (
+    BEFORE_PINS,
+    FIGURES,
+    JAW_FORCE_NEEDED,
+    LOAD_REACTION,
+    PROGRAM_FIGURE,
+)
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.model.seating import Seating
@@ -266,7 +272,7 @@ def checked_table(columns: Columns, query: Query, path: Path) -> FixtureTable:
         position=np.stack([x, y], axis=1),
         jaw_separation=np.stack(travels, axis=1)[:, alone].copy(),
         force=np.ascontiguousarray(force[:, :, alone]),
-        quality=columns.quality[:, : len(FIGURES) + (query.program is not None)],
+        quality=columns.quality[:, figures_asked(query)],
         pairs=pairs.astype(np.int32),
     )
 
@@ -309,6 +315,12 @@ def clamp_travel(
     return out
 
 
+def figures_asked(query: Query) -> list[int]:
+    """The places of the figures of a query among all, see ``model.quality.figures_in``."""
+    known = len(FIGURES) if query.knows_heights else BEFORE_PINS
+    return [*range(known), *([len(FIGURES)] if query.program is not None else [])]
+
+
 def measured(table: FixtureTable, query: Query) -> FixtureTable:
     """The table with the figures of quality that the file does not give."""
     wanted = np.isnan(table.quality)
@@ -320,6 +332,12 @@ def measured(table: FixtureTable, query: Query) -> FixtureTable:
 
     asked = query.tolerance, query.loads
     figures = quality_of(
-        table, query.workpiece, query.toolkit, *asked, jaw_force=query.jaw_force, passed=query.passed
+        table,
+        query.workpiece,
+        query.toolkit,
+        *asked,
+        jaw_force=query.jaw_force,
+        passed=query.passed,
+        pressed_up_to=query.pressed_up_to,
     )
     return evolve(table, quality=np.where(wanted, figures, table.quality))

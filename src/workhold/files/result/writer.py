@@ -23,7 +23,7 @@ from workhold.files.result.fixture_text import as_written, fixture_lines, rounde
 from workhold.fixels.carrier import Holes
 from workhold.fixels.kinds import USUAL
 from workhold.fixels.pegs import Flat
-from workhold.fixels.support_hardware import HARDWARE, SupportPads, TopClamp
+from workhold.fixels.support_hardware import HARDWARE, PinLimits, SupportPads, TopClamp
 from workhold.fixels.table import SILENT
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture_table import FixtureTable
@@ -244,6 +244,10 @@ def asked_entry(query: Query, with_pieces: bool = True) -> dict[str, Any]:
     asked["jaw_force"] = query.jaw_force
     if query.seating is not None:
         asked |= {"seating": query.seating, "opening": query.opening, "foolproof": query.foolproof}
+    if query.thickness is not None:
+        asked["thickness"] = query.thickness
+    if query.program is None and query.peg_height is not None:
+        asked["peg_height"] = query.peg_height
     if query.program is not None:
         program = query.program.to_dict() if with_pieces else query.program.head()
         asked |= {"peg_height": query.peg_height, "program": program}
@@ -273,7 +277,7 @@ def written(value: Any) -> Any:
         return [written(one) for one in value]
     if isinstance(value, Flat):
         return asdict(value)
-    if isinstance(value, (SupportPads, TopClamp)):
+    if isinstance(value, (SupportPads, TopClamp, PinLimits)):
         return {name: written(one) for name, one in asdict(value).items() if one is not None}
     return value.name if isinstance(value, Holes) else value
 

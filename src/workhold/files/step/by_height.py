@@ -39,6 +39,7 @@ from workhold.files.step.solids import (
     solid_remarks,
     solids_of_shapes,
 )
+from workhold.files.step.usual_height import UsualHeight, usual_height
 from workhold.model.solid import FileSolid, HeightRow, SolidOutline
 
 __all__ = [
@@ -66,6 +67,8 @@ class HeightView:
         None.
     head_room, least_band : in mm.
     heights : from which to which carriers with heights of their own reach, in mm, by their role.
+    peg_diameter : of the pegs in mm, which then are no higher than they must be where ``peg_height`` is None;
+        None where it is not known.
     part_number : number or name of the solid to take of several; the largest when None.
     """
 
@@ -75,6 +78,7 @@ class HeightView:
     least_band: float = LEAST_BAND
     part_number: int | str | None = None
     heights: Mapping[str, Sequence[float]] = {}
+    peg_diameter: float | None = None
 
     def __attrs_post_init__(self) -> None:
         for name, value, least in (
@@ -100,6 +104,7 @@ class HeightDrawing:
     heights : what other heights of the pegs offer.
     own : what carriers with heights of their own meet.
     solids : all of the file, the largest first.
+    usual : how high pegs are taken to be where nobody says so; None where somebody does, or does not know pegs.
     """
 
     loops: tuple[NDArray[np.float64], ...]
@@ -108,6 +113,7 @@ class HeightDrawing:
     heights: tuple[HeightRow, ...]
     own: tuple[OwnDrawing, ...] = ()
     solids: tuple[FileSolid, ...] = ()
+    usual: UsualHeight | None = None
 
 
 def read_by_height_apart(
@@ -127,7 +133,7 @@ def read_by_height_apart(
 
 def height_drawing_of(answered: Any) -> HeightDrawing:
     """The drawing of what :func:`plain_heights` makes."""
-    loops, solid, remarks, rows, own, solids = answered
+    loops, solid, remarks, rows, own, solids, usual = answered
     return HeightDrawing(
         tuple(np.array(loop) for loop in loops),
         SolidOutline(*solid),
@@ -135,6 +141,7 @@ def height_drawing_of(answered: Any) -> HeightDrawing:
         tuple(HeightRow(*row) for row in rows),
         tuple(OwnDrawing(name, tuple(map(np.array, lines)), SolidOutline(*of)) for name, lines, of in own),
         tuple(FileSolid(*one) for one in solids),
+        None if usual is None else UsualHeight(*usual),
     )
 
 
@@ -191,7 +198,8 @@ def plain_heights(drawing: HeightDrawing) -> Any:
     rows = [astuple(row) for row in drawing.heights]
     own = [(one.role, [loop.tolist() for loop in one.loops], astuple(one.solid)) for one in drawing.own]
     solids = [astuple(one) for one in drawing.solids]
-    return loops, astuple(drawing.solid), drawing.remarks, rows, own, solids
+    usual = None if drawing.usual is None else astuple(drawing.usual)
+    return loops, astuple(drawing.solid), drawing.remarks, rows, own, solids, usual
 
 
 def read_by_height(content: bytes, view: HeightView, or_silhouette: bool = False) -> HeightDrawing | Drawing:
@@ -275,8 +283,14 @@ def drawn(
         As :func:`read_by_height`.
     """
     axis, room, least = axis_named(view.axis), view.head_room, view.least_band
+    plain_prism = view.peg_height is None and is_prism(solid)
+    rows = list[HeightRow]()
+    usual: UsualHeight | None = None
+    if view.peg_height is None and view.peg_diameter is not None:
+        rows = [] if plain_prism else height_table(solid, room, least)
+        usual = usual_height(solid, rows, view.peg_diameter, room, least, plain_prism)
     try:
-        outline = solid.outline(view.peg_height, room, least)
+        outline = solid.outline(view.peg_height if usual is None else usual.peg_height, room, least)
     except InputError as error:
         refusal = InputError(f"along {axis}: {error}.")
         raise advised(refusal, solid, view) if is_advised else refusal from error
@@ -289,12 +303,13 @@ def drawn(
     found = SolidOutline(axis, *sizes, outline.bands, outline.faces, **known_levels(solid))
     found = evolve(found, runs=outline.runs)
     own = tuple(own_drawings(solid, view.heights, found))
-    plain_prism = view.peg_height is None and is_prism(solid)
-    rows = height_table(solid, room, least, outline) if has_table and not plain_prism else []
+    if usual is None and has_table and not plain_prism:
+        rows = height_table(solid, room, least, outline)
     remarks = [] if plain_prism else height_remarks(outline, found, rows)
+    remarks += [] if usual is None else usual.remarks
     if any(band is None for band in outline.bands):
         remarks += other_axis_remarks(shape, axis)
-    return HeightDrawing(outline.vertices, found, tuple(remarks), tuple(rows), own)
+    return HeightDrawing(outline.vertices, found, tuple(remarks), tuple(rows), own, usual=usual)
 
 
 def advised(refusal: InputError, solid: StandingSolid, view: HeightView) -> InputError:

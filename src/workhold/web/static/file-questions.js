@@ -7,7 +7,7 @@ import { standingQuestion } from "./standing-question.js";
 import { state } from "./state.js";
 import { bareLength, countText, length, number, unitWord } from "./units.js";
 
-/** @typedef {{unit?: string, part?: number, layer?: string[], join?: number, fit?: number, axis?: string, peg_height?: number, head_room?: number, least_band?: number}} How what has been answered so far */
+/** @typedef {{unit?: string, part?: number, layer?: string[], join?: number, fit?: number, axis?: string, peg_height?: number, head_room?: number, least_band?: number, peg_diameter?: number}} How what has been answered so far */
 
 /** Gaps up to this many mm are joined without asking. */
 const JOINED = 0.001;

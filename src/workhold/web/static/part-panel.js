@@ -75,6 +75,8 @@ async function readFile() {
   const mine = ++reading;
   say(`Reading ${chosen.name} …`);
   change({ reading: chosen.name });
+  // Pegs beside a solid are no higher than they must be, which their diameter says.
+  how = { ...how, ...(isStep(chosen) && state.toolkit.peg_radius > 0 ? { peg_diameter: 2 * state.toolkit.peg_radius } : {}) };
   try {
     const survey = await surveyPart(chosen, how);
     if (mine !== reading) return;

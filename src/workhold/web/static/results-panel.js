@@ -16,6 +16,7 @@ import { explain } from "./why-panel.js";
 const SHORT = {
   closure_margin: "margin", clamp_amplification: "clamp", wrench_radius: "wrench", location_error: "error",
   end_distance: "to end", load_reaction: "load", edge_distance: "to edge", jaw_force_needed: "needs", smallest_face: "face",
+  pin_deflection: "pins bend", pin_stress: "pin stress", pin_movement: "pins move",
 };
 
 /** The part of a search after which what it found is put in order. */

@@ -76,7 +76,7 @@ function words(stands, how) {
   const axis = axisWords(how.axis ?? "z");
   const seen = `The drawing shows the part from above, as it lies with ${axis} of its file up.`;
   if (!stands) return seen;
-  const pegs = how.peg_height ? `what pegs of ${length(stands.peg_height, 2)} can meet` : "its silhouette";
+  const pegs = how.peg_height || stands.peg_height < stands.height - NEAR ? `what pegs of ${length(stands.peg_height, 2)} can meet` : "its silhouette";
   return `${seen} It is ${length(stands.height, 2)} high, and the outline is ${pegs}${stands.bands.includes(null) ? "; dashed pieces are never touched" : ""}.`;
 }
 
@@ -95,7 +95,7 @@ function fields(stands, how, answer) {
     return make("label", { title }, words, " ", make("span", {}, unitWord()), input);
   };
   return make("div.grid-fields.three", {},
-    field("peg_height", "Peg height", stands ? `${bareLength(stands.height, 2)}, the part’s` : "the part’s", "How far pegs reach above the plane on which the part lies"),
+    field("peg_height", "Peg height", stands ? (stands.peg_height < stands.height - NEAR ? `${bareLength(stands.peg_height, 2)}, as needed` : `${bareLength(stands.height, 2)}, the part’s`) : "the part’s", "How far pegs reach above the plane on which the part lies"),
     field("head_room", "Head room", bareLength(HEAD_ROOM, 1), "Kept free between the pegs and what hangs over them"),
     field("least_band", "Least band", bareLength(LEAST_BAND, 1), "How high an upright face has to be there for a peg to touch it"));
 }

@@ -71,7 +71,7 @@ export function readField(field, known) {
   const before = ids.length > 1 ? (known ?? []) : [known];
   const values = ids.map((each, k) => {
     const text = input(each).value;
-    if (field.form === "count") return readNumber(text);
+    if (field.form === "count" || field.form === "number") return readNumber(text);
     return text !== "" && text === fieldLength(before[k]) ? before[k] : readLength(text);
   });
   const empty = values.every((value) => value === null);
@@ -123,7 +123,7 @@ export function writeField(field, value) {
     if (input(each) === document.activeElement) return;
     if (field.form === "holes") input(each).value = (value ?? []).join(", ");
     else if (field.form === "rings") input(each).value = ringsText(value);
-    else input(each).value = field.form === "count" ? String(values[k] ?? "") : fieldLength(values[k]);
+    else input(each).value = ["count", "number"].includes(field.form) ? String(values[k] ?? "") : fieldLength(values[k]);
     input(each).setAttribute("aria-invalid", "false");
   });
 }

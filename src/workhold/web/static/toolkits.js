@@ -10,8 +10,8 @@ import { ask } from "./api.js";
 /** What a toolkit is that does not say. */
 const USUAL = "vise";
 
-/** What a toolkit has for three dimensions. */
-const HARDWARE = ["supports", "top_clamp"];
+/** What a toolkit has for three dimensions, and what its pins may take. */
+const HARDWARE = ["supports", "top_clamp", "pins"];
 
 /** @type {Kind[]} */
 export let kinds = [];

@@ -76,8 +76,9 @@ export function readNumber(text) {
  */
 export function figureText(figure, value) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
-  if (figure.unit === "mm") return length(value, figure.key === "location_error" ? 4 : 2);
+  if (figure.unit === "mm") return length(value, ["location_error", "pin_deflection", "pin_movement"].includes(figure.key) ? 4 : 2);
   if (figure.unit === "deg") return `${number(value, figure.decimals)}°`;
+  if (figure.unit === "MPa") return `${number(value, 0)} MPa`;
   if (figure.unit === "N") return `${number(value, 0)} N`;
   return number(value, figure.key === "clamp_amplification" ? 2 : figure.decimals);
 }

@@ -1,0 +1,104 @@
+"""How high pegs reach beside a solid where nobody says so, and what they stand in is known.
+
+A dowel that stands out far bends. So pegs are no higher than they must be to touch half of what pegs of any height
+could. They are dowels that are sold, which sit 1.5 diameters deep (SOLID, "Which height").
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from attrs import frozen
+
+from workhold.conventions import DOWEL_STANDOUT, SAME_HEIGHT
+from workhold.errors import InputError
+from workhold.files.questions import PEG_HEIGHT
+from workhold.files.step.heights import StandingSolid, measures
+from workhold.model.dowel_lengths import dowel_for, standouts
+from workhold.model.solid import HeightRow
+
+__all__ = ["UsualHeight", "usual_height"]
+
+# The share of what the best height touches.
+SHARE = 0.5
+# A length of border that is this much shorter, as a share, is as long: it is summed up of many pieces.
+ROUNDED = 1e-9
+
+
+@frozen
+class UsualHeight:
+    """How high pegs reach that nobody has said the height of.
+
+    Parameters
+    ----------
+    peg_height : in mm.
+    height : of the part, in mm.
+    diameter : of the pegs, in mm.
+    decides_numbers : whether the numbers of faces depend on it, as they do unless the part is a prism.
+    """
+
+    peg_height: float
+    height: float
+    diameter: float
+    decides_numbers: bool
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether pegs are as tall as the part."""
+        return self.peg_height >= self.height - SAME_HEIGHT
+
+    @property
+    def remarks(self) -> list[str]:
+        """What is said of it: how high, why, and how to have pegs as tall as the part."""
+        if self.is_whole:
+            return []
+        dowel = dowel_for(self.diameter, self.peg_height)
+        what = "" if dowel is None else f", as dowels of {dowel.name} do that sit {dowel.depth:.6g} mm deep"
+        more = (
+            "lower ones would touch less than half of what pegs can touch here, and higher ones bend more"
+            if self.peg_height > DOWEL_STANDOUT * self.diameter + SAME_HEIGHT
+            else "higher ones bend more, and these touch at least half of what pegs can touch here"
+        )
+        return [
+            f"Pegs are taken to stand out {self.peg_height:.6g} mm{what}: {more}. For pegs as tall as the part "
+            f"give {PEG_HEIGHT} {self.height:.6g}mm."
+        ]
+
+
+def usual_height(
+    solid: StandingSolid,
+    rows: Sequence[HeightRow],
+    diameter: float,
+    room: float,
+    least: float,
+    is_prism: bool,
+) -> UsualHeight:
+    """How high pegs of a diameter reach beside a solid, no higher than they must; lengths in mm.
+
+    Parameters
+    ----------
+    rows : what other heights offer; of a prism they are not looked at.
+    room, least : what is kept free above the pegs, and the shortest band that may be touched.
+    """
+    top = solid.height
+    enough = SHARE * max((row.touchable for row in rows), default=0.0)
+
+    def touches_enough(height: float) -> bool:
+        if is_prism:
+            return height >= least - SAME_HEIGHT
+        try:
+            return measures(solid.outline(height, room, least))[2] >= enough * (1 - ROUNDED) > 0
+        except InputError:
+            return False
+
+    heights = [one for one in standouts(diameter) or ends_of(rows, top) if one <= top + SAME_HEIGHT]
+    usual = min(DOWEL_STANDOUT * diameter, top) + SAME_HEIGHT
+    low = [one for one in heights if one <= usual]
+    in_order = [*reversed(low), *(one for one in heights if one > usual)]
+    found = next((one for one in in_order if touches_enough(one)), top)
+    return UsualHeight(min(found, top), top, diameter, not is_prism)
+
+
+def ends_of(rows: Sequence[HeightRow], top: float) -> list[float]:
+    """The heights in mm at which what pegs meet changes, rising, with that of the part."""
+    return sorted({row.high for row in rows} | {top})

@@ -1,0 +1,133 @@
+"""Dowels as they are sold: which lengths there are of a diameter, and which of them stands out how far.
+
+A dowel sits in its hole at least 1.5 diameters deep (``conventions.DOWEL_DEPTH``), so one of length L stands out by
+no more than L - 1.5 d. Lengths and their sources are in ``data/dowels.toml``.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from fractions import Fraction
+from functools import cache
+from importlib.resources import files
+
+from attrs import frozen
+
+from workhold.conventions import DOWEL_DEPTH, SAME_HEIGHT, SAME_SIZE
+from workhold.units import INCH, Unit, unit_named
+
+__all__ = ["DowelLengths", "SoldDowel", "dowel_for", "lengths_of", "standouts"]
+
+# Inches are sold in sixteenths; diameters have thirty-seconds as well.
+FINEST = 32
+
+
+@frozen
+class DowelLengths:
+    """The lengths in which dowels of a diameter are sold.
+
+    Parameters
+    ----------
+    standard : such as "ISO 8734".
+    unit : in which they are named.
+    diameter, lengths : in mm, the lengths rising.
+    """
+
+    standard: str
+    unit: Unit
+    diameter: float
+    lengths: tuple[float, ...]
+
+
+@cache
+def sold() -> tuple[DowelLengths, ...]:
+    """All diameters that are sold, standard by standard."""
+    text = (files("workhold") / "data" / "dowels.toml").read_text(encoding="utf-8")
+    found = []
+    for entry in tomllib.loads(text)["lengths"]:
+        unit = unit_named(entry["unit"])
+        for diameter, shortest, longest in entry["sizes"]:
+            lengths = tuple(unit.length(one) for one in entry["steps"] if shortest <= one <= longest)
+            found.append(DowelLengths(entry["name"], unit, unit.length(diameter), lengths))
+    return tuple(found)
+
+
+def lengths_of(diameter: float) -> DowelLengths | None:
+    """The lengths of dowels of a diameter in mm; None where that is not sold.
+
+    >>> lengths_of(6.0).lengths[:4], lengths_of(6.35).standard, lengths_of(7.0)
+    ((14.0, 16.0, 18.0, 20.0), 'ASME B18.8.2', None)
+    """
+    return next((one for one in sold() if abs(one.diameter - diameter) < SAME_SIZE), None)
+
+
+def standouts(diameter: float) -> tuple[float, ...]:
+    """How far in mm the dowels of a diameter in mm stand out at most, rising; nothing of what is not sold.
+
+    >>> standouts(6.0)[:4]
+    (5.0, 7.0, 9.0, 11.0)
+    """
+    known = lengths_of(diameter)
+    deep = DOWEL_DEPTH * diameter
+    every = () if known is None else (round(length - deep, 9) for length in known.lengths)
+    return tuple(one for one in every if one > 0)
+
+
+@frozen
+class SoldDowel:
+    """A dowel that is sold, and how far it stands out of its plate.
+
+    Parameters
+    ----------
+    standard, unit : as of :class:`DowelLengths`.
+    diameter, length, standout : in mm.
+    """
+
+    standard: str
+    unit: Unit
+    diameter: float
+    length: float
+    standout: float
+
+    @property
+    def depth(self) -> float:
+        """How deep it sits in mm."""
+        return self.length - self.standout
+
+    @property
+    def name(self) -> str:
+        """What to ask for: diameter x length, inches as fractions.
+
+        >>> dowel_for(6.0, 11.0).name, dowel_for(6.35, 15.0).name, dowel_for(12.7, 30.0).name
+        ('6 × 20 mm', '1/4 × 1 in', '1/2 × 2 in')
+        """
+        sizes = (size_words(size, self.unit) for size in (self.diameter, self.length))
+        return f"{' × '.join(sizes)} {self.unit.abbreviation}"
+
+
+def size_words(size: float, unit: Unit) -> str:
+    """A size in mm as a catalogue prints it: inches as a fraction.
+
+    >>> size_words(38.1, INCH), size_words(6.35, INCH)
+    ('1-1/2', '1/4')
+    """
+    if unit is not INCH:
+        return unit.figure(size)
+    inches = Fraction(size / unit.millimetres).limit_denominator(FINEST)
+    whole, rest = divmod(inches, 1)
+    return "-".join([*([str(whole)] if whole or not rest else []), *([str(rest)] if rest else [])])
+
+
+def dowel_for(diameter: float, standout: float) -> SoldDowel | None:
+    """The shortest dowel that is sold of a diameter and stands out so far, both in mm; None where there is none.
+
+    >>> dowel = dowel_for(6.0, 10.0)
+    >>> dowel.length, dowel.depth
+    (20.0, 10.0)
+    """
+    known = lengths_of(diameter)
+    if known is None:
+        return None
+    least = standout + DOWEL_DEPTH * diameter - SAME_HEIGHT
+    length = next((one for one in known.lengths if one >= least), None)
+    return None if length is None else SoldDowel(known.standard, known.unit, diameter, length, standout)

@@ -1,0 +1,204 @@
+"""How far the pegs of one fixture bend, peg by peg, in figures and in sentences (docs/quality.md, "Pins bend")."""
+
+from __future__ import annotations
+
+from math import isnan
+
+import numpy as np
+from attrs import frozen
+
+from workhold.conventions import STATED_FORCE
+from workhold.fixels.toolkit import Toolkit
+from workhold.model.fixture import Fixture
+from workhold.model.workpiece import Workpiece
+from workhold.statics.contact_matrix import Touched
+from workhold.statics.judging import is_beyond
+from workhold.statics.pins import PinRuns, bent_pins, limits_of
+from workhold.statics.quality import extremes
+from workhold.units import Unit
+
+__all__ = ["BentPeg", "BentPegs", "bent_pegs"]
+
+
+@frozen
+class BentPeg:
+    """How far one peg bends; lengths in mm, forces in N, stresses in MPa.
+
+    Parameters
+    ----------
+    hole : its name.
+    peg : what it is, such as "locator".
+    diameter : of it.
+    height, top : above the plate, of the middle and of the top of the run on which it can press.
+    force : on it.
+    deflection, stress : with the force at the middle.
+    worst_deflection, worst_stress : with the force at the top.
+    """
+
+    hole: str
+    peg: str
+    diameter: float
+    height: float
+    top: float
+    force: float
+    deflection: float
+    stress: float
+    worst_deflection: float
+    worst_stress: float
+
+
+@frozen
+class BentPegs:
+    """How far the pegs of a fixture bend.
+
+    Parameters
+    ----------
+    pegs : those that stand in holes of a plate.
+    movement, worst_movement : the farthest that they move a point of the part in mm, with the forces at the
+        middle and at the top.
+    jaw_force : in N; None where it is not known, and all is for each kN of it.
+    stress_limit, movement_limit : of the toolkit, in MPa and mm.
+    """
+
+    pegs: tuple[BentPeg, ...]
+    movement: float
+    worst_movement: float
+    jaw_force: float | None
+    stress_limit: float
+    movement_limit: float
+
+    @property
+    def most(self) -> BentPeg:
+        """The peg that gives way most."""
+        return max(self.pegs, key=lambda peg: peg.deflection)
+
+    @property
+    def hardest(self) -> BentPeg:
+        """The peg that is bent hardest."""
+        return max(self.pegs, key=lambda peg: peg.stress)
+
+    @property
+    def is_overbent(self) -> bool:
+        """Whether a peg is bent harder than it may, at a jaw force that is known."""
+        return self.jaw_force is not None and bool(is_beyond(self.hardest.stress, self.stress_limit))
+
+    @property
+    def gives_way(self) -> bool:
+        """Whether pegs move the part farther than they may, at a jaw force that is known."""
+        return self.jaw_force is not None and bool(is_beyond(self.movement, self.movement_limit))
+
+    def at_force(self, mover: str, unit: Unit) -> str:
+        """The force that it is stated for, in words.
+
+        Parameters
+        ----------
+        mover : what presses, such as "jaw".
+        """
+        if self.jaw_force is not None:
+            return f"at a {mover} force of {unit.force_words(self.jaw_force)}"
+        return f"for each {'kN' if unit.newtons == 1 else unit.force_words(STATED_FORCE)} of {mover} force"
+
+    def sentence(self, mover: str, unit: Unit, location_error: float | None = None) -> str:
+        """What bending does, in a sentence; ``location_error`` in mm is named beside it where it is known."""
+        most, hardest = self.most, self.hardest
+        beside = (
+            "" if location_error is None else f", beside its location error of {unit.text(location_error)}"
+        )
+        at = self.at_force(mover, unit)
+        return (
+            f"{at[0].upper()}{at[1:]} {most.hole} gives way most, by "
+            f"{unit.text(most.deflection)} (at worst {unit.text(self.worst.worst_deflection)}), and {hardest.hole} "
+            f"is bent hardest, to {hardest.stress:.0f} MPa; that moves the part by up to "
+            f"{unit.text(self.movement)}{beside}."
+        )
+
+    @property
+    def worst(self) -> BentPeg:
+        """The peg that gives way most with the force at the top of its run."""
+        return max(self.pegs, key=lambda peg: peg.worst_deflection)
+
+    def cautions(self, mover: str, unit: Unit) -> list[str]:
+        """What to beware of, a sentence each; nothing where the jaw force is not known."""
+        found = []
+        if self.is_overbent:
+            peg = self.hardest
+            found.append(
+                f"{peg.hole} is bent to {peg.stress:.0f} MPa by {unit.force_words(peg.force)} "
+                f"{unit.text(peg.height, 1 if unit.millimetres == 1 else 2)} above its plate, more than the "
+                f"{self.stress_limit:.0f} MPa that a pin should take: use thicker or shorter pegs, or a smaller "
+                f"{mover} force."
+            )
+        if self.gives_way:
+            found.append(
+                f"Pegs that bend let the part move by {unit.text(self.movement)}: use thicker or shorter ones, or "
+                "probe the part after clamping."
+            )
+        return found
+
+    def to_dict(self) -> dict[str, object]:
+        """What of it is plain data: lengths in mm, forces in N, stresses in MPa."""
+        names = ("height", "top", "force", "deflection", "stress", "worst_deflection", "worst_stress")
+        return {
+            "jaw_force": self.jaw_force,
+            "stated_force": STATED_FORCE if self.jaw_force is None else self.jaw_force,
+            "movement": self.movement,
+            "worst_movement": self.worst_movement,
+            "stress_limit": self.stress_limit,
+            "movement_limit": self.movement_limit,
+            "pegs": [
+                {"hole": one.hole, "diameter": one.diameter} | {name: getattr(one, name) for name in names}
+                for one in self.pegs
+            ],
+        }
+
+
+def bent_pegs(
+    fixture: Fixture,
+    workpiece: Workpiece,
+    toolkit: Toolkit,
+    *,
+    pressed_up_to: float | None = None,
+    jaw_force: float | None = None,
+    lift: float = 0.0,
+) -> BentPegs | None:
+    """How far the pegs of a fixture bend; None where nobody knows how high they press, or there are none.
+
+    Parameters
+    ----------
+    pressed_up_to : up to which height pegs press on a prism, in mm; a solid says it itself.
+    jaw_force : in N; None is for each kN.
+    lift : how far the part lies above the plates, in mm.
+    """
+    if workpiece.solid is None and pressed_up_to is None:
+        return None
+    touched = Touched.of(workpiece, toolkit)
+    contacts = touched.of_fixture(fixture, toolkit)
+    carriers = np.array([toolkit.carrier_numbers(peg.carrier for peg in fixture.pegs)])
+    faces = np.array([[peg.face for peg in fixture.pegs]])
+    runs = PinRuns.of(faces, carriers, workpiece, toolkit, contacts.points, pressed_up_to, lift)
+    silhouette = extremes(workpiece)
+    middle, worst = (
+        bent_pins(contacts, runs.diameter, heights, jaw_force, touched.length, silhouette)
+        for heights in (runs.middle, runs.high)
+    )
+    force = (STATED_FORCE if jaw_force is None else jaw_force) * np.abs(contacts.inverses[0, 3])
+    rows = [
+        BentPeg(peg.hole, toolkit.carrier(peg.carrier).peg, *map(float, values))
+        for peg, *values in zip(
+            fixture.pegs,
+            runs.diameter[0],
+            runs.middle[0],
+            runs.high[0],
+            force,
+            middle.deflection[0],
+            middle.stress[0],
+            worst.deflection[0],
+            worst.stress[0],
+            strict=True,
+        )
+        if not isnan(values[0])
+    ]
+    if not rows or any(isnan(peg.deflection) for peg in rows):
+        return None
+    moved = float(middle.movement[0]), float(worst.movement[0])
+    return BentPegs(tuple(rows), *moved, jaw_force, *limits_of(toolkit))

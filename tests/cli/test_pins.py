@@ -1,0 +1,98 @@
+"""The terminal says how far pegs bend, and asks which height is meant where numbers depend on it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+PART = {"name": "square", "units": "mm", "loops": [[[-17, -17, 0], [17, -17, 0], [17, 17, 0], [-17, 17, 0]]]}
+HELD = ("--pitch", "10", "--columns", "2", "--peg-radius", "3", "--best", "2")
+
+
+@pytest.fixture
+def part(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    monkeypatch.chdir(tmp_path)
+    Path("square.json").write_text(json.dumps(PART))
+    return "square.json"
+
+
+def test_a_drawing_takes_a_thickness_and_a_height_of_the_pegs_without_a_program(run: Any, part: str) -> None:
+    """The lower of the two is what pegs press up to; `show` says it peg by peg, and beside the location error."""
+    asked = ("--thickness", "90", "--peg-height", "76", "--jaw-force", "500")
+    assert run("design", part, *HELD, *asked, "--out", "r.json").exit_code == 0
+    head = json.loads(Path("r.json").read_text())
+    assert (head["thickness"], head["peg_height"]) == (90.0, 76.0)
+    shown = run("show", "r.json", 1).stdout
+    for words in (
+        "pin deflection",
+        "How far the peg that bends most gives way, at 500 N.",
+        "Pegs bend, at a jaw force of 500 N, built in at the plate; a real hole gives more:",
+        "38.00",
+        "beside its location error of",
+        "Beware: ",
+        "more than the 421 MPa that a pin should take",
+    ):
+        assert words in shown, words
+    data = json.loads(run("show", "r.json", 1, "--json").stdout)
+    assert {peg["height"] for peg in data["pins"]["pegs"]} == {38.0}
+    assert data["pins"]["movement"] == pytest.approx(data["fixture"]["quality"]["pin_movement"], rel=1e-6)
+    assert json.loads(run("show", "r.json", 1, "--json", "--jaw-force", "1000").stdout)["pins"][
+        "movement"
+    ] == pytest.approx(2 * data["pins"]["movement"])
+    assert run("verify", "r.json").exit_code == 0
+
+
+def test_without_a_force_it_is_said_to_be_for_each_kn(run: Any, part: str) -> None:
+    assert run("design", part, *HELD, "--peg-height", "10", "--out", "r.json").exit_code == 0
+    shown = run("show", "r.json", 1).stdout
+    assert "gives way, for each kN of jaw force." in shown
+    assert "Pegs bend, for each kN of jaw force, built in at the plate" in shown
+    assert "Beware" not in shown
+
+
+def test_without_heights_nothing_is_said(run: Any, part: str) -> None:
+    assert run("design", part, *HELD, "--jaw-force", "500", "--out", "r.json").exit_code == 0
+    assert "bend" not in run("show", "r.json", 1).stdout
+    assert "thickness" not in json.loads(Path("r.json").read_text())
+
+
+def test_the_sheet_names_a_dowel_that_is_sold(run: Any, part: str) -> None:
+    """Of 6 mm, 20 long for pegs of 11 mm; in a vise of inches by inches."""
+    asked = ("--thickness", "30", "--peg-height", "11", "--jaw-force", "500", "--out", "r.json")
+    assert run("design", part, *HELD, *asked).exit_code == 0
+    assert run("sheet", "r.json", 1, "-o", "a.svg").exit_code == 0
+    text = "".join(path.read_text() for path in sorted(Path().glob("a*.svg")))
+    for words in (
+        "pegs: dowels of",
+        "6 × 20 mm",
+        "each sits in the jaw",
+        "9.000 mm",
+        "11.000 mm",
+        "Pegs bend",
+    ):
+        assert words in text, words
+
+
+def test_numbers_of_faces_are_asked_about(run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A stepped solid has other numbers with other pegs: both heights are named, and either is taken."""
+    pytest.importorskip("OCP", reason="the extra 'step' is not installed")
+    from OCP.STEPControl import STEPControl_StepModelType, STEPControl_Writer
+
+    from solid_examples import stepped
+
+    monkeypatch.chdir(tmp_path)
+    writer = STEPControl_Writer()
+    writer.Transfer(stepped(), STEPControl_StepModelType.STEPControl_AsIs)
+    writer.Write("part.step")
+    asked = ("design", "part.step", "--toolkit", "clamp-plate-20mm", "--best", "1", "--avoid", "0")
+    refused = run(*asked)
+    assert refused.exit_code == 2
+    assert "face 0 is named by number" in refused.stderr
+    heights = [word for word in refused.stderr.replace(",", " ").split() if word.endswith("mm")]
+    assert len(set(heights)) >= 2
+    assert run(*asked, "--peg-height", heights[-1]).exit_code == 0
+    features = run("features", "part.step", "--toolkit", "clamp-plate-20mm")
+    assert features.exit_code == 0 and "stand out" in features.stderr
