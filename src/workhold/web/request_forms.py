@@ -182,6 +182,10 @@ class SolidForm(Form):
     top: Annotated[list[LoopForm], Field(max_length=MOST_VERTICES)] | None = None
     top_heights: Annotated[list[Number], Field(max_length=MOST_VERTICES)] = Field(default=[])
     runs: Annotated[list[RunForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
+    rising: Annotated[list[LoopForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
+    rising_heights: Annotated[list[Number], Field(max_length=MOST_VERTICES)] = Field(default=[])
+    hanging: Annotated[list[LoopForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
+    hanging_heights: Annotated[list[Number], Field(max_length=MOST_VERTICES)] = Field(default=[])
 
 
 class OwnOutlineForm(Form):

@@ -44,7 +44,7 @@ from workhold.files.step.strips import Strip, run_rows, strips_of_loop
 from workhold.geometry.loop import loop_segments, signed_area
 from workhold.geometry.segment import Arc, Line, Point, Segment
 from workhold.geometry.subdivision import BorderPiece, border_loops, border_pieces, subdivide
-from workhold.model.solid import Band, HeightRow, RunRows, SolidOutline
+from workhold.model.solid import NO_LEVELS, Band, HeightRow, RunRows, SolidOutline
 
 __all__ = [
     "HEAD_ROOM",
@@ -549,5 +549,5 @@ def own_drawings(
             )
         own = evolve(found, low=low, peg_height=high, bands=outline.bands)
         own = evolve(own, faces=outline.faces, runs=outline.runs)
-        own = evolve(own, bottom=None, top=None, top_heights=())
+        own = evolve(own, **NO_LEVELS)
         yield OwnDrawing(role, outline.vertices, own)
