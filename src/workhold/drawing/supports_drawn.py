@@ -44,6 +44,8 @@ FROM_THE_SIDE = (
     "nothing promises that the part passes it on its way."
 )
 
+HANGS = "Below this place the part has air: put something under it there, or it bends."
+
 
 @frozen
 class PlannedSupports:
@@ -171,6 +173,8 @@ def write_supports(column: TextColumn, sheet: Sheet) -> None:
     write_forces(column, sheet, chosen)
     column.fact("tipping arm", lengths.words(clamp.arm))
     column.paragraph(f"{tipping_words(chosen, lengths.unit)} {holding_up_words(sheet, chosen)}", NOTE)
+    if clamp.hangs:
+        column.paragraph(HANGS, NOTE)
     for sentence in counting_words(sheet, chosen):
         column.paragraph(sentence, NOTE)
 

@@ -34,7 +34,7 @@ STANDING = ("axis", "height", "peg_height", "head_room", "least_band")
 # What says where a head or a tip on the upper faces is in the way or hangs, as a file has it.
 BESIDE_TOP = ("rising", "rising_heights", "hanging", "hanging_heights")
 # What carriers with outlines of their own say nothing of.
-NO_LEVELS = {"bottom": None, "top": None, "top_heights": (), **dict.fromkeys(BESIDE_TOP, ())}
+NO_LEVELS: dict[str, Any] = {"bottom": None, "top": None, "top_heights": (), **dict.fromkeys(BESIDE_TOP, ())}
 Band = tuple[float, float]
 # Heights of the run that holds a segment's band, along the segment: shares of it, rising from 0 to 1, with
 # the lower and the upper end in mm there. Of every four, the last of which begins the next, each end is a
@@ -183,7 +183,11 @@ class SolidOutline:
         ):
             if not (isfinite(value) and value > least):
                 raise InputError(f"the {name} {value:g} is not a length: give one in mm.")
-        of_loops = (self.top_heights or (0.0,) * len(self.top or ()), self.rising_heights, self.hanging_heights)
+        of_loops = (
+            self.top_heights or (0.0,) * len(self.top or ()),
+            self.rising_heights,
+            self.hanging_heights,
+        )
         for loops, heights in zip((self.top or (), self.rising, self.hanging), of_loops, strict=True):
             if len(heights) != len(loops):
                 raise InputError(
@@ -211,7 +215,10 @@ class SolidOutline:
             top=workpiece.get("top"),
             top_heights=workpiece.get("top_heights") or (),
             runs=workpiece.get("runs") or (),
-            **{key: workpiece.get(key) or () for key in BESIDE_TOP},
+            rising=workpiece.get("rising") or (),
+            rising_heights=workpiece.get("rising_heights") or (),
+            hanging=workpiece.get("hanging") or (),
+            hanging_heights=workpiece.get("hanging_heights") or (),
         )
 
     @property

@@ -14,6 +14,8 @@ from math import floor
 import numpy as np
 from attrs import evolve
 
+from workhold.errors import listed as listed_words
+from workhold.model.support_request import SupportRequest
 from workhold.model.support_triples import Supports, Triple
 from workhold.model.workpiece import Workpiece
 from workhold.supports.asking import SMALLER
@@ -42,10 +44,13 @@ def reason(found: Supports, unit: Unit) -> str:
         return f"the part lies on no level face under which a pad could stand{turned}."
     if request.top is not None and not request.top:
         return (
-            "there is no top clamp, as no level face of the part has nothing of it above; crowns, fillets and "
-            f"slopes are not taken for flat{turned}."
+            "there is no top clamp, as no level face of the part is open to above; crowns, fillets and slopes are "
+            f"not taken for flat{turned}."
         )
     bottom = SupportSearch(found.query, request, ()).bottom
+    bare = SupportSearch(found.query, evolve(request, top_zones=(), reach=None), ())
+    if bare.places(found.fixture).is_empty:
+        return no_place_for_a_tip(request, turned, unit)
     holes = holes_under(found.fixture, toolkit, bottom, request)
     if found.positions < 3:
         bare = evolve(request, pad_radius=0.0, pad_margin=0.0)
@@ -65,11 +70,23 @@ def reason(found: Supports, unit: Unit) -> str:
             f"and {unit.text(request.inside)} is asked for; a smaller tip would help, or less distance "
             "inside the triangle."
         )
-    beside = ", or other keep-outs on top or the clamp's reach" if request.top_zones or request.reach else ""
+    beside = ", a smaller head" if request.rising else ""
+    beside += ", or other keep-outs on top or the clamp's reach" if request.top_zones or request.reach else ""
     return (
         f"inside every triangle of the {found.positions} holes that could hold a support, the tip of radius "
         f"{unit.text(request.tip_radius)} finds no place on the upper face; a smaller tip would help, "
         f"or less distance inside the triangle{beside}."
+    )
+
+
+def no_place_for_a_tip(request: SupportRequest, turned: str, unit: Unit) -> str:
+    """That the tip fits on none of the upper faces, and what would help."""
+    margin = f", {unit.text(request.tip_margin)} from its border" if request.tip_margin else ""
+    head = f" and a head of radius {unit.text(request.head_radius)} above it" if request.rising else ""
+    smaller = "a smaller tip or head" if head else "a smaller tip"
+    return (
+        "there is no top clamp, as no level face of the part that is open to above has room for a tip of radius "
+        f"{unit.text(request.tip_radius)}{margin}{head}; {smaller} would help{turned}."
     )
 
 
@@ -140,7 +157,35 @@ def listing_notes(
             "With these supports the jaws stand elsewhere in their holes, opened to "
             f"{', '.join(unit.text(one) for one in sorted(moved))}; columns are counted as for the fixture."
         )
+    notes += [one for one in (falling_note(listed), hanging_note(listed)) if one]
     return notes + flat_faces_notes(found.query.workpiece, keep_off)
+
+
+def falling_note(listed: Sequence[Triple]) -> str:
+    """Says from which sets the part falls over before it is clamped; nothing where from none."""
+    falls = [number for number, one in enumerate(listed, 1) if one.standing < 0.0]
+    if not falls:
+        return ""
+    if len(falls) == len(listed):
+        return "The part does not stand on them by itself: hold it down until it is clamped."
+    return f"It does not stand by itself on {numbers(falls)}: these come last."
+
+
+def hanging_note(listed: Sequence[Triple]) -> str:
+    """Says over which sets the clamp presses where the part has air below; nothing where over none."""
+    hangs = [number for number, one in enumerate(listed, 1) if one.clamp.hangs]
+    if not hangs:
+        return ""
+    which = "them" if len(hangs) == len(listed) else numbers(hangs)
+    return (
+        f"Over {which} the clamp presses where there is air below the face, and the part bends: put something "
+        "under it there."
+    )
+
+
+def numbers(ranks: Sequence[int]) -> str:
+    """Sets by their numbers."""
+    return f"set{'s' if len(ranks) > 1 else ''} {listed_words([str(rank) for rank in ranks])}"
 
 
 def flat_faces_notes(workpiece: Workpiece, keep_off: Sequence[str]) -> list[str]:
@@ -160,8 +205,8 @@ def flat_faces_notes(workpiece: Workpiece, keep_off: Sequence[str]) -> list[str]
         )
     if solid.has_no_top:
         notes.append(
-            "No level face of the part has nothing of it above, so no clamp can press on it from above: turn "
-            "another side up, or hold it down by other means."
+            "No level face of the part is open to above, so no clamp can press on it from there: turn another "
+            "side up, or hold it down by other means."
         )
     levels = (("bottom", solid.bottom, keep_off[0]), ("top", solid.top, keep_off[1]))
     lacking = [(name, off) for name, loops, off in levels if loops is None]

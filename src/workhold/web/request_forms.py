@@ -344,6 +344,8 @@ class SupportsForm(Form):
     pad_margin: Length | None = None
     tip_radius: Annotated[float, Field(gt=0, le=LARGEST)] | None = None
     inside: Annotated[float, Field(gt=0, le=LARGEST)] | None = None
+    tip_margin: Length | None = None
+    head_radius: Annotated[float, Field(gt=0, le=LARGEST)] | None = None
     bottom_zones: Zones = Field(default=[])
     top_zones: Zones = Field(default=[])
     reach: Annotated[list[Ring], Field(max_length=MOST_RANGES)] | None = None

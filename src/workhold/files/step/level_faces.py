@@ -130,9 +130,7 @@ def level_tops(solid: StandingSolid) -> list[LevelTop]:
     return [top for top in found if top.open]
 
 
-def level_top(
-    solid: StandingSolid, faces: Sequence[SolidFace], lies_on: Callable[[Point], bool]
-) -> LevelTop:
+def level_top(solid: StandingSolid, faces: Sequence[SolidFace], lies_on: Callable[[Point], bool]) -> LevelTop:
     """What is open of some upper faces of one height, with what rises beside them, and what of them hangs.
 
     Nothing is open where what rises cannot be told.
