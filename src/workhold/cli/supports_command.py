@@ -223,7 +223,7 @@ def report_supported(result: Result, thickness: float, unit: Unit, stream: TextI
     They are of the usual sizes, or where these hold up none of the fixtures, of smaller ones.
     """
     from workhold.supports.asking import requests_by_size, supported_by_size
-    from workhold.supports.words import flat_faces_notes, set_headings, set_row
+    from workhold.supports.words import flat_faces_notes, place_notes, set_headings, set_row
 
     fixtures = [result[k] for k in range(min(MOST_SUPPORTED, len(result)))]
     if not fixtures:
@@ -242,6 +242,7 @@ def report_supported(result: Result, thickness: float, unit: Unit, stream: TextI
         "",
         *([table] if table.rows else []),
         *notes,
+        *place_notes({rank: one.triples[0] for rank, one in enumerate(found, 1) if one.triples}),
         *before_first(best),
         *flat_faces_notes(result.workpiece, KEEP_OFF),
         stream=stream,

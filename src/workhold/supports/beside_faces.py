@@ -54,8 +54,8 @@ class LevelRegions:
         is_in = (signed > 0.0) @ self.turns[height] > 0.5
         return np.asarray(np.where(is_in, -1.0, 1.0) * np.abs(signed).min(axis=1, initial=np.inf))
 
-    def offset_curves(self, height: float, radius: float) -> Iterator[tuple[list[Curve], list[Curve]]]:
+    def offset_curves(self, height: float | None, radius: float) -> Iterator[tuple[list[Curve], list[Curve]]]:
         """Lines and circles of :func:`offset_curves` on which the middle of a disc beside a region is."""
-        if height in self.borders:
+        if height is not None and height in self.borders:
             for loop in self.borders[height].loops:
                 yield offset_curves(loop, radius, left=False)

@@ -68,7 +68,7 @@ class ClampPlaces:
                 radius = self.tip_radius + (0.0 if face is None else self.tip_margin)
                 straight, bent = offset_curves(loop, radius, self.face.is_on_left(number))
                 lines, circles = lines + straight, circles + bent
-        for regions, away in self.kept_off if level is not None else ():
+        for regions, away in self.kept_off:
             for straight, bent in regions.offset_curves(level, away):
                 lines, circles = lines + straight, circles + bent
         for x, y, low, high in () if self.rings is None else self.rings.tolist():

@@ -7,7 +7,7 @@ stand in it. The first that fails is said in one sentence, with what would help.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import combinations, islice
 from math import floor
 
@@ -23,7 +23,7 @@ from workhold.supports.holes import CarrierRoom, HolesUnderPart, holes_under
 from workhold.supports.listing import SupportSearch
 from workhold.units import Unit
 
-__all__ = ["flat_faces_notes", "listing_notes", "set_headings", "set_row", "why_no_set"]
+__all__ = ["flat_faces_notes", "listing_notes", "place_notes", "set_headings", "set_row", "why_no_set"]
 
 # Triples that are looked at; where there are more, one of these fits.
 MOST_LOOKED_AT = 200_000
@@ -70,12 +70,15 @@ def reason(found: Supports, unit: Unit) -> str:
             f"and {unit.text(request.inside)} is asked for; a smaller tip would help, or less distance "
             "inside the triangle."
         )
-    beside = ", a smaller head" if request.rising else ""
-    beside += ", or other keep-outs on top or the clamp's reach" if request.top_zones or request.reach else ""
+    helps = [
+        "a smaller tip",
+        *(["a smaller head"] if request.rising else []),
+        "less distance inside the triangle",
+    ]
+    helps += ["other keep-outs on top or the clamp's reach"] if request.top_zones or request.reach else []
     return (
         f"inside every triangle of the {found.positions} holes that could hold a support, the tip of radius "
-        f"{unit.text(request.tip_radius)} finds no place on the upper face; a smaller tip would help, "
-        f"or less distance inside the triangle{beside}."
+        f"{unit.text(request.tip_radius)} finds no place on the upper face; {', or '.join(helps)} would help."
     )
 
 
@@ -157,35 +160,35 @@ def listing_notes(
             "With these supports the jaws stand elsewhere in their holes, opened to "
             f"{', '.join(unit.text(one) for one in sorted(moved))}; columns are counted as for the fixture."
         )
-    notes += [one for one in (falling_note(listed), hanging_note(listed)) if one]
+    notes += place_notes(dict(enumerate(listed, 1)))
     return notes + flat_faces_notes(found.query.workpiece, keep_off)
 
 
-def falling_note(listed: Sequence[Triple]) -> str:
-    """Says from which sets the part falls over before it is clamped; nothing where from none."""
-    falls = [number for number, one in enumerate(listed, 1) if one.standing < 0.0]
-    if not falls:
-        return ""
-    if len(falls) == len(listed):
-        return "The part does not stand on them by itself: hold it down until it is clamped."
-    return f"It does not stand by itself on {numbers(falls)}: these come last."
+def place_notes(listed: Mapping[int, Triple]) -> list[str]:
+    """Says from which sets the part falls before it is clamped, and over which the clamp presses over air.
+
+    Parameters
+    ----------
+    listed : the sets by the numbers that they have there.
+    """
+    falls = [number for number, one in listed.items() if one.standing < 0.0]
+    hangs = [number for number, one in listed.items() if one.clamp.hangs]
+    notes = []
+    if falls:
+        notes.append(
+            f"On {those(falls, listed)} the part does not stand by itself: hold it down until it is clamped."
+        )
+    if hangs:
+        notes.append(
+            f"Over {those(hangs, listed)} the clamp presses where the part has air below: put something under "
+            "it there, or it bends."
+        )
+    return notes
 
 
-def hanging_note(listed: Sequence[Triple]) -> str:
-    """Says over which sets the clamp presses where the part has air below; nothing where over none."""
-    hangs = [number for number, one in enumerate(listed, 1) if one.clamp.hangs]
-    if not hangs:
-        return ""
-    which = "them" if len(hangs) == len(listed) else numbers(hangs)
-    return (
-        f"Over {which} the clamp presses where there is air below the face, and the part bends: put something "
-        "under it there."
-    )
-
-
-def numbers(ranks: Sequence[int]) -> str:
-    """Sets by their numbers."""
-    return f"set{'s' if len(ranks) > 1 else ''} {listed_words([str(rank) for rank in ranks])}"
+def those(some: Sequence[int], every: Mapping[int, Triple]) -> str:
+    """Some of the sets of a list by their numbers, or all of them."""
+    return "each" if len(some) == len(every) else listed_words([str(number) for number in some])
 
 
 def flat_faces_notes(workpiece: Workpiece, keep_off: Sequence[str]) -> list[str]:

@@ -240,7 +240,7 @@ def test_a_web_over_air_comes_after_what_reaches_down() -> None:
     wide = supported(webbed_cover, 14.0, tip_radius=8.0)
     assert all(triple.clamp.hangs and over_web(triple.clamp.at) for triple in wide.triples)
     notes = " ".join(listing_notes(wide, wide.triples, MILLIMETRE, ("a", "b")))
-    assert "the clamp presses where there is air below" in notes
+    assert "Over each the clamp presses where the part has air below" in notes
 
 
 def over_web(place: tuple[float, float]) -> bool:
@@ -326,12 +326,13 @@ def test_pegs_press_over_their_own_runs_with_supports_and_without() -> None:
     found = supported(clevis, 18.0)
     fixture, part = found.fixture, found.query.workpiece
     chosen = ChosenSupports.of(found)
-    for details in (SheetDetails(), SheetDetails(supports=chosen)):
+    plain = SheetDetails(number=1, count=1, day="", result_hash="", version="")
+    for details in (plain, evolve(plain, supports=chosen)):
         heights = heights_of(fixture, part, TOOLKIT, details)
         assert heights is not None
         own = [pressed_by(peg, fixture, part.numbered) for peg in fixture.pegs]
         assert list(heights.bands) == own and all(band == (0.0, 18.0) for band in own)
     low = heights_of(
-        fixture, part, TOOLKIT, SheetDetails(supports=chosen, peg_height=22.0, support_height=10.0)
+        fixture, part, TOOLKIT, evolve(plain, supports=chosen, peg_height=22.0, support_height=10.0)
     )
     assert low is not None and all(band == (0.0, 12.0) for band in low.bands)

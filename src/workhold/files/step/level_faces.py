@@ -407,7 +407,8 @@ def chorded(chain: Chain, curves: Mapping[str, Pieces], bounds: Enclosure) -> Ar
             bounds.segments.append(segment_from_bulge(chain.points[k], chain.points[k + 1], chain.bulges[k]))
         elif label not in done:
             done.add(label)
-            run, points = [chain.points[m] for m in range(count) if chain.labels[m] == label], []
+            run = [chain.points[m] for m in range(count) if chain.labels[m] == label]
+            points: list[Point] = []
             for control in near_pieces(curves[label]):
                 every = [(float(x), float(y)) for x, y in control]
                 bounds.add_points(every)
