@@ -39,9 +39,14 @@ Array = NDArray[np.float64]
 SAFE, MOST_PIECES = 0.02, 4_000
 # mm. A piece nearer to its chord is taken for that.
 FLAT = 2e-6
-# Cells along both directions of a free-form face where its folds are looked for, how large in mm a box around
-# a piece of one may be, by what share boxes are wider than their cells, and how often a cell is quartered.
-CELLS, BOX, WIDER, QUARTERED = 16, 0.5, 0.25, 8
+# Cells along both directions of a free-form face where its folds are looked for, by what share boxes around
+# pieces of one are wider than their cells, and how often a cell is quartered.
+CELLS, WIDER, QUARTERED = 8, 0.25, 5
+# Size in mm of the squares that hold a fold, and how many of one face, at most; then they are larger.
+BOX, MOST_SQUARES = 0.5, 300
+# Of more free-form faces than these the squares are as much larger.
+FEW = 3
+Squares = dict[tuple[int, float], set[tuple[int, int]]]
 
 
 @define(eq=False)
@@ -193,6 +198,7 @@ def enclosed_curves(
     low: float,
     high: float,
     folds_of: Callable[[int], Sequence[Found]],
+    squares: Squares,
     is_there: Callable[[Point], bool],
 ) -> Enclosure:
     """What holds the curves that are neither line nor arc of all that can bound a slab of a solid from above.
@@ -201,6 +207,7 @@ def enclosed_curves(
     ----------
     low, high : z in mm of the slab.
     folds_of : see :func:`workhold.files.step.projected.projected_curves`.
+    squares : those that hold the folds of free-form faces, kept for other slabs.
     is_there : whether a point belongs to what is bounded; folds are only where some points around do.
 
     Raises
@@ -208,26 +215,40 @@ def enclosed_curves(
     InputError
         For curves that take too many pieces.
     """
-    found, known = Enclosure(), set[int]()
+    found, known, boxes = Enclosure(), set[int](), list[Array]()
+    leaning = [*leaning_between(faces, low, high)]
+    free = [k for k in leaning if any(isinstance(one, np.ndarray) for one in folds_of(k))]
+    size = BOX * max(1.0, len(free) / FEW)
     for edge in bounding_edges(faces, edges, low, high):
         # Two faces have an edge, and it is enclosed once.
         if edge.is_other and id(edge.curve) not in known:
             known.add(id(edge.curve))
             enclose_edge(found, edge.curve.Edge(), edge.points[:, :2])
-    for index in leaning_between(faces, low, high):
+    for index in leaning:
         face = faces[index]
-        if any(isinstance(one, np.ndarray) for one in folds_of(index)):
-            for box in fold_boxes(surface_of(face.shape)):
-                states = {is_there(point) for point in (*box, centre(box))}
-                if len(states) == 2:
-                    found.polygons.append(np.array(box))
+        if index in free:
+            if (index, size) not in squares:
+                squares[index, size] = fold_squares(surface_of(face.shape), size)
+            boxes += fold_boxes(squares[index, size], size, is_there)
         for z in (low, high):
             if face.low < z < face.high and any(isinstance(one, np.ndarray) for one in level_cuts(face, z)):
                 plane = occ.gp_Pln(occ.gp_Pnt(0.0, 0.0, z), occ.gp_Dir(0.0, 0.0, 1.0))
                 section = occ.BRepAlgoAPI_Section(face.shape, plane)
                 for edge in sub_shapes(section.Shape(), "EDGE"):
                     enclose_edge(found, edge, None)
+    # Of an edge that is in the slab in part the rest bounds nothing of it.
+    found.polygons = [one for one in found.polygons if is_beside_some(one, is_there)] + boxes
+    found.boxes = None
     return found
+
+
+def is_beside_some(polygon: Array, is_there: Callable[[Point], bool]) -> bool:
+    """Whether something is on one side of a convex polygon and not on another."""
+    corners = np.concatenate([polygon, (polygon + np.roll(polygon, -1, axis=0)) / 2])
+    away = corners - polygon.mean(axis=0)
+    size = np.hypot(*away.T)[:, None]
+    places = corners + away / size * (SAFE + 0.1 * size)
+    return len({is_there((float(x), float(y))) for x, y in places}) == 2
 
 
 def enclose_edge(found: Enclosure, edge: Any, points: Array | None) -> None:
@@ -257,16 +278,49 @@ def corners_of(low: Array, high: Array) -> list[Point]:
     return [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
 
 
-def centre(box: Sequence[Point]) -> Point:
-    """The middle of a box."""
-    return (box[0][0] + box[2][0]) / 2, (box[0][1] + box[2][1]) / 2
+def fold_boxes(squares: set[tuple[int, int]], size: float, is_there: Callable[[Point], bool]) -> list[Array]:
+    """Boxes that hold a fold where something is on one side of it: rows of squares, larger ones of a long fold.
+
+    Parameters
+    ----------
+    squares : of a raster, by column and row, that hold it.
+    size : of the squares in mm.
+    is_there : see :func:`enclosed_curves`.
+    """
+    while len(squares) > MOST_SQUARES:
+        size *= 2.0
+        squares = {(i // 2, j // 2) for i, j in squares}
+
+    def is_mixed(square: tuple[int, int]) -> bool:
+        i, j = square
+        places = [
+            (i - 0.5, j - 0.5),
+            (i + 1.5, j - 0.5),
+            (i + 1.5, j + 1.5),
+            (i - 0.5, j + 1.5),
+            (i + 0.5, j + 0.5),
+        ]
+        return len({is_there((x * size, y * size)) for x, y in places}) == 2
+
+    kept = sorted((j, i) for i, j in squares if is_mixed((i, j)))
+    rows: list[list[int]] = []
+    for j, i in kept:
+        if rows and rows[-1][0] == j and rows[-1][2] == i:
+            rows[-1][2] = i + 1
+        else:
+            rows.append([j, i, i + 1])
+    return [
+        np.array(corners_of(np.array([first, j]) * size, np.array([last, j + 1]) * size))
+        for j, first, last in rows
+    ]
 
 
-def fold_boxes(surface: Any) -> Iterator[list[Point]]:
-    """Corners of boxes that hold the places at which a surface stands upright, seen from above."""
+def fold_squares(surface: Any, size: float) -> set[tuple[int, int]]:
+    """The squares of a raster, by column and row, in which a surface may stand upright, seen from above."""
     u = np.linspace(surface.FirstUParameter(), surface.LastUParameter(), CELLS + 1)
     v = np.linspace(surface.FirstVParameter(), surface.LastVParameter(), CELLS + 1)
     waiting = [(u0, u1, v0, v1, 0) for u0, u1 in pairwise(u.tolist()) for v0, v1 in pairwise(v.tolist())]
+    found: set[tuple[int, int]] = set()
     while waiting:
         u0, u1, v0, v1, level = waiting.pop()
         places = [(a, b) for a in (u0, (u0 + u1) / 2, u1) for b in (v0, (v0 + v1) / 2, v1)]
@@ -276,9 +330,12 @@ def fold_boxes(surface: Any) -> Iterator[list[Point]]:
         values = [surface.Value(a, b) for a, b in places]
         points = np.array([(value.X(), value.Y()) for value in values])
         low, high = points.min(axis=0), points.max(axis=0)
-        if float(np.hypot(*(high - low))) <= BOX or level >= QUARTERED:
+        if float((high - low).max()) <= size or level >= QUARTERED:
             wide = WIDER * (high - low) + SAFE
-            yield corners_of(low - wide, high + wide)
+            (i0, j0), (i1, j1) = (
+                np.floor(one / size).astype(int).tolist() for one in (low - wide, high + wide)
+            )
+            found |= {(i, j) for i in range(i0, i1 + 1) for j in range(j0, j1 + 1)}
         else:
             middle_u, middle_v = (u0 + u1) / 2, (v0 + v1) / 2
             waiting += [
@@ -286,3 +343,4 @@ def fold_boxes(surface: Any) -> Iterator[list[Point]]:
                 for a, b in ((u0, middle_u), (middle_u, u1))
                 for c, d in ((v0, middle_v), (middle_v, v1))
             ]
+    return found

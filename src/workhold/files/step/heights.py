@@ -132,6 +132,8 @@ class StandingSolid:
     edge_boxes: NDArray[np.float64] = field(init=False)
     material: Material = field(init=False)
     folds: dict[int, list[Found]] = field(init=False, factory=dict)
+    # Squares that hold folds which are neither lines nor arcs, see ``files.step.enclosing``.
+    fold_squares: dict[tuple[int, float], set[tuple[int, int]]] = field(init=False, factory=dict)
     # What outlines of all heights have in common.
     known_walls: KnownWalls = field(init=False, factory=KnownWalls)
     # The face that was last found to refuse an outline: it is likely to refuse that of a height nearby.

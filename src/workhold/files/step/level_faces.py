@@ -201,7 +201,9 @@ def bounds_between(
     curves = projected_curves(solid.faces, solid.edges, low, high, solid.folds_of)
     bounds = Enclosure([*curves.segments])
     if curves.others:
-        bounds.add(enclosed_curves(solid.faces, solid.edges, low, high, solid.folds_of, is_there))
+        bounds.add(
+            enclosed_curves(solid.faces, solid.edges, low, high, solid.folds_of, solid.fold_squares, is_there)
+        )
     return bounds, [*curves.cuts]
 
 
