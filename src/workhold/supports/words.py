@@ -48,8 +48,8 @@ def reason(found: Supports, unit: Unit) -> str:
             f"not taken for flat{turned}."
         )
     bottom = SupportSearch(found.query, request, ()).bottom
-    bare = SupportSearch(found.query, evolve(request, top_zones=(), reach=None), ())
-    if bare.places(found.fixture).is_empty:
+    plain = SupportSearch(found.query, evolve(request, top_zones=(), reach=None), ())
+    if plain.places(found.fixture).is_empty:
         return no_place_for_a_tip(request, turned, unit)
     holes = holes_under(found.fixture, toolkit, bottom, request)
     if found.positions < 3:
@@ -208,7 +208,7 @@ def flat_faces_notes(workpiece: Workpiece, keep_off: Sequence[str]) -> list[str]
         )
     if solid.has_no_top:
         notes.append(
-            "No level face of the part is open to above, so no clamp can press on it from there: turn another "
+            "No level face of the part is open to above, so no clamp can press on it from above: turn another "
             "side up, or hold it down by other means."
         )
     levels = (("bottom", solid.bottom, keep_off[0]), ("top", solid.top, keep_off[1]))
