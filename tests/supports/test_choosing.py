@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from threading import Event
 
 import numpy as np
@@ -41,6 +42,61 @@ def test_the_best_few_of_random_fixtures_are_the_first_of_all(
                 assert best.count in (None, everything.count)
         with_some += bool(everything.triples)
     assert with_some > 15
+
+
+def test_of_a_part_that_hangs_in_places_the_best_few_are_the_first_of_all() -> None:
+    """Places over material before places over air, and sets from which the part falls last of all."""
+    kinds = set()
+    for random, query, fixture in random_fixtures(7, of_each=3):
+        request, loads = random_demand(random, query.workpiece)
+        x0, y0, x1, y1 = query.workpiece.bounds
+        a, b, c, d = ([random.uniform(x0, x1), random.uniform(y0, y1)] for _ in range(4))
+        request = evolve(
+            request,
+            top=query.workpiece.loops,
+            top_heights=[request.thickness] * len(query.workpiece.loops),
+            hanging=[rectangle(a, b, 20.0)],
+            hanging_heights=[request.thickness],
+            rising=[rectangle(c, d, 1.0)],
+            rising_heights=[request.thickness],
+            head_radius=random.uniform(1.0, 6.0),
+            tip_margin=random.uniform(0.0, 1.0),
+        )
+        everything = supports_of(fixture, query, request, loads)
+        for count in (1, 3, 12):
+            assert (
+                supports_of(fixture, query, request, loads, best=count).triples == everything.triples[:count]
+            )
+        order = [(one.standing < -1e-9, one.given is None, one.clamp.hangs) for one in everything.triples]
+        late = request.point is not None
+        assert all(
+            a[0] <= b[0] and (a[0] < b[0] or not late or a[1] <= b[1]) for a, b in pairwise(order)
+        ) and (late or order == sorted(order))
+        kinds |= {(one[0], one[2]) for one in order}
+    assert kinds == {(False, False), (False, True), (True, False), (True, True)}
+
+
+def rectangle(a: list[float], b: list[float], most: float) -> list[list[float]]:
+    """A rectangle between two points, no larger than a length, as a loop with itself on the left."""
+    x0, y0 = min(a[0], b[0]), min(a[1], b[1])
+    x1, y1 = x0 + min(abs(a[0] - b[0]), most) + 0.5, y0 + min(abs(a[1] - b[1]), most) + 0.5
+    return [[x0, y0, 0.0], [x1, y0, 0.0], [x1, y1, 0.0], [x0, y1, 0.0]]
+
+
+@pytest.mark.parametrize("name", ["plate100", "bracketL"])
+def test_sets_from_which_the_part_falls_come_after_all_others(name: str) -> None:
+    """By the whole list, and with the loads of the truth."""
+    one = case(name)
+    every = supports_of(one.fixture, one.query, one.request, one.loads, one.jaw_force).triples
+    falls = [triple.standing < -1e-9 for triple in every]
+    assert any(falls) and not all(falls) and falls == sorted(falls)
+    standing = [triple for triple in every if triple.standing >= -1e-9]
+    needs = [
+        coarse((triple.given or triple.best).clamp_needed)
+        for triple in standing
+        if triple.given or not one.request.point
+    ]
+    assert needs == sorted(needs)
 
 
 @pytest.mark.parametrize("value", [0.0, 1.0, 9.9, 10.0, 1500.0, 0.0123, 134.99, 99.4])

@@ -75,6 +75,17 @@ def supports(
         "Least distance of the clamp from the triangle's sides; the toolkit's, or the tip's radius, if not "
         "given.",
     ),
+    tip_margin: str | None = option(
+        CLAMP,
+        "LENGTH",
+        "Least distance of the tip from the border of its face; the toolkit's, or 0mm, if not given.",
+    ),
+    head_radius: str | None = option(
+        CLAMP,
+        "LENGTH",
+        "Radius of the clamp's head, within which nothing of the part rises above the face; the toolkit's, or "
+        "one and a half times the tip's, if not given.",
+    ),
     keep_out_above: list[str] | None = option(
         CLAMP, "ZONE", "A place that the tip may not stand on, such as where the cutter goes."
     ),
@@ -136,6 +147,8 @@ def supports(
         "pad_margin": optional_length("--pad-margin", pad_margin, shown),
         "tip_radius": optional_length("--tip-radius", tip_radius, shown),
         "inside": optional_length("--inside", inside, shown),
+        "tip_margin": optional_length("--tip-margin", tip_margin, shown),
+        "head_radius": optional_length("--head-radius", head_radius, shown),
         "reach": [lengths("--reach", text, ",", 4, shown) for text in reach] if reach else None,
         "band": None if band is None else lengths("--band", band, ":", 2, shown),
         "bottom_zones": [zone(text, shown) for text in keep_out_below or ()],
@@ -212,7 +225,7 @@ def report_supported(result: Result, thickness: float, unit: Unit, stream: TextI
     They are of the usual sizes, or where these hold up none of the fixtures, of smaller ones.
     """
     from workhold.supports.asking import requests_by_size, supported_by_size
-    from workhold.supports.words import flat_faces_notes, set_headings, set_row
+    from workhold.supports.words import flat_faces_notes, place_notes, set_headings, set_row
 
     fixtures = [result[k] for k in range(min(MOST_SUPPORTED, len(result)))]
     if not fixtures:
@@ -231,6 +244,7 @@ def report_supported(result: Result, thickness: float, unit: Unit, stream: TextI
         "",
         *([table] if table.rows else []),
         *notes,
+        *place_notes({rank: one.triples[0] for rank, one in enumerate(found, 1) if one.triples}),
         *before_first(best),
         *flat_faces_notes(result.workpiece, KEEP_OFF),
         stream=stream,

@@ -33,6 +33,7 @@ from workhold.model.own_outlines import numbered_solid
 from workhold.model.setup import LengthSetting, PartZero, contact_names, part_zero, settings_of
 from workhold.model.solid import Band
 from workhold.model.support_bodies import height_of_supports
+from workhold.model.support_request import pressed_by
 from workhold.model.support_triples import ChosenSupports
 from workhold.model.workpiece import Workpiece
 
@@ -177,17 +178,20 @@ def clamped_at(supports: ChosenSupports | None, thickness: float) -> float | Non
 def bands_of_pegs(
     fixture: Fixture, workpiece: Workpiece, details: SheetDetails, thickness: float, top: float
 ) -> tuple[Band | None, ...]:
-    """The heights at which each peg presses: as supports were asked for, of the solid, or of a prism."""
+    """The heights at which each peg may press: as supports were asked for, of the solid, or of a prism.
+
+    Nothing presses above the top of the pegs.
+    """
     supports, solid = details.supports, numbered_solid(workpiece)
     if supports is not None:
-        reach = supports.supports.query.peg_height
-        given = supports.supports.request.for_fixture(fixture, solid, reach, workpiece.numbered).peg_bands(
-            len(fixture.pegs)
-        )
-        return tuple((float(low), float(high)) for low, high in given)
-    if solid is not None:
-        return tuple(solid.bands[peg.face] for peg in fixture.pegs)
-    return tuple((0.0, min(top, thickness)) for _ in fixture.pegs)
+        request, reach = supports.supports.request, supports.supports.query.peg_height
+        given = request.for_fixture(fixture, solid, reach, workpiece.numbered).peg_bands(len(fixture.pegs))
+        bands: list[Band | None] = [(float(low), float(high)) for low, high in given]
+    elif solid is not None:
+        bands = [pressed_by(peg, fixture, workpiece.numbered) for peg in fixture.pegs]
+    else:
+        bands = [(0.0, thickness)] * len(fixture.pegs)
+    return tuple(band and (min(band[0], top), min(band[1], top, thickness)) for band in bands)
 
 
 @frozen

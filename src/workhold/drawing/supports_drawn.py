@@ -44,6 +44,8 @@ FROM_THE_SIDE = (
     "nothing promises that the part passes it on its way."
 )
 
+HANGS = "The clamp presses where the part has air below: put something under it there, or it bends."
+
 
 @frozen
 class PlannedSupports:
@@ -168,9 +170,13 @@ def write_supports(column: TextColumn, sheet: Sheet) -> None:
     if sheet.heights is not None and sheet.heights.clamped_height is not None:
         column.fact("at the height", lengths.words(sheet.heights.clamped_height), bold=True)
     column.fact("its round tip", f"Ø {lengths.short(2 * request.tip_radius)}", bold=True)
+    if request.rising:
+        column.fact("its head, at most", f"Ø {lengths.short(2 * request.head_radius)}", bold=True)
     write_forces(column, sheet, chosen)
     column.fact("tipping arm", lengths.words(clamp.arm))
     column.paragraph(f"{tipping_words(chosen, lengths.unit)} {holding_up_words(sheet, chosen)}", NOTE)
+    if clamp.hangs:
+        column.paragraph(HANGS, NOTE)
     for sentence in counting_words(sheet, chosen):
         column.paragraph(sentence, NOTE)
 

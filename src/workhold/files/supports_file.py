@@ -27,7 +27,7 @@ from workhold.model.fixture import Fixture
 from workhold.model.query import Query
 from workhold.model.requirements import Zone
 from workhold.model.result import Result
-from workhold.model.support_request import Loops
+from workhold.model.support_request import Loops, SupportRequest, usual_head
 from workhold.model.support_triples import ClampFigures, SupportPad, Supports, Triple
 
 __all__ = ["query_of", "read_supports", "supports_entry", "write_supports"]
@@ -124,7 +124,8 @@ def triple_of(
 def clamp_of(part: ReadFigures, point: tuple[float, float] | None) -> ClampFigures:
     """The figures at one point of the clamp."""
     at = part.at or point or (0.0, 0.0)
-    return ClampFigures(at, part.clamp_needed, part.support_force, part.arm, part.share, part.lift)
+    forces = part.clamp_needed, part.support_force
+    return ClampFigures(at, *forces, part.arm, part.share, part.lift, part.hangs)
 
 
 def write_supports(supports: Supports, path: str | Path, *, overwrite: bool = False) -> None:
@@ -176,6 +177,7 @@ def supports_entry(supports: Supports) -> dict[str, Any]:
         "clamp": {
             "tip_radius": request.tip_radius,
             "inside": request.inside,
+            **beside_tip(request),
             "top": loops_entry(request.top),
             **({} if request.top_heights is None else {"top_heights": list(request.top_heights)}),
             "zones": [zone_entry(zone) for zone in request.top_zones],
@@ -188,6 +190,19 @@ def supports_entry(supports: Supports) -> dict[str, Any]:
         "counts": {"positions": supports.positions, "triples": supports.count},
         "triples": [triple_entry(triple) for triple in supports.triples],
     }
+
+
+def beside_tip(request: SupportRequest) -> dict[str, Any]:
+    """What is asked around the tip, where that is not as usual, and what of the part is beside its faces."""
+    entry: dict[str, Any] = {}
+    if request.tip_margin != 0.0:
+        entry["tip_margin"] = request.tip_margin
+    if request.head_radius != usual_head(request.tip_radius):
+        entry["head_radius"] = request.head_radius
+    for name in ("rising", "hanging"):
+        if loops := getattr(request, name):
+            entry |= {name: loops_entry(loops), f"{name}_heights": list(getattr(request, f"{name}_heights"))}
+    return entry
 
 
 def fixture_entry(supports: Supports) -> dict[str, Any]:
@@ -211,8 +226,8 @@ def fixture_entry(supports: Supports) -> dict[str, Any]:
 
 
 def loops_entry(loops: Loops | None) -> Any:
-    """Loops of a face, or None."""
-    return None if loops is None else [(loop + 0.0).tolist() for loop in loops]
+    """Loops of a face, or None; of no face one loop around nothing, as no list could be read as all of it."""
+    return None if loops is None else [(loop + 0.0).tolist() for loop in loops] or [[]]
 
 
 def zone_entry(zone: Zone) -> dict[str, Any]:
@@ -247,4 +262,4 @@ def triple_entry(triple: Triple) -> dict[str, Any]:
 
 def known(figures: ClampFigures) -> dict[str, Any]:
     """Figures that are known."""
-    return asdict(figures, filter=lambda _, value: value is not None)
+    return asdict(figures, filter=lambda _, value: value is not None and value is not False)

@@ -14,7 +14,7 @@ from workhold.files.input_forms import LONGEST_NAME
 from workhold.files.result.forms import FormPart
 from workhold.files.text import json_value, read_text
 from workhold.model.requirements import ANY_DIRECTION, Zone, circle_zone, polygon_zone, zone_of
-from workhold.model.support_request import SpatialLoad, SupportRequest
+from workhold.model.support_request import SpatialLoad, SupportRequest, usual_head
 
 __all__ = ["FORMAT", "ReadFigures", "ReadTriple", "SupportsPart", "read_supports_part"]
 
@@ -67,6 +67,12 @@ class TipPart(FormPart):
     inside: float | None = None
     top: list[Loop] | None = None
     top_heights: list[float] | None = None
+    tip_margin: float = 0.0
+    head_radius: float | None = None
+    rising: list[Loop] = Field(default_factory=list)
+    rising_heights: list[float] = Field(default_factory=list)
+    hanging: list[Loop] = Field(default_factory=list)
+    hanging_heights: list[float] = Field(default_factory=list)
     zones: list[ZonePart] = Field(default_factory=list)
     reach: list[Ring] | None = None
     point: Two | None = None
@@ -98,6 +104,7 @@ class ClampFiguresPart(FormPart):
     arm: float
     share: float
     lift: float
+    hangs: bool = False
 
 
 class TriplePart(FormPart):
@@ -139,12 +146,13 @@ class ReadFigures:
     arm: float
     share: float
     lift: float
+    hangs: bool
 
     @classmethod
     def of(cls, part: ClampFiguresPart) -> ReadFigures:
         """Figures of their checked form."""
         at = None if part.at is None else (part.at[0], part.at[1])
-        return cls(at, part.clamp_needed, part.support_force, part.arm, part.share, part.lift)
+        return cls(at, part.clamp_needed, part.support_force, part.arm, part.share, part.lift, part.hangs)
 
 
 @define(eq=False)
@@ -244,15 +252,26 @@ class SupportsPart(FormPart):
             band=(low, high),
             bands=tuple(None if one is None else (one[0], one[1]) for one in bands) if any(bands) else None,
             pad_margin=pads.pad_margin,
-            bottom=pads.bottom,
-            top=tip.top,
+            bottom=face_of(pads.bottom),
+            top=face_of(tip.top),
             top_heights=tip.top_heights,
             bottom_zones=tuple(one.zone() for one in pads.zones),
             top_zones=tuple(one.zone() for one in tip.zones),
             inside=tip.tip_radius if tip.inside is None else tip.inside,
             reach=tip.reach,
             point=tip.point,
+            tip_margin=tip.tip_margin,
+            head_radius=usual_head(tip.tip_radius) if tip.head_radius is None else tip.head_radius,
+            rising=tip.rising,
+            rising_heights=tip.rising_heights,
+            hanging=tip.hanging,
+            hanging_heights=tip.hanging_heights,
         )
+
+
+def face_of(loops: list[Loop] | None) -> list[Loop] | None:
+    """The loops of a face: none around nothing, and None where nobody says."""
+    return None if loops is None else [loop for loop in loops if loop]
 
 
 def read_supports_part(path: Path) -> SupportsPart:

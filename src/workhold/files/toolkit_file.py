@@ -24,7 +24,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from attrs import frozen
+from attrs import evolve, frozen
 
 from workhold.conventions import SAME_SIZE
 from workhold.errors import InputError
@@ -32,7 +32,7 @@ from workhold.files.budget import LIMITS
 from workhold.files.text import read_text, toml_table
 from workhold.fixels.fields import COLUMNS, OPTIONS, PEG_RADIUS, PITCH
 from workhold.fixels.kinds import KINDS, USUAL, kind_of, toolkit_of
-from workhold.fixels.support_hardware import HARDWARE, hardware_of
+from workhold.fixels.support_hardware import HARDWARE, TOP_CLAMP, TopClamp, hardware_of
 from workhold.fixels.table import Form
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.dowels import DowelSize, Fit, Limits, peg_error, refuse_limits
@@ -284,6 +284,9 @@ def tolerance_of(entries: Mapping[str, Any], unit: Unit, peg_radius: float) -> T
 
 
 ENDING = ".toml"
+# How far in mm the tip of a clamp on top keeps from the border of its face in a preset that does not say: a
+# tip on the very edge chips it.
+TIP_MARGIN = 1.0
 
 
 @cache
@@ -319,7 +322,11 @@ def is_sold(name: str) -> bool:
 def preset(name: str) -> LoadedToolkit:
     """The preset of a name that exists."""
     text = (files("workhold") / "data" / "toolkits" / f"{name}{ENDING}").read_text(encoding="utf-8")
-    return described_toolkit(name, tomllib.loads(text))
+    found = described_toolkit(name, tomllib.loads(text))
+    clamp = found.fields.get(TOP_CLAMP) or TopClamp()
+    if clamp.tip_margin is None:
+        clamp = evolve(clamp, tip_margin=TIP_MARGIN)
+    return evolve(found, fields={**found.fields, TOP_CLAMP: clamp})
 
 
 def load_toolkit(name: str | Path) -> LoadedToolkit:

@@ -54,6 +54,10 @@ CLAMP = FieldTable(
         length_row(
             "inside", "above 0", "from the clamp on top to the supports' triangle", "Tip within the triangle"
         ),
+        length_row(
+            "tip_margin", "0", "from the tip of the clamp on top to the border of its face", "Tip to border"
+        ),
+        length_row("head_radius", "above 0", "radius of the head of the clamp on top", "Head radius"),
         ToolkitField(
             "reach",
             "rings",
@@ -149,6 +153,8 @@ class TopClamp:
     tip_radius : of its round tip.
     inside : smallest distance from its tip's centre to each side of the supports' triangle.
     reach : rings (x, y, least, most) in the toolkit's frame in which its tip can stand; anywhere if None.
+    tip_margin : smallest distance of its tip from the border of the face on which it stands.
+    head_radius : within which nothing of the part rises above that face.
 
     Raises
     ------
@@ -161,6 +167,8 @@ class TopClamp:
     tip_radius: float | None = field(default=None, converter=optional(real))
     inside: float | None = field(default=None, converter=optional(real))
     reach: Rings | None = field(default=None, converter=rings)
+    tip_margin: float | None = field(default=None, converter=optional(real))
+    head_radius: float | None = field(default=None, converter=optional(real))
 
     def __attrs_post_init__(self) -> None:
         refuse_wrong(self)

@@ -169,7 +169,7 @@ def move_to(fixture: Fixture, toolkit: Toolkit, name: str) -> Hole:
         if not -back <= steps <= (inf if ahead is None else ahead):
             least = lowest[number] - back
             most = None if ahead is None else lowest[number] + ahead
-            named = [column_letters, lambda row: str(row + 1)][number]
+            named = row_name if number else column_letters
             may = named(least)
             if most is None:
                 may += " or farther"
@@ -184,6 +184,11 @@ def move_to(fixture: Fixture, toolkit: Toolkit, name: str) -> Hole:
                 f"the set-up cannot stand at {name.strip()[:40]}: hole {peg.hole} is blocked; {REMEDY}."
             )
     return move
+
+
+def row_name(row: int) -> str:
+    """The name of a row of holes, which are counted from 1."""
+    return str(row + 1)
 
 
 def moved_on(fixture: Fixture, toolkit: Toolkit, move: Hole) -> Fixture:

@@ -40,7 +40,7 @@ from workhold.errors import InputError
 from workhold.fixels.carrier import Heights
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Segment
-from workhold.model.solid import SolidOutline
+from workhold.model.solid import NO_LEVELS, SolidOutline
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -119,14 +119,7 @@ def with_own_outlines(
         if role in entries:
             bands, faces = entries[role]["bands"], entries[role].get("solid_faces") or ()
             runs = entries[role].get("runs") or ()
-            changed = {
-                "bands": bands,
-                "runs": runs,
-                "faces": faces,
-                "bottom": None,
-                "top": None,
-                "top_heights": (),
-            }
+            changed = {"bands": bands, "runs": runs, "faces": faces, **NO_LEVELS}
             solid = evolve(workpiece.solid, low=low, peg_height=high, **changed)
             outline = workpiece.from_loops(own_name((low, high)), entries[role]["loops"], solid=solid)
             own.append((role, outline))

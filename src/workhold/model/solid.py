@@ -15,6 +15,8 @@ from workhold.limits import real
 
 __all__ = [
     "AXES",
+    "BESIDE_TOP",
+    "NO_LEVELS",
     "STANDING",
     "Band",
     "FileSolid",
@@ -29,6 +31,10 @@ __all__ = [
 AXES = ("x", "y", "z", "-x", "-y", "-z")
 # What says how a solid stands, as a file of a result has it.
 STANDING = ("axis", "height", "peg_height", "head_room", "least_band")
+# What says where a head or a tip on the upper faces is in the way or hangs, as a file has it.
+BESIDE_TOP = ("rising", "rising_heights", "hanging", "hanging_heights")
+# What carriers with outlines of their own say nothing of.
+NO_LEVELS: dict[str, Any] = {"bottom": None, "top": None, "top_heights": (), **dict.fromkeys(BESIDE_TOP, ())}
 Band = tuple[float, float]
 # Heights of the run that holds a segment's band, along the segment: shares of it, rising from 0 to 1, with
 # the lower and the upper end in mm there. Of every four, the last of which begins the next, each end is a
@@ -132,13 +138,16 @@ class SolidOutline:
         None where nothing may touch.
     faces : for every segment the numbers of these faces, as the file lists them; empty where a file does not
         say.
-    bottom, top : loops of the level faces on which the part lies, and of those with nothing above them. Outer
-        ones run counter-clockwise, openings clockwise. No loops are no such face; None where a file does not
-        say.
+    bottom, top : loops of the level faces on which the part lies, and of what of its upper ones has nothing
+        above it. Outer ones run counter-clockwise, openings clockwise. No loops are no such face; None where
+        a file does not say.
     top_heights : for every loop of ``top`` the height of its face in mm; none where a file does not say.
     low : from which pegs reach, in mm; 0 is from below.
     runs : for every segment the run of heights that holds its band, along it; empty where that is the band
         all along. None stand where every run is the band.
+    rising, rising_heights : loops around what rises above heights of ``top``, and for each the height.
+    hanging, hanging_heights : loops of what hangs of ``top``: under it the material does not reach down to
+        where the part lies; and for each the height of its face.
 
     Raises
     ------
@@ -158,6 +167,10 @@ class SolidOutline:
     top_heights: tuple[float, ...] = field(default=(), converter=reals_of)
     low: float = field(default=0.0, converter=real)
     runs: tuple[RunRows, ...] = field(default=(), converter=runs_of)
+    rising: Loops = field(default=(), converter=loops_of)
+    rising_heights: tuple[float, ...] = field(default=(), converter=reals_of)
+    hanging: Loops = field(default=(), converter=loops_of)
+    hanging_heights: tuple[float, ...] = field(default=(), converter=reals_of)
 
     def __attrs_post_init__(self) -> None:
         if self.axis not in AXES:
@@ -170,11 +183,17 @@ class SolidOutline:
         ):
             if not (isfinite(value) and value > least):
                 raise InputError(f"the {name} {value:g} is not a length: give one in mm.")
-        if len(self.top_heights) not in (0, len(self.top or ())):
-            raise InputError(
-                f"there are {len(self.top or ())} loops of upper faces and {len(self.top_heights)} heights: "
-                "give one for each."
-            )
+        of_loops = (
+            self.top_heights or (0.0,) * len(self.top or ()),
+            self.rising_heights,
+            self.hanging_heights,
+        )
+        for loops, heights in zip((self.top or (), self.rising, self.hanging), of_loops, strict=True):
+            if len(heights) != len(loops):
+                raise InputError(
+                    f"there are {len(loops)} loops of upper faces and {len(heights)} heights: give one for "
+                    "each."
+                )
         for band in self.bands:
             if band is not None and not (isfinite(band[0]) and 0.0 <= band[0] <= band[1] < 1e9):
                 raise InputError(f"the band {band[0]:g} to {band[1]:g} mm is none: give its lower end first.")
@@ -196,6 +215,10 @@ class SolidOutline:
             top=workpiece.get("top"),
             top_heights=workpiece.get("top_heights") or (),
             runs=workpiece.get("runs") or (),
+            rising=workpiece.get("rising") or (),
+            rising_heights=workpiece.get("rising_heights") or (),
+            hanging=workpiece.get("hanging") or (),
+            hanging_heights=workpiece.get("hanging_heights") or (),
         )
 
     @property
@@ -205,7 +228,7 @@ class SolidOutline:
 
     @property
     def has_no_top(self) -> bool:
-        """Whether its level faces are known, and none of them has nothing of the part above it."""
+        """Whether its level faces are known, and nothing of them is open to above."""
         return self.top is not None and not self.top
 
     def for_segments(self, count: int) -> SolidOutline:

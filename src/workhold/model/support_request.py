@@ -36,16 +36,33 @@ from workhold.model.requirements import (
     direction_range,
     point_pairs,
 )
-from workhold.model.solid import SolidOutline, reals_of
+from workhold.model.solid import BESIDE_TOP, SolidOutline, reals_of
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["PAD_RADIUS", "TIP_RADIUS", "Loops", "SpatialLoad", "SupportRequest", "loops_of"]
+__all__ = [
+    "PAD_RADIUS",
+    "TIP_RADIUS",
+    "Loops",
+    "SpatialLoad",
+    "SupportRequest",
+    "loops_of",
+    "pressed_by",
+    "usual_head",
+]
 
 # In mm, where nobody says; a pad that the holes leave less room for than the last is none.
 PAD_RADIUS, TIP_RADIUS, LEAST_PAD_RADIUS = 4.0, 5.0, 1.0
 
+# The head over a tip, in radii of it.
+HEAD = 1.5
+
 Loops = tuple[NDArray[np.float64], ...]
 Span = tuple[float, float]
+
+
+def usual_head(tip_radius: float) -> float:
+    """How far in mm the head of a clamp reaches around its tip, where nobody says."""
+    return HEAD * tip_radius
 
 
 def pair_of(values: Any) -> Span:
@@ -181,6 +198,11 @@ class SupportRequest:
         given.
     reach : rings in which the clamp can stand, None for anywhere.
     point : where the clamp stands; None where it is free.
+    tip_margin : smallest distance from the tip to the border of the face on which it stands.
+    head_radius : within which what rises above that face is not; one and a half times the tip's radius if not
+        given.
+    rising, rising_heights : loops around what rises above heights of ``top``, and for each the height.
+    hanging, hanging_heights : loops of what of ``top`` has air below it, and for each the height of its face.
 
     Raises
     ------
@@ -209,6 +231,14 @@ class SupportRequest:
     )
     point: Span | None = field(default=None, converter=optional(pair_of))
     top_heights: tuple[float, ...] | None = field(default=None, converter=optional(reals_of))
+    tip_margin: float = field(default=0.0, converter=real)
+    head_radius: float = field(
+        default=Factory(lambda self: usual_head(self.tip_radius), takes_self=True), converter=real
+    )
+    rising: Loops = field(default=(), converter=loops_of, eq=False)
+    rising_heights: tuple[float, ...] = field(default=(), converter=reals_of)
+    hanging: Loops = field(default=(), converter=loops_of, eq=False)
+    hanging_heights: tuple[float, ...] = field(default=(), converter=reals_of)
 
     def __attrs_post_init__(self) -> None:
         for name, value in (
@@ -219,7 +249,12 @@ class SupportRequest:
             if not (isfinite(value) and value > 0):
                 raise InputError(f"{name} {value:g} cannot be used: give a length above 0.")
             refuse_long(name, value)
-        for name, value in (("pad radius", self.pad_radius), ("pad margin", self.pad_margin)):
+        for name, value in (
+            ("pad radius", self.pad_radius),
+            ("pad margin", self.pad_margin),
+            ("tip margin", self.tip_margin),
+            ("head radius", self.head_radius),
+        ):
             if not (isfinite(value) and value >= 0):
                 raise InputError(f"{name} {value:g} cannot be used: give 0 or more.")
             refuse_long(name, value)
@@ -230,11 +265,16 @@ class SupportRequest:
                     "give "
                     "a band between 0 and the thickness, the smaller height first."
                 )
-        if self.top_heights is not None and len(self.top_heights) != len(self.top or ()):
-            raise InputError(
-                f"there are {len(self.top or ())} loops of upper faces and {len(self.top_heights)} heights: "
-                "give one for each."
-            )
+        for loops, heights in (
+            (self.top or (), self.top_heights),
+            (self.rising, self.rising_heights),
+            (self.hanging, self.hanging_heights),
+        ):
+            if heights is not None and len(heights) != len(loops):
+                raise InputError(
+                    f"there are {len(loops)} loops of upper faces and {len(heights)} heights: give one for "
+                    "each."
+                )
         if self.point is not None and not all(map(isfinite, self.point)):
             raise InputError("the clamp's point is not a place: give finite coordinates in mm.")
 
@@ -289,6 +329,9 @@ class SupportRequest:
             pad_margin=0.0 if pads.pad_margin is None else pads.pad_margin,
             inside=tip_radius if clamp.inside is None else clamp.inside,
             reach=clamp.reach,
+            tip_margin=0.0 if clamp.tip_margin is None else clamp.tip_margin,
+            head_radius=usual_head(tip_radius) if clamp.head_radius is None else clamp.head_radius,
+            **({} if solid is None else {name: getattr(solid, name) for name in BESIDE_TOP}),
         )
 
     def clamped_height(self, point: tuple[float, float]) -> float:

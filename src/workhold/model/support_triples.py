@@ -42,6 +42,8 @@ class ClampFigures:
     arm : distance in mm from the nearest side: tipping moment resisted per N.
     share : the smallest share of the clamp force that a support takes.
     lift : clamp force that each N of jaw force asks for when nothing else acts.
+    hangs : whether the material under the point does not reach down to where the part lies, as of a web under
+        a lip.
     """
 
     at: Point
@@ -50,6 +52,7 @@ class ClampFigures:
     arm: float
     share: float
     lift: float
+    hangs: bool = False
 
 
 @frozen

@@ -114,7 +114,8 @@ def wall_ends(workpiece: Workpiece, toolkit: Toolkit, theta: Array, position: Ar
     ----------
     theta, position : (N,) in radians and (N, 2) in mm, of the poses.
     """
-    flush, reach = workpiece.flush, toolkit.reaching and toolkit.reaching.reach
+    flush, jaw = workpiece.flush, toolkit.reaching
+    reach = None if jaw is None else jaw.reach
     edge, x = flush.number(theta), flush.x(theta, position)
     named = [faces for pair in flush.touching for faces in pair]
     which = 2 * edge[:, None] + np.arange(2)
@@ -122,7 +123,7 @@ def wall_ends(workpiece: Workpiece, toolkit: Toolkit, theta: Array, position: Ar
         return WallEnds(x, flush.length[edge], tuple(named), which)
     length = flush.length[edge].copy()
     numbers = [face.number for face in workpiece.outline_of(WALL)[0].faces]
-    first = workpiece.outline_of(WALL)[1]
+    first: int = workpiece.outline_of(WALL)[1]
     for number in np.unique(edge).tolist():
         rows = np.flatnonzero(edge == number)
         touches, start = touches_of(workpiece, number), x[rows, 0].copy()

@@ -19,7 +19,8 @@ from workhold.model.fixture import Fixture
 from workhold.model.query import Query
 from workhold.model.requirements import Load
 from workhold.model.result import Result
-from workhold.model.support_request import SpatialLoad, SupportRequest
+from workhold.model.solid import BESIDE_TOP
+from workhold.model.support_request import SpatialLoad, SupportRequest, usual_head
 from workhold.model.support_triples import Supports
 from workhold.supports.listing import supports_of, supports_one_by_one
 
@@ -37,7 +38,7 @@ USUAL = ("thickness", "pad_radius", "tip_radius")
 # What else may be asked, by its name.
 FURTHER = tuple(one.name for one in fields(SupportRequest) if one.name not in USUAL)
 # Who asks for one of these is given no other sizes.
-SIZES = {"pad_radius", "tip_radius", "pad_margin", "inside"}
+SIZES = {"pad_radius", "tip_radius", "pad_margin", "inside", "tip_margin", "head_radius"}
 # Radii of pads and of the tip that goes with them, in mm, where the usual ones find no place.
 SMALLER = ((3.0, 4.0), (2.0, 3.0))
 
@@ -62,7 +63,8 @@ def asked_request(query: Query, thickness: float | None, asked: Mapping[str, Any
     usual = SupportRequest.of(query.workpiece, thickness, toolkit=query.toolkit, **sizes)
     further = {name: value for name, value in asked.items() if name in FURTHER}
     if "top" in further:
-        further.setdefault("top_heights", None)
+        # Of another face nobody says how high it is, nor what is beside or under it.
+        further = {"top_heights": None, **dict.fromkeys(BESIDE_TOP, ()), **further}
     return evolve(usual, **further)
 
 
@@ -92,6 +94,7 @@ def requests_by_size(
             pad_radius=min(pad, usual.pad_radius) if pads.pad_radius is None else usual.pad_radius,
             tip_radius=tip,
             inside=tip if clamp.inside is None else clamp.inside,
+            head_radius=usual_head(tip) if clamp.head_radius is None else clamp.head_radius,
         )
         if (smaller.pad_radius, smaller.tip_radius) != (last.pad_radius, last.tip_radius):
             yield smaller

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from workhold.conventions import FIGURE_DECIMALS, GAP_SLACK
 from workhold.errors import InputError
-from workhold.supports.clamp_point import ClampPlaces
+from workhold.supports.clamp_point import RankedPlaces
 from workhold.supports.forces import Corners, Sides, Triangles
 from workhold.supports.holes import CarrierRoom
 
@@ -88,26 +88,34 @@ class BoundFigures:
 
     Parameters
     ----------
+    falls : 1.0 for those from which the part falls over before it is clamped.
     late : 1.0 for those over which the clamp may not stand at the point asked for.
+    hang : class of the clamp's place, see :class:`RankedPlaces`.
     need, force : clamp force needed, and the largest force on a support.
     arm, standing : tipping arm, and how far the centre of area is inside.
     """
 
+    falls: Array
     late: Array
+    hang: Array
     need: Array
     force: Array
     arm: Array
     standing: Array
 
+    @property
+    def classes(self) -> tuple[Array, Array, Array]:
+        """What decides before all figures, first to last."""
+        return self.falls, self.late, self.hang
+
     def take(self, rows: NDArray[np.intp] | Flags) -> BoundFigures:
         """Some of the triples."""
-        return BoundFigures(
-            *(one[rows] for one in (self.late, self.need, self.force, self.arm, self.standing))
-        )
+        every = (*self.classes, self.need, self.force, self.arm, self.standing)
+        return BoundFigures(*(one[rows] for one in every))
 
     def sorted_rows(self) -> NDArray[np.intp]:
         """The rows (N,) from the best figures to the worst, but for how they are rounded."""
-        return np.lexsort((-self.arm, self.force, self.need, self.late))
+        return np.lexsort((-self.arm, self.force, self.need, self.hang, self.late, self.falls))
 
 
 @define(eq=False)
@@ -163,15 +171,18 @@ class TripleChoice:
 
     sides: Sides
     room: CarrierRoom
-    places: ClampPlaces
+    places: RankedPlaces
     inside: float
     center: Array
     point: Array | None
     point_allowed: bool = field(init=False)
+    point_class: float = field(init=False)
 
     def __attrs_post_init__(self) -> None:
         allowed = self.point is not None and bool(self.places.allows(self.point[None])[0])
         object.__setattr__(self, "point_allowed", allowed)
+        of_point = 0.0 if self.point is None else float(self.places.class_of(self.point[None])[0])
+        object.__setattr__(self, "point_class", of_point)
 
     def chosen(
         self,
@@ -194,7 +205,7 @@ class TripleChoice:
         """
         kept = Kept(best)
         stopped = False
-        for fraction, triples in self.blocks():
+        for fraction, triples in () if self.places.is_empty else self.blocks():
             if cancel is not None and cancel.is_set():
                 stopped = True
                 break
@@ -245,13 +256,8 @@ class TripleChoice:
     def bounds(self, corners: Corners) -> BoundFigures:
         """What the figures of triples cannot be better than; where the point is given, what they are."""
         count = len(corners.numbers)
-        late, need, force = np.zeros(count), np.zeros(count), np.zeros(count)
-        arm = self.sides.incircle(corners)
-        if self.sides.loads:
-            # It decides last, and is not worth its time.
-            standing = np.full(count, np.inf)
-        else:
-            standing = self.sides.distances(corners, self.center).min(axis=1)
+        late, hang, need, force = (np.zeros(count) for _ in range(4))
+        arm, standing = self.sides.incircle(corners), self.standing(corners)
         given = self.given_at(corners)
         if self.point is not None:
             late = (~given).astype(np.float64)
@@ -262,7 +268,13 @@ class TripleChoice:
         if given.any():
             own = corners.take(given)
             need[given], force[given], arm[given] = self.figures_at(own, self.given_points(own))
-        return BoundFigures(late, need, force, arm, standing)
+            hang[given] = self.point_class
+        return BoundFigures(falls_over(standing), late, hang, need, force, arm, standing)
+
+    def standing(self, corners: Corners) -> Array:
+        """How far (N,) in mm the centre of area is inside the triangles, as far as it counts."""
+        inside = self.sides.distances(corners, self.center).min(axis=1)
+        return np.asarray(np.round(inside, FIGURE_DECIMALS))
 
     def given_at(self, corners: Corners) -> Flags:
         """Over which triples (N,) the clamp may stand at the point asked for; none where none was."""
@@ -288,43 +300,53 @@ class TripleChoice:
 
     def entering(self, bounds: BoundFigures, last: Key) -> Flags:
         """Which triples (N,) may come before one of a key, by bounds of their figures."""
-        keys: list[tuple[Array, float, float]] = [(bounds.late, last[0], last[0])]
+        count = len(bounds.classes)
+        keys: list[tuple[Array, float, float]] = [
+            (value, one, one) for value, one in zip(bounds.classes, last[:count], strict=True)
+        ]
+        figures = last[count:]
         if self.sides.loads:
             # Forces of loads, then minus the arm and minus the standing.
             keys += [
                 (value, *digits_of(one))
-                for value, one in zip((bounds.need, bounds.force), last[1:3], strict=True)
+                for value, one in zip((bounds.need, bounds.force), figures[:2], strict=True)
             ]
             keys += [
                 (-value, one, one)
-                for value, one in zip((bounds.arm, bounds.standing), last[3:5], strict=True)
+                for value, one in zip((bounds.arm, bounds.standing), figures[2:], strict=True)
             ]
         else:
-            low, high = digits_of(-last[1])
-            keys += [(-bounds.arm, -high, -low), (-bounds.standing, last[2], last[2])]
-        open_, out = np.ones(len(bounds.late), np.bool_), np.zeros(len(bounds.late), np.bool_)
+            low, high = digits_of(-figures[0])
+            keys += [(-bounds.arm, -high, -low), (-bounds.standing, figures[1], figures[1])]
+        open_, out = np.ones(len(bounds.need), np.bool_), np.zeros(len(bounds.need), np.bool_)
         for value, low, high in keys:
             slack = ROUNDING * (1.0 + abs(high))
             out |= open_ & (value < low - slack)
             open_ &= (value >= low - slack) & (value <= high + slack)
         return out | open_
 
-    def arms(self, corners: Corners) -> tuple[Array, Array]:
-        """The best points (N, 2) for the tipping arm, and the arms; 0 where the clamp may stand nowhere."""
-        some = self.triangles(corners)
-        points, value = self.places.best(some, some.steepness, self.inside)
-        return points, 1.0 / value
+    def arms(self, corners: Corners) -> tuple[Array, Array, Array]:
+        """The best points (N, 2) for the tipping arm, the arms, and the classes of the points.
 
-    def least_forces(self, corners: Corners) -> tuple[Array, Array]:
-        """The points (N, 2) of the least clamp force, NaN where none is needed, and that force."""
+        An arm is 0 where the clamp may stand nowhere.
+        """
+        some = self.triangles(corners)
+        points, value, classes = self.places.best(some, some.steepness, self.inside)
+        return points, 1.0 / value, classes
+
+    def least_forces(self, corners: Corners) -> tuple[Array, Array, Array]:
+        """The points (N, 2) of the least clamp force, that force, and the classes of the points.
+
+        Points are NaN where none is needed, and the class is the first.
+        """
         reach = self.sides.reach(corners) if self.sides.loads else np.zeros(corners.heights.shape)
-        points, need = np.full((len(reach), 2), np.nan), np.zeros(len(reach))
+        points, need, classes = np.full((len(reach), 2), np.nan), np.zeros(len(reach)), np.zeros(len(reach))
         some: Flags = np.asarray((reach > 0.0).any(axis=1))
         if some.any():
-            points[some], need[some] = self.places.best(
+            points[some], need[some], classes[some] = self.places.best(
                 self.triangles(corners.take(some)), reach[some], self.inside
             )
-        return points, need
+        return points, need, classes
 
     def triangles(self, corners: Corners) -> Triangles:
         """The triangles of triples."""
@@ -337,12 +359,13 @@ class TripleChoice:
         out: list[Ranked] = []
         if given.any():
             own = corners.take(given)
-            out += self.keyed(own, 0.0, *self.figures_at(own, self.given_points(own)))
+            of_point = np.full(len(own.heights), self.point_class)
+            out += self.keyed(own, 0.0, of_point, *self.figures_at(own, self.given_points(own)))
         own = corners.take(~given)
         late = 0.0 if self.point is None else 1.0
-        points, need = self.least_forces(own)
+        points, need, hang = self.least_forces(own)
         usable: Flags = np.isfinite(need)
-        own, points, need = own.take(usable), points[usable], need[usable]
+        own, points, need, hang = own.take(usable), points[usable], need[usable], hang[usable]
         # No clamp is needed anywhere: the arm alone says where it stands.
         free = np.isnan(points[:, 0])
         force = np.zeros(len(need))
@@ -353,24 +376,35 @@ class TripleChoice:
         if last is not None:
             some = self.bounds(own)
             lates = np.full(len(need), late)
-            better = self.entering(BoundFigures(lates, need, force, some.arm, some.standing), last)
+            figures = BoundFigures(some.falls, lates, hang, need, force, some.arm, some.standing)
+            better = self.entering(figures, last)
             own, need, force = own.take(better), need[better], force[better]
-        _, arm = self.arms(own)
+        _, arm, hang = self.arms(own)
         usable = arm > 0.0
-        return out + self.keyed(own.take(usable), late, need[usable], force[usable], arm[usable])
+        return out + self.keyed(
+            own.take(usable), late, hang[usable], need[usable], force[usable], arm[usable]
+        )
 
-    def keyed(self, corners: Corners, late: float, need: Array, force: Array, arm: Array) -> list[Ranked]:
+    def keyed(
+        self, corners: Corners, late: float, hang: Array, need: Array, force: Array, arm: Array
+    ) -> list[Ranked]:
         """Triples with the keys that they are ranked by."""
-        standing = self.sides.distances(corners, self.center).min(axis=1)
+        standing = self.standing(corners)
+        falls = falls_over(standing)
         out: list[Ranked] = []
         for k, row in enumerate(corners.numbers.tolist()):
-            stands = -round(float(standing[k]), FIGURE_DECIMALS)
+            classes, stands = (float(falls[k]), late, float(hang[k])), -float(standing[k])
             if self.sides.loads:
                 figures = (coarse(need[k]), coarse(force[k]), -round(float(arm[k]), FIGURE_DECIMALS))
-                out.append(((late, *figures, stands), tuple(row)))
+                out.append(((*classes, *figures, stands), tuple(row)))
             else:
-                out.append(((late, -coarse(arm[k]), stands), tuple(row)))
+                out.append(((*classes, -coarse(arm[k]), stands), tuple(row)))
         return out
+
+
+def falls_over(standing: Array) -> Array:
+    """1.0 for triples (N,) from which the part falls over before it is clamped, 0.0 for others."""
+    return np.asarray(standing < 0.0, np.float64)
 
 
 def row_sum(values: Array) -> Array:

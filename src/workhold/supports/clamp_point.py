@@ -16,10 +16,11 @@ from attrs import define, field
 from numpy.typing import NDArray
 
 from workhold.conventions import GAP_SLACK
-from workhold.supports.faces import TouchableFace
+from workhold.supports.beside_faces import LevelRegions
+from workhold.supports.faces import Curve, TouchableFace, offset_curves
 from workhold.supports.forces import Triangles
 
-__all__ = ["ClampPlaces"]
+__all__ = ["ClampPlaces", "RankedPlaces"]
 
 Array = NDArray[np.float64]
 # How many of the best candidates are held against the face at a time.
@@ -37,42 +38,82 @@ class ClampPlaces:
     face : the top less its zones.
     tip_radius : in mm.
     rings : (R, 4) centres, least and greatest distances of the reach in the part's coordinates, or None.
+    tip_margin : least distance in mm of the tip from the border of its face.
+    kept_off : regions by the heights of the faces, each with the distance in mm that the tip's middle keeps.
     """
 
     face: TouchableFace
     tip_radius: float
     rings: Array | None
+    tip_margin: float = 0.0
+    kept_off: tuple[tuple[LevelRegions, float], ...] = ()
     lines: Array = field(init=False)
     circles: Array = field(init=False)
     corners: Array = field(init=False)
 
     def __attrs_post_init__(self) -> None:
-        lines, circles = self.face.offset_curves(self.tip_radius)
-        if self.rings is not None:
-            both = [np.column_stack([self.rings[:, :2], self.rings[:, k]]) for k in (2, 3)]
-            circles = np.concatenate([circles, *both])
-        object.__setattr__(self, "lines", np.unique(lines, axis=0))
-        object.__setattr__(self, "circles", np.unique(circles, axis=0))
-        object.__setattr__(self, "corners", self.border_corners())
+        levels = dict.fromkeys(self.face.levels) or [None]
+        for name, parts in zip(
+            ("lines", "circles", "corners"), zip(*map(self.curves_on, levels), strict=True), strict=True
+        ):
+            object.__setattr__(self, name, np.unique(np.concatenate(parts), axis=0))
+
+    def curves_on(self, level: float | None) -> tuple[Array, Array, Array]:
+        """Lines and circles that border the places on faces of one height, and where they cross (K, 2)."""
+        lines: list[Curve] = []
+        circles: list[Curve] = []
+        for number, loop in enumerate(self.face.borders.loops):
+            face = self.face.face_of(number)
+            if face is None or self.face.levels[face] == level:
+                radius = self.tip_radius + (0.0 if face is None else self.tip_margin)
+                straight, bent = offset_curves(loop, radius, self.face.is_on_left(number))
+                lines, circles = lines + straight, circles + bent
+        for regions, away in self.kept_off:
+            for straight, bent in regions.offset_curves(level, away):
+                lines, circles = lines + straight, circles + bent
+        for x, y, low, high in () if self.rings is None else self.rings.tolist():
+            circles += [(x, y, low), (x, y, high)]
+        own = [np.unique(np.array(one).reshape(-1, 3), axis=0) for one in (lines, circles)]
+        return own[0], own[1], self.border_corners(own[0], own[1])
 
     def room(self, points: Array) -> Array:
         """The slack (N,) in mm by which a tip at points (N, 2) keeps the rules of the top."""
-        room = self.face.room(points) - self.tip_radius
+        on, off = self.face.rooms(points)
+        on = on - self.tip_radius - self.tip_margin
+        for regions, away in self.kept_off:
+            for level in dict.fromkeys(self.face.levels):
+                own = np.array([one == level for one in self.face.levels])
+                on[:, own] = np.minimum(on[:, own], (regions.apart(level, points) - away)[:, None])
+        room = np.minimum(on.max(axis=1, initial=-np.inf), off - self.tip_radius)
         if self.rings is not None:
             apart = np.hypot(*np.moveaxis(points[:, None] - self.rings[None, :, :2], -1, 0))
             ring = np.minimum(apart - self.rings[:, 2], self.rings[:, 3] - apart).max(axis=1, initial=-np.inf)
             room = np.minimum(room, ring)
-        return room
+        return np.asarray(room)
 
     def allows(self, points: Array) -> NDArray[np.bool_]:
         """Whether a tip may stand at points (N, 2)."""
         return np.asarray(self.room(points) >= -GAP_SLACK)
 
-    def border_corners(self) -> Array:
-        """Points (K, 2) where two curves of the border cross and the tip may stand."""
-        points = [line_points(self.lines[None], self.lines, self.circles).reshape(-1, 2)]
-        first, second = np.triu_indices(len(self.circles), 1)
-        points.append(circle_points(self.circles[first], self.circles[second]))
+    @property
+    def is_empty(self) -> bool:
+        """Whether the tip may stand nowhere."""
+        if not self.face.faces:
+            return True
+        low, high = self.face.box
+        # Two triangles that hold all of the box, from whose sides any of its points is far.
+        wide = float((high - low).max()) + 10.0
+        corners = np.array(
+            [low - wide, (high[0] + wide, low[1] - wide), high + wide, (low[0] - wide, high[1] + wide)]
+        )
+        halves = Triangles.of(np.array([corners[[0, 1, 2]], corners[[0, 2, 3]]]))
+        return not np.isfinite(self.best(halves, halves.steepness, 0.0)[1]).any()
+
+    def border_corners(self, lines: Array, circles: Array) -> Array:
+        """Points (K, 2) where two curves of a border cross and the tip may stand."""
+        points = [line_points(lines[None], lines, circles).reshape(-1, 2)]
+        first, second = np.triu_indices(len(circles), 1)
+        points.append(circle_points(circles[first], circles[second]))
         every = np.concatenate(points)
         every = every[np.isfinite(every).all(axis=1)]
         every = every[self.allows(every)] if len(every) else every
@@ -151,6 +192,57 @@ class ClampPlaces:
         for sign in (1.0, -1.0):
             out.append((centers + sign * radii * normals[:, :, None]).reshape(count, -1, 2))
         return np.concatenate(out, axis=1)
+
+
+@define(frozen=True, eq=False)
+class RankedPlaces:
+    """Places of the clamp in classes, the best first: over material that reaches down before such as hang.
+
+    Parameters
+    ----------
+    classes : places of each class, which hold those of the classes before.
+    """
+
+    classes: tuple[ClampPlaces, ...]
+
+    def allows(self, points: Array) -> NDArray[np.bool_]:
+        """Whether a tip may stand at points (N, 2)."""
+        return self.classes[-1].allows(points)
+
+    def class_of(self, points: Array) -> Array:
+        """Of which class places (N, 2) are, from 0."""
+        found = np.full(len(points), float(len(self.classes) - 1))
+        for number in reversed(range(len(self.classes) - 1)):
+            found[self.classes[number].allows(points)] = number
+        return found
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether the tip may stand nowhere."""
+        return self.classes[-1].is_empty
+
+    def hangs(self, points: Array) -> NDArray[np.bool_]:
+        """Whether the material under places (N, 2) does not reach down to where the part lies."""
+        last = len(self.classes) - 1
+        return np.asarray((self.class_of(points) == last) & (last > 0))
+
+    def best(self, triangles: Triangles, reach: Array, inside: float) -> tuple[Array, Array, Array]:
+        """The best points (N, 2) of the first class that has one, the values there, and the classes.
+
+        Parameters
+        ----------
+        reach, inside : as of :meth:`ClampPlaces.best`.
+        """
+        count = len(reach)
+        points, values = np.full((count, 2), np.nan), np.full(count, np.inf)
+        classes, open_ = np.zeros(count), np.arange(count)
+        for number, places in enumerate(self.classes):
+            classes[open_] = number
+            points[open_], values[open_] = places.best(triangles.take(open_), reach[open_], inside)
+            open_ = open_[~np.isfinite(values[open_])]
+            if not len(open_):
+                break
+        return points, values, classes
 
 
 def normalised(slope: Array, distance: Array) -> Array:

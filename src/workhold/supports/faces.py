@@ -16,10 +16,11 @@ from numpy.typing import NDArray
 from workhold.geometry.loop import loop_segments, signed_area
 from workhold.geometry.segment import Arc, Segment
 
-__all__ = ["FaceBorders", "TouchableFace", "area_center"]
+__all__ = ["FaceBorders", "TouchableFace", "area_center", "offset_curves"]
 
 Array = NDArray[np.float64]
 Loop = Sequence[Segment]
+Curve = tuple[float, float, float]
 # In mm: less than what decides, and more than rounding.
 HAIR = 1.3e-10
 # How far beside a loop a point is asked for that says what the loop borders, in mm.
@@ -146,32 +147,53 @@ class TouchableFace:
     borders : of each face its own before those of its openings, then those of the zones.
     faces : number of the border that each face begins with.
     zones : how many of the borders are those of zones.
+    levels : height in mm of each face; None where nobody says.
     """
 
     borders: FaceBorders
     faces: tuple[int, ...]
     zones: int
+    levels: tuple[float | None, ...]
 
     @classmethod
-    def of(cls, loops: Sequence[Array], zones: Iterable[Array] = ()) -> TouchableFace:
+    def of(
+        cls, loops: Sequence[Array], zones: Iterable[Array] = (), heights: Sequence[float] | None = None
+    ) -> TouchableFace:
         """Faces from loops of (x, y, bulge) vertices, the outer one first, and zones as loops.
 
         Without loops there is no face, and no room anywhere.
+
+        Parameters
+        ----------
+        heights : of the face of each loop in mm; loops of several heights border several faces.
         """
         rows = [tuple(loop_segments(np.asarray(loop))) for loop in loops]
         kept_out = [tuple(loop_segments(np.asarray(zone))) for zone in zones]
-        faces = grouped(rows)
+        of_loops = [None] * len(rows) if heights is None else list(heights)
+        faces: list[list[int]] = []
+        for level in dict.fromkeys(of_loops):
+            own = [number for number, height in enumerate(of_loops) if height == level]
+            faces += [[own[k] for k in face] for face in grouped([rows[number] for number in own])]
         first = np.cumsum([0, *(len(face) for face in faces)])[:-1]
         ordered = (rows[number] for face in faces for number in face)
-        return cls(FaceBorders((*ordered, *kept_out)), tuple(first.tolist()), len(kept_out))
+        levels = tuple(of_loops[face[0]] for face in faces)
+        return cls(FaceBorders((*ordered, *kept_out)), tuple(first.tolist()), len(kept_out), levels)
 
-    def room(self, points: Array) -> Array:
-        """Radii (N,) of the largest discs about points (N, 2) that lie on a face, negative off all."""
+    def rooms(self, points: Array) -> tuple[Array, Array]:
+        """Radii of the largest discs about points (N, 2) on each face (N, F), and of those off all zones (N,).
+
+        They are negative off the face, and in a zone.
+        """
         signed = -self.borders.inside(points)
         signed[:, list(self.faces)] *= -1.0
         count = signed.shape[1] - self.zones
-        on: Array = np.minimum.reduceat(signed[:, :count], self.faces, axis=1).max(axis=1, initial=-np.inf)
-        return np.asarray(np.minimum(on, signed[:, count:].min(axis=1, initial=np.inf)))
+        on: Array = np.minimum.reduceat(signed[:, :count], self.faces, axis=1)
+        return on, np.asarray(signed[:, count:].min(axis=1, initial=np.inf))
+
+    def room(self, points: Array) -> Array:
+        """Radii (N,) of the largest discs about points (N, 2) that lie on a face, negative off all."""
+        on, off = self.rooms(points)
+        return np.asarray(np.minimum(on.max(axis=1, initial=-np.inf), off))
 
     @property
     def box(self) -> tuple[Array, Array]:
@@ -185,23 +207,38 @@ class TouchableFace:
         every = np.array(points)
         return every.min(axis=0), every.max(axis=0)
 
-    def offset_curves(self, radius: float) -> tuple[Array, Array]:
-        """Lines (L, 3), unit normal and distance, and circles (M, 3) on which a disc touches the border."""
-        lines, circles = [], []
-        for number, loop in enumerate(self.borders.loops):
-            left = (signed_area(loop) > 0) == (number in self.faces)
-            for one in loop:
-                circles.append((*one.start, radius))
-                if isinstance(one, Arc):
-                    grown = one.radius - radius if (one.sign > 0) == left else one.radius + radius
-                    if grown > 0:
-                        circles.append((*one.center, grown))
-                else:
-                    (ax, ay), (bx, by) = one.start, one.end
-                    length = np.hypot(bx - ax, by - ay)
-                    nx, ny = (ay - by) / length, (bx - ax) / length
-                    lines.append((nx, ny, nx * ax + ny * ay + (radius if left else -radius)))
-        return np.array(lines).reshape(-1, 3), np.array(circles).reshape(-1, 3)
+    def face_of(self, border: int) -> int | None:
+        """The number of the face that a border belongs to; None of a zone's."""
+        if border >= len(self.borders.loops) - self.zones:
+            return None
+        return int(np.searchsorted(self.faces, border, side="right")) - 1
+
+    def is_on_left(self, border: int) -> bool:
+        """Whether a disc that keeps to the faces and off the zones is on the left of a border."""
+        return (signed_area(self.borders.loops[border]) > 0) == (border in self.faces)
+
+
+def offset_curves(loop: Loop, radius: float, left: bool) -> tuple[list[Curve], list[Curve]]:
+    """Lines, unit normal and distance, and circles on which the middle of a disc is that touches a loop.
+
+    Parameters
+    ----------
+    left : whether the disc is on the left of the loop.
+    """
+    lines: list[Curve] = []
+    circles: list[Curve] = []
+    for one in loop:
+        circles.append((*one.start, radius))
+        if isinstance(one, Arc):
+            grown = one.radius - radius if (one.sign > 0) == left else one.radius + radius
+            if grown > 0:
+                circles.append((*one.center, grown))
+        else:
+            (ax, ay), (bx, by) = one.start, one.end
+            length = float(np.hypot(bx - ax, by - ay))
+            nx, ny = (ay - by) / length, (bx - ax) / length
+            lines.append((nx, ny, nx * ax + ny * ay + (radius if left else -radius)))
+    return lines, circles
 
 
 def area_center(loops: Sequence[Sequence[Segment]]) -> Array:

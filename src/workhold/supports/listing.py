@@ -20,8 +20,9 @@ from workhold.model.requirements import Load
 from workhold.model.support_request import Loops, SpatialLoad, SupportRequest
 from workhold.model.support_triples import ClampFigures, SupportPad, Supports, Triple
 from workhold.statics.contact_matrix import Touched
+from workhold.supports.beside_faces import LevelRegions
 from workhold.supports.choosing import TripleChoice
-from workhold.supports.clamp_point import ClampPlaces
+from workhold.supports.clamp_point import ClampPlaces, RankedPlaces
 from workhold.supports.faces import TouchableFace, area_center
 from workhold.supports.forces import Corners, PegForces, Sides, WeakJawError, lifted_by_jaws, needed_jaw_force
 from workhold.supports.holes import CarrierRoom, holes_under
@@ -30,6 +31,9 @@ from workhold.supports.program import acting_on, with_program
 __all__ = ["SupportSearch", "supports_one_by_one", "supports_of"]
 
 Array = NDArray[np.float64]
+Heights = Sequence[float] | None
+# How far in mm from the air beside it the middle of a tip is at least that counts as over material.
+OVER = 2e-6
 # More holes than these leave more triples than can be looked at.
 MOST_POSITIONS = 1200
 
@@ -52,7 +56,7 @@ class SupportSearch:
     bottom: TouchableFace = field(init=False)
     top: TouchableFace = field(init=False)
     center: Array = field(init=False)
-    free_places: ClampPlaces | None = field(init=False)
+    free_places: RankedPlaces | None = field(init=False)
 
     def __attrs_post_init__(self) -> None:
         workpiece, request = self.query.workpiece, self.request
@@ -61,26 +65,45 @@ class SupportSearch:
             if load.heights is not None and not 0 <= load.heights[0] <= load.heights[1] <= inf:
                 raise InputError("a load acts below the part: give its height above the supports, 0 or more.")
 
-        def face(loops: Loops | None, zones: Iterable[Array]) -> TouchableFace:
-            return TouchableFace.of(workpiece.loops if loops is None else loops, zones)
+        def face(loops: Loops | None, zones: Iterable[Array], heights: Heights = None) -> TouchableFace:
+            return TouchableFace.of(workpiece.loops if loops is None else loops, zones, heights)
 
+        top_zones = (zone.loop for zone in request.top_zones)
         for name, value in (
             ("touched", Touched.of(workpiece, self.query.toolkit)),
             ("bottom", face(request.bottom, (zone.loop for zone in request.bottom_zones))),
-            ("top", face(request.top, (zone.loop for zone in request.top_zones))),
+            ("top", face(request.top, top_zones, request.top_heights)),
             ("center", area_center(workpiece.loop_segments)),
         ):
             object.__setattr__(self, name, value)
-        free = None if request.reach is not None else ClampPlaces(self.top, request.tip_radius, None)
+        free = None if request.reach is not None else self.ranked_places(None)
         object.__setattr__(self, "free_places", free)
 
-    def places(self, fixture: Fixture) -> ClampPlaces:
+    def places(self, fixture: Fixture) -> RankedPlaces:
         """Where the tip may stand over a fixture."""
         if self.free_places is not None:
             return self.free_places
         rings = np.array(self.request.reach).reshape(-1, 4)
         x, y = fixture.pose.inverse.apply(rings[:, 0], rings[:, 1])
-        return ClampPlaces(self.top, self.request.tip_radius, np.column_stack([x, y, rings[:, 2:]]))
+        return self.ranked_places(np.column_stack([x, y, rings[:, 2:]]))
+
+    @property
+    def heads(self) -> tuple[tuple[LevelRegions, float], ...]:
+        """What rises above the faces, with the distance in mm that a head keeps its middle away from it."""
+        asked = self.request
+        return ((LevelRegions.of(asked.rising, asked.rising_heights), asked.head_radius),)
+
+    def ranked_places(self, rings: Array | None) -> RankedPlaces:
+        """Where the tip may stand: over material that reaches down, in part over such, and anywhere."""
+        asked, heads = self.request, self.heads
+        hanging = LevelRegions.of(asked.hanging, asked.hanging_heights)
+        kept_off = [(*heads, (hanging, away)) for away in (asked.tip_radius, OVER) if hanging.borders]
+        return RankedPlaces(
+            tuple(
+                ClampPlaces(self.top, asked.tip_radius, rings, asked.tip_margin, regions)
+                for regions in (*kept_off, heads)
+            )
+        )
 
     def supports(
         self,
@@ -136,8 +159,8 @@ def triples_of(choice: TripleChoice, corners: Corners) -> tuple[Triple, ...]:
     sides, room = choice.sides, choice.room
     if not len(corners.numbers):
         return ()
-    arm_at, arm = choice.arms(corners)
-    best_at, need = choice.least_forces(corners)
+    arm_at, arm, _ = choice.arms(corners)
+    best_at, need, _ = choice.least_forces(corners)
     free = np.isnan(best_at[:, 0])
     best_at[free] = arm_at[free]
     given = choice.given_at(corners)
@@ -176,6 +199,7 @@ def clamp_figures(choice: TripleChoice, corners: Corners, points: Array) -> list
     with np.errstate(divide="ignore", invalid="ignore"):
         lift = np.maximum((lifted / shares).max(axis=1), 0.0)
     loaded = bool(sides.loads)
+    hangs = choice.places.hangs(points)
     return [
         ClampFigures(
             at=(float(points[k, 0]), float(points[k, 1])),
@@ -184,6 +208,7 @@ def clamp_figures(choice: TripleChoice, corners: Corners, points: Array) -> list
             arm=float(arm[k]),
             share=float(shares[k].min()),
             lift=float(lift[k]),
+            hangs=bool(hangs[k]),
         )
         for k in range(len(need))
     ]

@@ -7,13 +7,15 @@ stand in it. The first that fails is said in one sentence, with what would help.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import combinations, islice
 from math import floor
 
 import numpy as np
 from attrs import evolve
 
+from workhold.errors import listed as listed_words
+from workhold.model.support_request import SupportRequest
 from workhold.model.support_triples import Supports, Triple
 from workhold.model.workpiece import Workpiece
 from workhold.supports.asking import SMALLER
@@ -21,7 +23,7 @@ from workhold.supports.holes import CarrierRoom, HolesUnderPart, holes_under
 from workhold.supports.listing import SupportSearch
 from workhold.units import Unit
 
-__all__ = ["flat_faces_notes", "listing_notes", "set_headings", "set_row", "why_no_set"]
+__all__ = ["flat_faces_notes", "listing_notes", "place_notes", "set_headings", "set_row", "why_no_set"]
 
 # Triples that are looked at; where there are more, one of these fits.
 MOST_LOOKED_AT = 200_000
@@ -42,10 +44,13 @@ def reason(found: Supports, unit: Unit) -> str:
         return f"the part lies on no level face under which a pad could stand{turned}."
     if request.top is not None and not request.top:
         return (
-            "there is no top clamp, as no level face of the part has nothing of it above; crowns, fillets and "
-            f"slopes are not taken for flat{turned}."
+            "there is no top clamp, as no level face of the part is open to above; crowns, fillets and slopes are "
+            f"not taken for flat{turned}."
         )
     bottom = SupportSearch(found.query, request, ()).bottom
+    plain = SupportSearch(found.query, evolve(request, top_zones=(), reach=None), ())
+    if plain.places(found.fixture).is_empty:
+        return no_place_for_a_tip(request, turned, unit)
     holes = holes_under(found.fixture, toolkit, bottom, request)
     if found.positions < 3:
         bare = evolve(request, pad_radius=0.0, pad_margin=0.0)
@@ -65,11 +70,26 @@ def reason(found: Supports, unit: Unit) -> str:
             f"and {unit.text(request.inside)} is asked for; a smaller tip would help, or less distance "
             "inside the triangle."
         )
-    beside = ", or other keep-outs on top or the clamp's reach" if request.top_zones or request.reach else ""
+    helps = [
+        "a smaller tip",
+        *(["a smaller head"] if request.rising else []),
+        "less distance inside the triangle",
+    ]
+    helps += ["other keep-outs on top or the clamp's reach"] if request.top_zones or request.reach else []
     return (
         f"inside every triangle of the {found.positions} holes that could hold a support, the tip of radius "
-        f"{unit.text(request.tip_radius)} finds no place on the upper face; a smaller tip would help, "
-        f"or less distance inside the triangle{beside}."
+        f"{unit.text(request.tip_radius)} finds no place on the upper face; {', or '.join(helps)} would help."
+    )
+
+
+def no_place_for_a_tip(request: SupportRequest, turned: str, unit: Unit) -> str:
+    """That the tip fits on none of the upper faces, and what would help."""
+    margin = f", {unit.text(request.tip_margin)} from its border" if request.tip_margin else ""
+    head = f" and a head of radius {unit.text(request.head_radius)} above it" if request.rising else ""
+    smaller = "a smaller tip or head" if head else "a smaller tip"
+    return (
+        "there is no top clamp, as no level face of the part that is open to above has room for a tip of radius "
+        f"{unit.text(request.tip_radius)}{margin}{head}; {smaller} would help{turned}."
     )
 
 
@@ -140,7 +160,35 @@ def listing_notes(
             "With these supports the jaws stand elsewhere in their holes, opened to "
             f"{', '.join(unit.text(one) for one in sorted(moved))}; columns are counted as for the fixture."
         )
+    notes += place_notes(dict(enumerate(listed, 1)))
     return notes + flat_faces_notes(found.query.workpiece, keep_off)
+
+
+def place_notes(listed: Mapping[int, Triple]) -> list[str]:
+    """Says from which sets the part falls before it is clamped, and over which the clamp presses over air.
+
+    Parameters
+    ----------
+    listed : the sets by the numbers that they have there.
+    """
+    falls = [number for number, one in listed.items() if one.standing < 0.0]
+    hangs = [number for number, one in listed.items() if one.clamp.hangs]
+    notes = []
+    if falls:
+        notes.append(
+            f"On {those(falls, listed)} the part does not stand by itself: hold it down until it is clamped."
+        )
+    if hangs:
+        notes.append(
+            f"Over {those(hangs, listed)} the clamp presses where the part has air below: put something under "
+            "it there, or it bends."
+        )
+    return notes
+
+
+def those(some: Sequence[int], every: Mapping[int, Triple]) -> str:
+    """Some of the sets of a list by their numbers, or all of them."""
+    return "each" if len(some) == len(every) else listed_words([str(number) for number in some])
 
 
 def flat_faces_notes(workpiece: Workpiece, keep_off: Sequence[str]) -> list[str]:
@@ -160,8 +208,8 @@ def flat_faces_notes(workpiece: Workpiece, keep_off: Sequence[str]) -> list[str]
         )
     if solid.has_no_top:
         notes.append(
-            "No level face of the part has nothing of it above, so no clamp can press on it from above: turn "
-            "another side up, or hold it down by other means."
+            "No level face of the part is open to above, so no clamp can press on it from above: turn another "
+            "side up, or hold it down by other means."
         )
     levels = (("bottom", solid.bottom, keep_off[0]), ("top", solid.top, keep_off[1]))
     lacking = [(name, off) for name, loops, off in levels if loops is None]

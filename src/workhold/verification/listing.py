@@ -34,6 +34,7 @@ from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.model.search_report import Proof
 from workhold.model.seating import Seating
+from workhold.model.solid import BESIDE_TOP
 from workhold.verification.reading import fixtures_of, with_working_forces
 from workhold.verification.rules.hardware import ToolkitRules
 
@@ -333,6 +334,7 @@ def keys_missing(head: Head) -> list[str]:
         "workpiece.bottom",
         "workpiece.top",
         "workpiece.top_heights",
+        *(f"workpiece.{key}" for key in BESIDE_TOP),
     } | ({"solid", "workpiece.bands"} if head.solid is None else set())
     if head.seating is None:
         spared |= {"seating", "opening", "foolproof"}

@@ -95,11 +95,31 @@ class SupportPlaces:
                 room = min(room, hypot(point[0] - place[0], point[1] - place[1]) - asked.pad_radius - body)
         return room
 
-    def tip_room(self, point: tuple[float, float]) -> float:
-        """The slack in mm by which the tip keeps the rules of the top."""
+    @cached_property
+    def top_levels(self) -> list[TopLevel]:
+        """The faces that the tip may press on, by their heights."""
         asked = self.request
         loops = self.query.workpiece.loops if asked.top is None else asked.top
-        room = room_on(loops, [zone.loop for zone in asked.top_zones], point) - asked.tip_radius
+        heights = (None,) * len(loops) if asked.top_heights is None else asked.top_heights
+        beside = [(asked.rising, asked.rising_heights), (asked.hanging, asked.hanging_heights)]
+        return [
+            TopLevel(
+                faces_by_size([borders_of(one) for one, z in zip(loops, heights, strict=True) if z == level]),
+                *([borders_of(one) for one, z in zip(*pair, strict=True) if z == level] for pair in beside),
+            )
+            for level in dict.fromkeys(heights)
+        ]
+
+    def tip_room(self, point: tuple[float, float]) -> float:
+        """The slack in mm by which the tip keeps the rules of the top."""
+        asked, room = self.request, -inf
+        for level in self.top_levels:
+            kept = gap_of(level.rising, point) - asked.head_radius
+            for face in level.faces:
+                on = min(side * reach(one, point) for one, side in face) - asked.tip_radius - asked.tip_margin
+                room = max(room, min(on, kept))
+        off = (reach(borders_of(zone.loop), point) for zone in asked.top_zones)
+        room = min(room, *(-one - asked.tip_radius for one in off), inf)
         if asked.reach is not None:
             x, y = self.fixture.pose.apply(*point)
             rings = [
@@ -107,6 +127,19 @@ class SupportPlaces:
             ]
             room = min(room, max(rings, default=-inf))
         return room
+
+    def hanging_at(self, point: tuple[float, float], slack: float = 0.0) -> int:
+        """How the tip stands: 0 with the part under all of it, 1 under its middle, 2 with air below.
+
+        Parameters
+        ----------
+        slack : in mm, by which the middle and the border of the tip may be over air and yet count as not.
+        """
+        for level in self.top_levels:
+            if any(all(side * reach(one, point) > -AGREEMENT for one, side in face) for face in level.faces):
+                gap = gap_of(level.hanging, point) + slack
+                return 2 if gap < 0.0 else 1 if gap < self.request.tip_radius else 0
+        return 0
 
     def travel(self, holes: Sequence[Hole]) -> tuple[bool, float | None]:
         """Whether pegs and supports fit their plates, and the opening of what moves."""
@@ -156,10 +189,36 @@ class SupportPlaces:
         return fits, opened
 
 
+@frozen(eq=False)
+class TopLevel:
+    """Upper faces of one height.
+
+    Parameters
+    ----------
+    faces : the loops of each, see :func:`faces_by_size`.
+    rising, hanging : loops around what rises above them, and around what of them has air below.
+    """
+
+    faces: list[list[tuple[Loop, int]]]
+    rising: list[Loop]
+    hanging: list[Loop]
+
+
+def borders_of(loop: Array) -> Loop:
+    """The segments of a loop of vertices."""
+    return tuple(loop_segments(np.asarray(loop)))
+
+
+def gap_of(loops: Sequence[Loop], point: tuple[float, float]) -> float:
+    """How far a point is from a region that loops have on their left, in mm; negative in it."""
+    near = min((distance_to_segment(point, one) for loop in loops for one in loop), default=inf)
+    return -near if sum(turns_about(loop, point) for loop in loops) > 0 else near
+
+
 def holes_near(rules: SupportPlaces) -> Iterator[Hole]:
     """All holes of the plates under the box of the face that supports may touch."""
     loops = rules.query.workpiece.loops if rules.request.bottom is None else rules.request.bottom
-    boxes = np.array([bounding_box(one) for loop in loops for one in loop_segments(np.asarray(loop))])
+    boxes = np.array([bounding_box(one) for loop in loops for one in borders_of(loop)])
     if not len(boxes):
         return
     (x0, y0), (x1, y1) = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
@@ -344,9 +403,9 @@ def turns_about(segments: Loop, point: tuple[float, float]) -> int:
 
 def room_on(loops: Sequence[Array], zones: Sequence[Array], point: tuple[float, float]) -> float:
     """How large a disc about a point lies on a face and over no zone, in mm; negative off it."""
-    faces = faces_by_size([tuple(loop_segments(np.asarray(loop))) for loop in loops])
+    faces = faces_by_size([borders_of(loop) for loop in loops])
     room = max((min(side * reach(one, point) for one, side in face) for face in faces), default=-inf)
-    off = (reach(tuple(loop_segments(np.asarray(zone))), point) for zone in zones)
+    off = (reach(borders_of(zone), point) for zone in zones)
     return min(room, *(-one for one in off), inf)
 
 

@@ -203,6 +203,9 @@ class SupportsJudge(SupportPlaces):
                 yield f"the {name} clamp point is missing"
                 continue
             shares, arm = self.shares(solved, at), inside_of(supports, *at)
+            hangs = [self.hanging_at((at[0], at[1]), slack) == 2 for slack in (-AGREEMENT, AGREEMENT)]
+            if figures.hangs not in hangs:
+                yield f"the {name} clamp point is{' not' if figures.hangs else ''} over air, and is written otherwise"
             if self.tip_room((at[0], at[1])) < -AGREEMENT or arm < self.request.inside - AGREEMENT:
                 yield f"the clamp may not stand at the {name} point"
                 continue
@@ -230,8 +233,27 @@ class SupportsJudge(SupportPlaces):
             yield f"the arm is not {part.arm:.9g}"
         yield from self.better_places(part, supports, solved, least)
 
+    def hanging_of(self, part: ReadTriple) -> int:
+        """How the tip stands at the places of a triple, see :meth:`hanging_at`; of two the worse."""
+        places = (part.best.at or part.arm_at, part.arm_at)
+        return max(self.hanging_at((x, y), AGREEMENT) for x, y in places)
+
+    def order_of(self, part: ReadTriple) -> tuple[int, int, int]:
+        """What a triple is in order by before its figures: whether the part falls over, and the clamp's place.
+
+        A place that is asked for comes before others, and one over the part before one over air.
+        """
+        falls = int(part.standing < -AGREEMENT)
+        given = self.request.point if part.given is not None else None
+        late = int(self.request.point is not None and given is None)
+        return falls, late, self.hanging_of(part) if given is None else self.hanging_at(given, AGREEMENT)
+
     def better_places(self, part: ReadTriple, supports: Array, solved: Array, least: Array) -> Iterator[str]:
-        """A fault where a place of a grid over the triangle is better than the one written."""
+        """A fault where a place of a grid over the triangle is better than the one written.
+
+        One under which the part reaches down is better than one over air.
+        """
+        highest = self.hanging_of(part)
         for i, j in product(range(1, GRID), repeat=2):
             if i + j >= GRID:
                 continue
@@ -241,7 +263,11 @@ class SupportsJudge(SupportPlaces):
                 continue
             need = max(0.0, float((-least / self.shares(solved, (x, y))).max()))
             cheaper = need < part.best.clamp_needed * (1 - AGREEMENT) - AGREEMENT
-            if (cheaper or arm > part.arm * (1 + AGREEMENT) + AGREEMENT) and self.tip_room((x, y)) > 0:
+            farther = arm > part.arm * (1 + AGREEMENT) + AGREEMENT
+            if not (cheaper or farther or highest) or self.tip_room((x, y)) <= 0:
+                continue
+            hanging = self.hanging_at((x, y), -AGREEMENT)
+            if hanging < highest or (hanging == highest and (cheaper or farther)):
                 yield f"the clamp is better placed at ({x:.6g}, {y:.6g})"
                 return
 
@@ -318,6 +344,7 @@ def verify_supports_file(path: str | Path) -> Verification:
     planar = Judge(query).rule_on(evolve(fixture, quality={}))
     judge = SupportsJudge(query, fixture, request, loads, part.jaw_force)
     unproven, faults, seen = list[Unproven](), list[str](), set[frozenset[Hole]]()
+    before = (0, 0, 0)
     if planar.verdict != "proven":
         faults.append(f"its planar fixture is {planar.verdict}: {planar.reason}")
     for place, triple in enumerate(part.triples):
@@ -325,6 +352,12 @@ def verify_supports_file(path: str | Path) -> Verification:
         key = frozenset((str(a), b, c) for a, b, c in triple.holes)
         reasons += ["it is listed twice"] if key in seen else []
         seen.add(key)
+        order = judge.order_of(triple) if not reasons else before
+        if order < before:
+            reasons.append(
+                "it comes after one from which the part falls over, or with a worse place of the clamp"
+            )
+        before = max(before, order)
         if reasons:
             unproven.append(Unproven(place, "refuted", reasons[0]))
     faults += band_faults(query, fixture, request)

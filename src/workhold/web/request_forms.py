@@ -182,6 +182,10 @@ class SolidForm(Form):
     top: Annotated[list[LoopForm], Field(max_length=MOST_VERTICES)] | None = None
     top_heights: Annotated[list[Number], Field(max_length=MOST_VERTICES)] = Field(default=[])
     runs: Annotated[list[RunForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
+    rising: Annotated[list[LoopForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
+    rising_heights: Annotated[list[Number], Field(max_length=MOST_VERTICES)] = Field(default=[])
+    hanging: Annotated[list[LoopForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
+    hanging_heights: Annotated[list[Number], Field(max_length=MOST_VERTICES)] = Field(default=[])
 
 
 class OwnOutlineForm(Form):
@@ -340,6 +344,8 @@ class SupportsForm(Form):
     pad_margin: Length | None = None
     tip_radius: Annotated[float, Field(gt=0, le=LARGEST)] | None = None
     inside: Annotated[float, Field(gt=0, le=LARGEST)] | None = None
+    tip_margin: Length | None = None
+    head_radius: Annotated[float, Field(gt=0, le=LARGEST)] | None = None
     bottom_zones: Zones = Field(default=[])
     top_zones: Zones = Field(default=[])
     reach: Annotated[list[Ring], Field(max_length=MOST_RANGES)] | None = None

@@ -32,7 +32,17 @@ __all__ = ["SupportsOrder", "chosen_supports", "find_supports"]
 # What keeps pads and the clamp off places, as the page calls it.
 KEEP_OFF = ('"Keep pads off"', '"Keep the clamp off"')
 # Figures of a form that a request has by the same names.
-OWN = ("band", "pad_radius", "pad_margin", "tip_radius", "inside", "reach", "point")
+OWN = (
+    "band",
+    "pad_radius",
+    "pad_margin",
+    "tip_radius",
+    "inside",
+    "tip_margin",
+    "head_radius",
+    "reach",
+    "point",
+)
 
 
 @frozen(eq=False)

@@ -26,7 +26,7 @@ from step_shapes import box, cut, cylinder, fused, prism
 import workhold
 from workhold import Plate, load
 from workhold.files.step.heights import standing
-from workhold.files.step.level_faces import bottom_loops, top_loops
+from workhold.files.step.level_faces import bottom_loops, level_tops
 from workhold.files.step.library import along, sub_shapes
 from workhold.files.supports_file import read_supports, write_supports
 from workhold.geometry.loop import loop_segments, signed_area
@@ -87,7 +87,7 @@ def test_a_face_with_a_free_border_is_kept_and_none_of_it_is_over_air(
     solid = standing(along(shape, "-z" if axis else "z"))
     for loops, z, below in (
         (bottom_loops(solid), 0.0, BELOW),
-        ([loop for loop, height in top_loops(solid) if height == 16.0], 16.0, -BELOW),
+        ([loop for top in level_tops(solid) if top.height == 16.0 for loop in top.open], 16.0, -BELOW),
     ):
         assert loops
         exact = sum(
@@ -188,7 +188,8 @@ def test_a_tangent_polygon_holds_its_ellipse() -> None:
     """No vertex of an opening lies within the ellipse that it stands for, and none far from it."""
     lean = 35 * pi / 180
     solid = standing(bored_aslant(40, 35))
-    ((opening, _),) = [one for one in top_loops(solid) if signed_area(loop_segments(one[0])) < 0]
+    (top,) = level_tops(solid)
+    (opening,) = [loop for loop in top.open if signed_area(loop_segments(loop)) < 0]
     middle = 40 + 8 * sin(lean) / cos(lean)
     for x, y, bulge in opening.tolist():
         size = sqrt(((x - middle) * cos(lean) / 6) ** 2 + ((y - 25) / 6) ** 2)
@@ -197,5 +198,5 @@ def test_a_tangent_polygon_holds_its_ellipse() -> None:
 
 def test_line_within_a_face_bounds_nothing() -> None:
     touching = fused(box(70, 50, 12), cylinder(6, 50, (35, 25, 6), (1, 0, 0)))
-    top = top_loops(standing(touching))
-    assert sum(signed_area(loop_segments(loop)) for loop, _ in top) == pytest.approx(3500.0)
+    (top,) = [one for one in level_tops(standing(touching)) if one.height == 12.0]
+    assert area(top.open) == pytest.approx(3500.0)

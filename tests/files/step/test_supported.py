@@ -32,7 +32,7 @@ def result() -> Result:
 
 def on_face(result: Result, at: tuple[float, float], tip_radius: float = 5.0) -> ChosenSupports:
     """The best supports with the clamp at a point of the part."""
-    asked = result.supports(best=4, point=at, inside=1, tip_radius=tip_radius)
+    asked = result.supports(best=4, point=at, inside=1, tip_radius=tip_radius, head_radius=tip_radius)
     found = next(one for one in asked if one.triples)
     return ChosenSupports.of(evolve(found, triples=tuple(t for t in found.triples if t.given is not None)))
 

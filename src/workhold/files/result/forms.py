@@ -72,9 +72,17 @@ class WorkpiecePart(FormPart):
         None, description="loops on which the solid lies; empty where on none"
     )
     top: list[list[list[float]]] | None = Field(
-        None, description="loops of its faces with nothing above; empty of none"
+        None, description="loops of what of its upper faces has nothing above; empty of none"
     )
     top_heights: list[float] | None = Field(None, description="height in mm of the face of each of these")
+    rising: list[list[list[float]]] | None = Field(
+        None, description="loops around what rises above heights of upper faces"
+    )
+    rising_heights: list[float] | None = Field(None, description="these heights in mm, one for each loop")
+    hanging: list[list[list[float]]] | None = Field(
+        None, description="loops of what of the upper faces has air between itself and the lying plane"
+    )
+    hanging_heights: list[float] | None = Field(None, description="height in mm of the face of each of these")
 
 
 class SolidPart(FormPart):

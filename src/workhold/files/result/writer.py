@@ -33,7 +33,7 @@ from workhold.model.query import Query
 from workhold.model.requirements import Load
 from workhold.model.result import Result
 from workhold.model.search_report import Proof
-from workhold.model.solid import STANDING, SolidOutline
+from workhold.model.solid import BESIDE_TOP, STANDING, SolidOutline
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -197,8 +197,7 @@ def bands_entry(solid: SolidOutline | None) -> dict[str, Any]:
     faces = {"solid_faces": [list(faces) for faces in solid.faces]} if solid.faces else {}
     faces_known = {"bottom": solid.bottom, "top": solid.top}
     level: dict[str, Any] = {name: loops for name, loops in faces_known.items() if loops is not None}
-    if solid.top_heights:
-        level["top_heights"] = list(solid.top_heights)
+    level |= {key: list(value) for key in ("top_heights", *BESIDE_TOP) if (value := getattr(solid, key))}
     runs = {"runs": [list(map(list, rows)) for rows in solid.runs]} if any(solid.runs) else {}
     return {"bands": [None if band is None else list(band) for band in solid.bands], **runs, **faces, **level}
 

@@ -44,7 +44,7 @@ from workhold.files.step.strips import Strip, run_rows, strips_of_loop
 from workhold.geometry.loop import loop_segments, signed_area
 from workhold.geometry.segment import Arc, Line, Segment
 from workhold.geometry.subdivision import BorderPiece, Inside, border_loops, border_pieces, subdivide
-from workhold.model.solid import Band, HeightRow, RunRows, SolidOutline
+from workhold.model.solid import NO_LEVELS, Band, HeightRow, RunRows, SolidOutline
 
 __all__ = [
     "HEAD_ROOM",
@@ -132,6 +132,8 @@ class StandingSolid:
     edge_boxes: NDArray[np.float64] = field(init=False)
     material: Material = field(init=False)
     folds: dict[int, list[Found]] = field(init=False, factory=dict)
+    # Squares that hold folds which are neither lines nor arcs, see ``files.step.enclosing``.
+    fold_squares: dict[tuple[int, float], set[tuple[int, int]]] = field(init=False, factory=dict)
     # What outlines of all heights have in common.
     known_walls: KnownWalls = field(init=False, factory=KnownWalls)
     # The face that was last found to refuse an outline: it is likely to refuse that of a height nearby.
@@ -563,5 +565,5 @@ def own_drawings(
             )
         own = evolve(found, low=low, peg_height=high, bands=outline.bands)
         own = evolve(own, faces=outline.faces, runs=outline.runs)
-        own = evolve(own, bottom=None, top=None, top_heights=())
+        own = evolve(own, **NO_LEVELS)
         yield OwnDrawing(role, outline.vertices, own)

@@ -1,98 +1,331 @@
 """The level faces of a standing solid that supports and a clamp on top may touch.
 
-Where the border of a face has a curve that is neither line nor arc, such as the mouth of a bore aslant, lines
-stand in its place that leave all of the curve's other side out. A rational Bézier curve lies in the convex hull
-of its control points, so the side of the hull that lies in the face does for each short piece of it: a chord
-where the curve bends about the face, tangents where it bends away from it.
+Of an upper face that is what is open to the sky: all of it over which nothing of the solid lies. With it
+stands what rises above each height, of which the head of a clamp keeps off, and which parts of the faces hang:
+under these the material does not reach down to the plane on which the part lies.
+
+All are regions of a planar subdivision. The border of a face, and what bounds the solid above or below it,
+are cut where they meet. On which side of each piece the region lies is asked beside it. Of curves that are
+neither line nor arc, such as the mouth of a bore aslant, what polygons around them hold is no part of a face.
+
+Glossary
+--------
+open : of a face, that nothing of the solid lies above it.
+rising : what the solid has above a height, seen from above.
+hanging : of a face, that an upright line leaves the material between the face and the lying plane.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from itertools import pairwise
-from math import dist, hypot, pi, tan
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from math import dist, pi, tan
 from typing import Any
 
 import numpy as np
+from attrs import frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import ALIGNED, SAME_HEIGHT, SHORTEST
 from workhold.errors import InputError
 from workhold.files.outline.chain import Chain
 from workhold.files.outline.joining import closed_loop
-from workhold.files.step.edge_curves import EdgeCurve
-from workhold.files.step.faces import SLOPING, SolidFace
+from workhold.files.step.enclosing import Enclosure, enclosed_curves, near_pieces
+from workhold.files.step.faces import SolidFace
 from workhold.files.step.heights import StandingSolid
+from workhold.files.step.projected import projected_curves
 from workhold.files.step.regions import borders, level_region
-from workhold.geometry.loop import checked_vertices, loop_segments, reversed_vertices, signed_area
-from workhold.geometry.rational import Pieces, cut, point_at, points_along
-from workhold.geometry.segment import Line, Point, Segment, segment_rows
+from workhold.geometry.loop import loop_segments, reversed_vertices, signed_area
+from workhold.geometry.rational import Pieces, point_at, points_along
+from workhold.geometry.segment import Line, Point, Segment, bounding_box, segment_from_bulge, segment_rows
 from workhold.geometry.subdivision import BorderPiece, border_loops, border_pieces, subdivide
-from workhold.kernels.base.distance import is_inside, outline_distances
+from workhold.kernels.base.distance import is_inside
 
-__all__ = ["bottom_loops", "known_levels", "top_loops"]
+__all__ = ["LevelTop", "bottom_loops", "known_levels", "level_tops"]
 
 Array = NDArray[np.float64]
 Box = tuple[float, float, float, float]
-# Points across a face, each way, at which what lies above it is asked for, and where nothing there is round;
-# along an edge; how far from the face's border, in mm.
-ACROSS, ACROSS_FLAT, ALONG, OFF = 12, 4, 33, 1e-3
-# How far in mm lines may be from a curve that they stand for, and how many of them, at most.
-SAFE, MOST_LINES = 0.02, 4_000
-# mm. A point nearer to a line lies on it.
-STRAIGHT_ON = 1e-9
+# mm. What faces have in common but for this is no more than a border.
+OFF = 1e-3
+# mm. A face that leaves a level one by no more, however flat, is not above it.
+JUST_ABOVE = 1e-10
+# mm². A loop around less than this, beside curves that polygons hold, is nothing that anything stands on.
+SLIVER = 1e-6
+
+
+@frozen(eq=False)
+class LevelTop:
+    """What a clamp on top has to know of the level faces of one height; loops (N, 3) of vertices.
+
+    Parameters
+    ----------
+    height : of the faces, in mm.
+    open : the parts of the faces that are open, outer loops counter-clockwise, openings clockwise.
+    rising : what rises above the height.
+    hanging : the open parts that hang.
+    """
+
+    height: float
+    open: list[Array]
+    rising: list[Array]
+    hanging: list[Array]
+
+
+@frozen(eq=False)
+class FaceBorder:
+    """The border of a level face.
+
+    Parameters
+    ----------
+    loops : its vertices (N, 3), the face on the left; chords stand in the place of curves.
+    bounds : its lines and arcs, and polygons that hold its curves.
+    """
+
+    loops: list[Array]
+    bounds: Enclosure
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether it has no curves."""
+        return not self.bounds.polygons
 
 
 def known_levels(solid: StandingSolid) -> dict[str, list[Any]]:
     """The level faces of a solid by the names that ``SolidOutline`` has for them."""
-    top = top_loops(solid)
-    return {
-        "bottom": [loop.tolist() for loop in bottom_loops(solid)],
-        "top": [loop.tolist() for loop, _ in top],
-        "top_heights": [height for _, height in top],
-    }
+    found: dict[str, list[Any]] = {"bottom": [loop.tolist() for loop in bottom_loops(solid)]}
+    tops = level_tops(solid)
+    for name, kind in (("top", "open"), ("rising", "rising"), ("hanging", "hanging")):
+        every = [(top.height, loop) for top in tops for loop in getattr(top, kind)]
+        found[name] = [loop.tolist() for _, loop in every]
+        found[f"{name}_heights"] = [height for height, _ in every]
+    return found
 
 
 def bottom_loops(solid: StandingSolid) -> list[Array]:
     """Loops (N, 3) of the faces on which the part lies: outer ones counter-clockwise, openings clockwise."""
-    lying = [
-        face for face in solid.faces if face.lie == "level" and not face.upward and face.low <= SAME_HEIGHT
-    ]
-    return joined([loops_of(face) for face in lying])
+    return region_of_faces(lying_borders(solid))
 
 
-def top_loops(solid: StandingSolid) -> list[tuple[Array, float]]:
-    """Loops (N, 3) of level faces with nothing of the solid above them, each with its height in mm.
+def lying_borders(solid: StandingSolid) -> list[FaceBorder]:
+    """The borders of the level faces on which a solid lies."""
+    return read_borders(
+        [face for face in solid.faces if face.lie == "level" and not face.upward and face.low <= SAME_HEIGHT]
+    )
+
+
+def level_tops(solid: StandingSolid) -> list[LevelTop]:
+    """The open parts of the level faces of a solid, by height in the order of its faces.
 
     Faces of one height that lie side by side are one face; those of other heights stay faces of their own.
     """
-    found: list[tuple[float, list[list[Array]]]] = []
+    groups: list[list[SolidFace]] = []
     for face in solid.faces:
         if face.lie == "level" and face.upward:
-            loops = loops_of(face)
-            if loops and is_free(solid, face, loops):
-                level = next((faces for z, faces in found if abs(z - face.low) <= SAME_HEIGHT), None)
-                if level is None:
-                    found.append((face.low, [loops]))
-                else:
-                    level.append(loops)
-    return [(loop, height) for height, faces in found for loop in joined(faces)]
+            group = next((one for one in groups if abs(one[0].low - face.low) <= SAME_HEIGHT), None)
+            if group is None:
+                groups.append([face])
+            else:
+                group.append(face)
+    lying = on_faces(lying_borders(solid))
+    found = (level_top(solid, group, lying) for group in groups)
+    return [top for top in found if top.open]
 
 
-def joined(faces: Sequence[Sequence[Array]]) -> list[Array]:
+def level_top(solid: StandingSolid, faces: Sequence[SolidFace], lies_on: Callable[[Point], bool]) -> LevelTop:
+    """What is open of some upper faces of one height, with what rises beside them, and what of them hangs.
+
+    Nothing is open where what rises cannot be told.
+
+    Parameters
+    ----------
+    lies_on : whether a point is surely on a face on which the solid lies.
+    """
+    height, box = faces[0].low, box_around(faces)
+    face_borders = read_borders(faces)
+    nothing = LevelTop(height, [], [], [])
+    above = [one for one in solid.faces if one.high > height + SAME_HEIGHT]
+    try:
+        if not above:
+            bounds, rising = Enclosure(), list[Array]()
+            open_ = region_of_faces(face_borders)
+        else:
+            is_on = on_faces(face_borders)
+            is_above = rises_above(solid, height, is_on)
+            bounds, cuts = bounds_between(solid, height, solid.height + 1.0, is_above)
+            rising = region(bounds.lines, lambda point: bounds.holds(point) or is_above(point), cuts)
+
+            def inside(point: Point) -> bool:
+                return is_on(point) and not bounds.holds(point) and not is_above(point)
+
+            if any(overlap(one.box, box) for one in above):
+                open_ = region([*lines_of(face_borders), *lines_near(bounds, box)], inside)
+            else:
+                open_ = region_of_faces(face_borders)
+        if not open_:
+            return nothing
+        return LevelTop(height, open_, rising, hanging_of(solid, open_, height, lies_on))
+    except InputError:
+        return nothing
+
+
+def rises_above(
+    solid: StandingSolid, height: float, is_on: Callable[[Point], bool]
+) -> Callable[[Point], bool]:
+    """Whether a solid has something above a height over a point, as a function.
+
+    Beside its foot a fillet is hardly above the level face that it runs into.
+
+    Parameters
+    ----------
+    is_on : whether a point is surely on a level face of that height.
+    """
+    are_above = solid.inside(height, solid.height + 1.0)
+
+    def rises(point: Point) -> bool:
+        if are_above([point])[0]:
+            return True
+        intervals = solid.material.intervals(point)
+        return bool(intervals) and intervals[-1][1] > height + JUST_ABOVE and not is_on(point)
+
+    return rises
+
+
+def bounds_between(
+    solid: StandingSolid, low: float, high: float, is_there: Callable[[Point], bool]
+) -> tuple[Enclosure, list[tuple[Segment, Point]]]:
+    """What can bound a slab of a solid, seen from above, and points at which segments are to be cut besides.
+
+    Parameters
+    ----------
+    is_there : see :func:`enclosed_curves`.
+    """
+    curves = projected_curves(solid.faces, solid.edges, low, high, solid.folds_of)
+    bounds = Enclosure([*curves.segments])
+    if curves.others:
+        bounds.add(
+            enclosed_curves(solid.faces, solid.edges, low, high, solid.folds_of, solid.fold_squares, is_there)
+        )
+    return bounds, [*curves.cuts]
+
+
+def hanging_of(
+    solid: StandingSolid, open_: Sequence[Array], height: float, lies_on: Callable[[Point], bool]
+) -> list[Array]:
+    """The loops of what hangs of the open parts of upper faces of one height.
+
+    Parameters
+    ----------
+    lies_on : see :func:`level_top`.
+
+    Raises
+    ------
+    InputError
+        Where these do not close.
+    """
+    segments = segments_of(open_)
+    boxes = np.array([bounding_box(one) for one in segments])
+    box: Box = (*boxes[:, :2].min(axis=0).tolist(), *boxes[:, 2:].max(axis=0).tolist())
+    below = (
+        one
+        for one in solid.faces
+        if one.lie != "upright"
+        and one.low < height - SAME_HEIGHT
+        and not (one.lie == "level" and not one.upward and one.low <= SAME_HEIGHT)
+    )
+    if not any(overlap(one.box, box) for one in below):
+        return []
+    rows = segment_rows(segments)
+
+    def reaches_down(point: Point) -> bool:
+        intervals = solid.material.intervals(point)
+        if not intervals or intervals[0][1] < height - SAME_HEIGHT:
+            return False
+        low = intervals[0][0]
+        return low <= JUST_ABOVE or (low <= SAME_HEIGHT and lies_on(point))
+
+    bounds, cuts = bounds_between(solid, -1.0, height, lambda point: not reaches_down(point))
+    near = lines_near(bounds, box)
+
+    def hangs(point: Point) -> bool:
+        return is_inside(*point, rows) and (bounds.holds(point) or not reaches_down(point))
+
+    return region([*segments, *near], hangs, cuts)
+
+
+def region(
+    segments: Sequence[Segment],
+    inside: Callable[[Point], bool],
+    cuts: Sequence[tuple[Segment, Point]] = (),
+) -> list[Array]:
+    """Loops (N, 3) around a region, which lies on their left; outer ones first, the largest before all.
+
+    Parameters
+    ----------
+    segments : that hold all of its border.
+    inside : whether a point that lies on none of them belongs to it.
+    cuts : further points at which the carriers of segments are to be cut.
+
+    Raises
+    ------
+    InputError
+        Where its border does not close.
+    """
+    pieces = border_pieces(subdivide(segments, cuts), lambda points: list(map(inside, points)))
+    loops = [smoothed(loop) for loop in border_loops(pieces)]
+    sizes = [(signed_area(loop_segments(loop)), loop) for loop in loops]
+    return [loop for size, loop in sorted(sizes, key=lambda one: -one[0]) if abs(size) > SLIVER]
+
+
+def region_of_faces(face_borders: Sequence[FaceBorder]) -> list[Array]:
     """Loops (N, 3) of level faces of one height, without the edges along which they touch.
 
-    CAD programs split a face where a line was once imprinted on it. One face stays as it is.
+    CAD programs split a face where a line was once imprinted on it. One face without curves stays as it is.
     """
-    kept = [loops for loops in faces if loops]
-    if len(kept) < 2:
-        return [loop for loops in kept for loop in loops]
-    inside = [segment_rows(segments_of(loops)) for loops in kept]
-    pieces = border_pieces(
-        subdivide(segment for loops in kept for segment in segments_of(loops)),
-        lambda points: [any(is_inside(*point, rows) for rows in inside) for point in points],
-    )
-    return [smoothed(loop) for loop in border_loops(pieces)]
+    if len(face_borders) == 1 and face_borders[0].is_plain:
+        return face_borders[0].loops
+    if not face_borders:
+        return []
+    is_on = on_faces(face_borders)
+    try:
+        return region(lines_of(face_borders), is_on)
+    except InputError:
+        return []
+
+
+def on_faces(face_borders: Sequence[FaceBorder]) -> Callable[[Point], bool]:
+    """Whether a point surely lies on one of some faces, as a function."""
+    rows = [segment_rows(segments_of(one.loops)) for one in face_borders]
+    bounds = [one.bounds for one in face_borders]
+
+    def is_on(point: Point) -> bool:
+        # Curves along which two faces touch are lost, as polygons hold them on both sides.
+        return any(is_inside(*point, own) for own in rows) and not any(one.holds(point) for one in bounds)
+
+    return is_on
+
+
+def lines_of(face_borders: Sequence[FaceBorder]) -> list[Segment]:
+    """The segments and the polygons' sides of some borders."""
+    return [one for border in face_borders for one in border.bounds.lines]
+
+
+def lines_near(bounds: Enclosure, box: Box) -> Iterator[Segment]:
+    """The segments and the polygons' sides that reach into a box."""
+    x0, y0, x1, y1 = box
+    for one in bounds.lines:
+        low_x, low_y, high_x, high_y = bounding_box(one)
+        if low_x <= x1 + OFF and high_x >= x0 - OFF and low_y <= y1 + OFF and high_y >= y0 - OFF:
+            yield one
+
+
+def box_around(faces: Sequence[SolidFace]) -> Box:
+    """The box around some faces, seen from above."""
+    x0, y0, x1, y1 = np.array([face.box for face in faces]).T
+    return float(x0.min()), float(y0.min()), float(x1.max()), float(y1.max())
+
+
+def overlap(a: Box, b: Box) -> bool:
+    """Whether two boxes have more than a border in common."""
+    return a[0] < b[2] - OFF and b[0] < a[2] - OFF and a[1] < b[3] - OFF and b[1] < a[3] - OFF
 
 
 def segments_of(loops: Sequence[Array]) -> list[Segment]:
@@ -124,61 +357,68 @@ def sweep(run: Sequence[BorderPiece]) -> float:
     return sum(piece.high - piece.low for piece in run)
 
 
-def loops_of(face: SolidFace) -> list[Array]:
-    """Loops of a level face; of curves that are neither line nor arc what surely belongs to it.
+def read_borders(faces: Sequence[SolidFace]) -> list[FaceBorder]:
+    """The borders of level faces; without those that the library cannot tell."""
+    return [border for face in faces if (border := border_of(face)) is not None]
 
-    None where the border cannot be read, and where lines in the place of its curves would cross others.
-    """
+
+def border_of(face: SolidFace) -> FaceBorder | None:
+    """The border of a level face; None where it cannot be read."""
     try:
         edges = borders(level_region(face.shape, face.low, face.upward))
         if not all(one.is_disguise for one in edges.curves.values()):
             # The section has curves of its own near the face's, which are exact.
             edges = borders(face.shape)
         chains = [closed_loop(chain).vertices for chain in edges.chains]
-    except InputError:
-        return []
-    order = sorted(range(len(chains)), key=lambda k: -abs(signed_area(loop_segments(chains[k]))))
-    loops = []
-    for number, k in enumerate(order):
-        is_turned = (signed_area(loop_segments(chains[k])) > 0) != (number == 0)
+        order = sorted(range(len(chains)), key=lambda k: -abs(signed_area(loop_segments(chains[k]))))
         true = {label: one.pieces for label, one in edges.curves.items() if not one.is_disguise}
-        if not true.keys().isdisjoint(edges.chains[k].labels):
-            try:
-                loops.append(safe_loop(edges.chains[k], true, is_turned))
-            except InputError:
-                return []
-        else:
-            loops.append(reversed_vertices(chains[k]) if is_turned else chains[k])
-    return loops
+        bounds, loops = Enclosure(), list[Array]()
+        for number, k in enumerate(order):
+            loop = chains[k]
+            if true.keys().isdisjoint(edges.chains[k].labels):
+                bounds.segments += loop_segments(loop)
+            else:
+                loop = chorded(edges.chains[k], true, bounds)
+            is_turned = (signed_area(loop_segments(chains[k])) > 0) != (number == 0)
+            loops.append(reversed_vertices(loop) if is_turned else loop)
+    except InputError:
+        return None
+    return FaceBorder(loops, bounds) if loops else None
 
 
-def safe_loop(chain: Chain, curves: Mapping[str, Pieces], is_turned: bool) -> Array:
-    """Vertices (N, 3) of a face's border with safe lines in the place of its curves, the face on the left.
+def chorded(chain: Chain, curves: Mapping[str, Pieces], bounds: Enclosure) -> Array:
+    """Vertices (N, 3) of a face's border with chords in the place of its curves.
 
     Parameters
     ----------
     chain : the border with some lines and arcs in their place.
     curves : the pieces of each by its label.
-    is_turned : whether the chain has the face on its right.
+    bounds : to which its lines and arcs are added, and polygons that hold its curves.
 
-    Raises InputError where the lines cross each other or another segment.
+    Raises
+    ------
+    InputError
+        For a curve that takes too many chords.
     """
     vertices: list[tuple[float, float, float]] = []
-    count = len(chain.bulges)
-    done: set[str] = set()
+    count, done = len(chain.bulges), set[str]()
     for k in range(count):
         label = chain.labels[k]
         if label not in curves:
             vertices.append((*chain.points[k], chain.bulges[k]))
+            bounds.segments.append(segment_from_bulge(chain.points[k], chain.points[k + 1], chain.bulges[k]))
         elif label not in done:
             done.add(label)
             run = [chain.points[m] for m in range(count) if chain.labels[m] == label]
-            pieces = curves[label]
-            points = safe_points(pieces, runs_back(pieces, run), is_turned)
+            points: list[Point] = []
+            for control in near_pieces(curves[label]):
+                every = [(float(x), float(y)) for x, y in control]
+                bounds.add_points(every)
+                points = points or every[:1]
+                points.append(every[-1])
+            points = points[::-1] if runs_back(curves[label], run) else points
             vertices += [(x, y, 0.0) for x, y in points[:-1]]
-    loop = np.array(vertices)
-    loop = reversed_vertices(loop) if is_turned else loop
-    return checked_vertices(loop.tolist(), "face", "face, side {}".format)
+    return np.array(vertices)
 
 
 def runs_back(pieces: Pieces, run: Sequence[Point]) -> bool:
@@ -193,145 +433,3 @@ def enclosed(points: Array) -> float:
     """The area in mm² within points (N, 2) in running order, positive where that is counter-clockwise."""
     x, y = points.T
     return float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))) / 2
-
-
-def safe_points(pieces: Pieces, is_back: bool, is_turned: bool) -> list[Point]:
-    """Points of lines that leave all of the face's other side out, in the direction that a curve is run.
-
-    Parameters
-    ----------
-    pieces : of the curve.
-    is_back : whether it is run from its end to its start.
-    is_turned : whether the face is on the right of the run.
-
-    Raises InputError for a curve of which no part is near to its chord.
-    """
-    side = 1.0 if is_back == is_turned else -1.0
-    found = [point_at(pieces, 0.0)]
-    waiting = [pieces[k : k + 1] for k in reversed(range(len(pieces)))]
-    while waiting:
-        piece = waiting.pop()
-        points = safe_chain(piece[0], side)
-        if points is not None:
-            found += points
-        elif len(found) + len(waiting) > MOST_LINES:
-            raise InputError("a curve of a level face bends too sharply.")
-        else:
-            waiting += [cut(piece, 0.5, 1.0), cut(piece, 0.0, 0.5)]
-    kept = found[:1]
-    for point, following in pairwise(found[1:]):
-        # Two tangents of a smooth curve are one line where they meet.
-        if not is_between(kept[-1], point, following):
-            kept.append(point)
-    kept.append(found[-1])
-    return kept[::-1] if is_back else kept
-
-
-def is_between(start: Point, point: Point, end: Point) -> bool:
-    """Whether a point lies on the line between two others, within rounding."""
-    dx, dy = end[0] - start[0], end[1] - start[1]
-    across = (point[0] - start[0]) * dy - (point[1] - start[1]) * dx
-    return abs(across) <= STRAIGHT_ON * hypot(dx, dy)
-
-
-def safe_chain(piece: Array, side: float) -> list[Point] | None:
-    """The points after the first of lines for a piece; None where they would be too far from it.
-
-    They are corners of the convex hull of its control points, of which the piece never runs out.
-
-    Parameters
-    ----------
-    side : 1 where the face is on the left of the piece's own direction, else -1.
-    """
-    control = piece[:, :2] / piece[:, 2:]
-    chord = control[-1] - control[0]
-    size = hypot(*chord)
-    if size <= SHORTEST:
-        return [] if float(np.hypot(*(control - control[0]).T).max()) <= SHORTEST else None
-    tx, ty = chord / size
-    x, y = (control - control[0]).T
-    along, off = x * tx + y * ty, side * (y * tx - x * ty)
-    if np.abs(off).max() > SAFE or (np.diff(along) < 0.0).any():
-        return None
-    # The hull's side that lies in the face (A. M. Andrew, *Another efficient algorithm for convex hulls in two
-    # dimensions*, Information Processing Letters 9 (1979)).
-    hull: list[int] = []
-    for k in range(len(control)):
-        while len(hull) > 1 and (along[hull[-1]] - along[hull[-2]]) * (off[k] - off[hull[-2]]) >= (
-            off[hull[-1]] - off[hull[-2]]
-        ) * (along[k] - along[hull[-2]]):
-            hull.pop()
-        hull.append(k)
-    return [(float(control[k, 0]), float(control[k, 1])) for k in hull[1:]]
-
-
-def is_free(solid: StandingSolid, face: SolidFace, loops: Sequence[Array]) -> bool:
-    """Whether nothing of a solid lies above a level face: no edge passes over it, nor material."""
-    above = [one for one in solid.faces if one.high > face.low + SAME_HEIGHT and overlap(one.box, face.box)]
-    if not above:
-        return True
-    rows = segment_rows(segments_of(loops))
-    boxes, (x0, y0, x1, y1) = solid.edge_boxes, face.box
-    higher = (boxes[:, 4] > face.low + SAME_HEIGHT) & (boxes[:, 0] <= x1) & (boxes[:, 1] <= y1)
-    higher &= (boxes[:, 2] >= x0) & (boxes[:, 3] >= y0)
-    points = [points_over(solid.edges[k], face) for k in np.flatnonzero(higher)]
-    over = np.concatenate([np.zeros((0, 2)), *points])
-    if len(within(over, rows)):
-        return False
-    # What has neither an edge nor a fold over the face covers all of it or nothing.
-    is_round = any(one.lie == "leaning" and one.kind != SLOPING for one in above)
-    count = ACROSS if is_round else ACROSS_FLAT
-    shares = (np.arange(count) + 0.37) / count
-    grid = np.stack(np.meshgrid(x0 + shares * (x1 - x0), y0 + shares * (y1 - y0)), axis=-1).reshape(-1, 2)
-    inner = [beside(segment) for loop in loops for segment in loop_segments(loop)]
-    return all(
-        max((end for _, end in solid.material.intervals((float(x), float(y)))), default=0.0)
-        <= face.low + SAME_HEIGHT
-        for x, y in within(np.concatenate([grid, np.array(inner)]), rows)
-    )
-
-
-def beside(segment: Segment) -> Point:
-    """A point near the middle of a segment, on its left."""
-    (x, y), (nx, ny) = segment.at(0.0), segment.normal(0.0)
-    return x - 3 * OFF * nx, y - 3 * OFF * ny
-
-
-def overlap(a: Box, b: Box) -> bool:
-    """Whether two boxes have more than a border in common."""
-    return a[0] < b[2] - OFF and b[0] < a[2] - OFF and a[1] < b[3] - OFF and b[1] < a[3] - OFF
-
-
-def points_over(edge: EdgeCurve, face: SolidFace) -> Array:
-    """Points (N, 2) of an edge that lie higher than a level face and within its box."""
-    points = edge.points
-    if len(points) == 2:
-        points = points[0] + np.linspace(*clipped(points[0], points[1], face.box), ALONG)[:, None] * (
-            points[1] - points[0]
-        )
-    x, y, z = points.T
-    x0, y0, x1, y1 = face.box
-    return points[(z > face.low + SAME_HEIGHT) & (x >= x0) & (x <= x1) & (y >= y0) & (y <= y1), :2]
-
-
-def clipped(start: Array, end: Array, box: Box) -> tuple[float, float]:
-    """The shares of a straight edge between which it lies in a box; all of it where it does nowhere.
-
-    Reference: Y.-D. Liang and B. A. Barsky, *A new concept and method for line clipping*, ACM Transactions on
-    Graphics 3 (1984).
-    """
-    low, high = 0.0, 1.0
-    for axis in (0, 1):
-        step = float(end[axis] - start[axis])
-        if step != 0.0:
-            ends = sorted((box[axis + side] - float(start[axis])) / step for side in (0, 2))
-            low, high = max(low, ends[0]), min(high, ends[1])
-    return (low, high) if low < high else (0.0, 1.0)
-
-
-def within(points: Array, rows: Array) -> Array:
-    """Points (N, 2) that lie on a face, farther than rounding from its border."""
-    if not len(points):
-        return points
-    inside = np.array([bool(is_inside(x, y, rows)) for x, y in points.tolist()])
-    return points[inside & (outline_distances(np.ascontiguousarray(points), rows) > OFF)]

@@ -46,9 +46,12 @@ __all__ = [
     "Other",
     "OtherCurveError",
     "ProjectedCurves",
+    "bounding_edges",
     "folds",
     "has_plain_cuts",
+    "leaning_between",
     "level_cuts",
+    "normal_height",
     "projected_curves",
     "refuse_others",
 ]
@@ -98,19 +101,14 @@ def projected_curves(
     segments: list[Segment] = []
     cuts: list[tuple[Segment, Point]] = []
     others: list[tuple[int, NDArray[np.float64]]] = []
-    for edge in edges:
-        # A wall that reaches up into the slab stands on edges below it.
-        reaches_up = faces[edge.face].lie == "upright" and faces[edge.face].high > low + SAME_HEIGHT
-        if (edge.high < low - SAME_HEIGHT and not reaches_up) or edge.low > high + SAME_HEIGHT:
-            continue
+    for edge in bounding_edges(faces, edges, low, high):
         if edge.segment is not None:
             segments.append(edge.segment)
             cuts += [(edge.segment, point) for z in (low, high) for point in edge.crossings(z)]
         elif edge.is_other:
             others.append((edge.face, edge.points[:, :2]))
-    for index, face in enumerate(faces):
-        if face.lie != "leaning" or face.high < low - SAME_HEIGHT or face.low > high + SAME_HEIGHT:
-            continue
+    for index in leaning_between(faces, low, high):
+        face = faces[index]
         levels = [z for z in (low, high) if face.low - SAME_HEIGHT <= z <= face.high + SAME_HEIGHT]
         for found in (*folds_of(index), *(one for z in levels for one in level_cuts(face, z))):
             if isinstance(found, Line | Arc):
@@ -118,6 +116,24 @@ def projected_curves(
             else:
                 others.append((index, found))
     return ProjectedCurves(tuple(segments), tuple(cuts), tuple(others))
+
+
+def bounding_edges(
+    faces: Sequence[SolidFace], edges: Sequence[EdgeCurve], low: float, high: float
+) -> Iterator[EdgeCurve]:
+    """The edges that can bound the projection of the slab between two z in mm."""
+    for edge in edges:
+        # A wall that reaches up into the slab stands on edges below it.
+        reaches_up = faces[edge.face].lie == "upright" and faces[edge.face].high > low + SAME_HEIGHT
+        if (edge.high >= low - SAME_HEIGHT or reaches_up) and edge.low <= high + SAME_HEIGHT:
+            yield edge
+
+
+def leaning_between(faces: Sequence[SolidFace], low: float, high: float) -> Iterator[int]:
+    """The numbers of leaning faces of which some may lie between two z in mm."""
+    for index, face in enumerate(faces):
+        if face.lie == "leaning" and face.high >= low - SAME_HEIGHT and face.low <= high + SAME_HEIGHT:
+            yield index
 
 
 def level_cuts(face: SolidFace, z: float) -> list[Found]:

@@ -216,11 +216,11 @@ class Jaw:
         left, right = (
             min(ends, key=lambda end: sign * float(end[0].mid())) for ends, sign in ((lefts, 1), (rights, -1))
         )
-        faces = tuple(
+        first_faces, last_faces = (
             min((e for e in ends if abs(float((e[0] - at[0]).mid())) <= SAME), key=lambda end: end[1])[2]
             for ends, at in ((lefts, left), (rights, right))
         )
-        return Stretch(left[0] + shift, right[0] + shift, (faces[0], faces[1]))
+        return Stretch(left[0] + shift, right[0] + shift, (first_faces, last_faces))
 
     def contacts(
         self, ends: Sequence[WallContact], outline: BallOutline, pose: BallPose
@@ -304,14 +304,14 @@ def flush_findings(
     ends: Sequence[tuple[str, Peg, WallContact]],
     pose: BallPose,
     outline: BallOutline,
-    written: Sequence[WallContact] | None = None,
+    stated: Sequence[WallContact] | None = None,
 ) -> Iterator[Finding]:
     """Whether the part lies flush on a wall called ``noun``, its two named ends where they are written.
 
     Parameters
     ----------
     ends : those of the whole contact.
-    written : those that the file says, the ends of what the wall reaches of it; the same if None.
+    stated : those that the file says, the ends of what the wall reaches of it; the same if None.
     """
     (left, _), (right, _) = [contact.place(pose) for _, _, contact in ends]
     yield from rule(right - left - LEAST_FLUSH, f"the part does not lie flush on the {noun}")
@@ -322,7 +322,7 @@ def flush_findings(
         if not (low > FLUSH / 2 or beyond < 0):
             words = f"the part lies on the {noun} at face {face}, beyond its stated ends"
             yield Finding(bool(low < -FLUSH), words)
-    said = [contact for *_, contact in ends] if written is None else written
+    said = [contact for *_, contact in ends] if stated is None else stated
     for (name, peg, _), contact in zip(ends, said, strict=True):
         place = contact.place(pose)
         if peg.face != min(contact.faces):

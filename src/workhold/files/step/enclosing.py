@@ -1,0 +1,346 @@
+"""Curves seen from above that are neither line nor arc, within convex polygons that surely hold them.
+
+A rational Bézier curve lies in the convex hull of its control points. So a curve is cut until each piece is
+near to its chord, and the hulls of the pieces hold all of it. A fold of a free-form face is only known by
+where the normal changes the side to which it leans: small boxes around such places hold it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import pairwise
+from math import hypot
+from typing import Any
+
+import numpy as np
+from attrs import define, field
+from numpy.typing import NDArray
+
+from workhold.conventions import SHORTEST
+from workhold.errors import InputError
+from workhold.files.step.edge_curves import EdgeCurve, Found
+from workhold.files.step.faces import SolidFace, surface_of
+from workhold.files.step.library import occ, sub_shapes
+from workhold.files.step.projected import (
+    bounding_edges,
+    leaning_between,
+    level_cuts,
+    normal_height,
+)
+from workhold.files.step.regions import edge_curve
+from workhold.geometry.hull import convex_hull
+from workhold.geometry.rational import Pieces, cut
+from workhold.geometry.segment import Line, Point, Segment
+
+__all__ = ["Enclosure", "enclosed_curves", "near_pieces"]
+
+Array = NDArray[np.float64]
+# How far in mm control points may be from the chord of a piece that is enclosed, and how many pieces, at most.
+SAFE, MOST_PIECES = 0.02, 4_000
+# mm. A piece nearer to its chord is taken for that.
+FLAT = 2e-6
+# Cells along both directions of a free-form face where its folds are looked for, by what share boxes around
+# pieces of one are wider than their cells, and how often a cell is quartered.
+CELLS, WIDER, QUARTERED = 8, 0.25, 5
+# Size in mm of the squares that hold a fold, and how many of one face, at most; then they are larger.
+BOX, MOST_SQUARES = 0.5, 300
+# Of more free-form faces than these the squares are as much larger.
+FEW = 3
+Squares = dict[tuple[int, float], set[tuple[int, int]]]
+
+
+@define(eq=False)
+class Enclosure:
+    """What bounds something seen from above: lines and arcs, and polygons that hold all else.
+
+    Parameters
+    ----------
+    segments : lines and arcs.
+    polygons : (N, 2) convex ones, counter-clockwise.
+    """
+
+    segments: list[Segment] = field(factory=list)
+    polygons: list[Array] = field(factory=list)
+    boxes: Array | None = field(init=False, default=None)
+
+    def add(self, other: Enclosure) -> None:
+        """Adds what bounds something else."""
+        self.segments += other.segments
+        self.polygons += other.polygons
+        self.boxes = None
+
+    def add_points(self, points: Iterable[Point]) -> None:
+        """Adds the hull of some points; a line where it is as thin as one."""
+        every = list(points)
+        corners = few_corners(np.array(convex_hull(every)).reshape(-1, 2), every[0], every[-1])
+        if len(corners) < 2 or float(np.hypot(*np.ptp(corners, axis=0))) <= SHORTEST:
+            return
+        start, end = np.array(every[0]), np.array(every[-1])
+        size = float(np.hypot(*(end - start)))
+        off = np.abs((corners - start) @ np.array([-(end - start)[1], (end - start)[0]]))
+        if len(corners) == 2 or (size > SHORTEST and off.max() <= FLAT * size):
+            self.segments.append(Line((float(start[0]), float(start[1])), (float(end[0]), float(end[1]))))
+        else:
+            self.polygons.append(corners)
+            self.boxes = None
+
+    @property
+    def lines(self) -> list[Segment]:
+        """All segments, with the sides of the polygons."""
+        sides = [
+            Line((float(a[0]), float(a[1])), (float(b[0]), float(b[1])))
+            for polygon in self.polygons
+            for a, b in pairwise([*polygon, polygon[0]])
+            if hypot(*(b - a)) > SHORTEST
+        ]
+        return [*self.segments, *sides]
+
+    def holds(self, point: Point) -> bool:
+        """Whether a point lies in one of the polygons."""
+        if not self.polygons:
+            return False
+        if self.boxes is None:
+            self.boxes = np.array([(*one.min(axis=0), *one.max(axis=0)) for one in self.polygons])
+        (x, y), boxes = point, self.boxes
+        near = (boxes[:, 0] <= x) & (x <= boxes[:, 2]) & (boxes[:, 1] <= y) & (y <= boxes[:, 3])
+        return any(is_within(point, self.polygons[k]) for k in np.flatnonzero(near).tolist())
+
+
+def is_within(point: Point, polygon: Array) -> bool:
+    """Whether a point lies in a convex polygon (N, 2) that runs counter-clockwise."""
+    ahead = np.roll(polygon, -1, axis=0) - polygon
+    away = np.array(point) - polygon
+    return bool((ahead[:, 0] * away[:, 1] - ahead[:, 1] * away[:, 0] >= 0.0).all())
+
+
+def few_corners(hull: Array, start: Point, end: Point) -> Array:
+    """A convex polygon (N, 2) around a hull with one corner, where that is near, on each side of a chord."""
+    ends = [k for k, corner in enumerate(hull.tolist()) if tuple(corner) in (start, end)]
+    if len(ends) != 2 or len(hull) < 4:
+        return hull
+    kept: list[Array] = []
+    for first, last in (ends, [ends[1], ends[0] + len(hull)]):
+        run = hull[np.arange(first, last + 1) % len(hull)]
+        apex = crossing_of(run[0], run[1], run[-1], run[-2]) if len(run) > 3 else None
+        chord = run[-1] - run[0]
+        size = float(np.hypot(*chord))
+        if apex is not None and abs(across(chord, apex - run[0])) <= 2 * SAFE * size:
+            along = float(chord @ (apex - run[0]))
+            run = np.array([run[0], apex, run[-1]]) if 0.0 < along < size * size else run
+        kept.append(run[:-1])
+    return np.concatenate(kept)
+
+
+def across(a: Array, b: Array) -> float:
+    """The cross product of two vectors (2,)."""
+    return float(a[0] * b[1] - a[1] * b[0])
+
+
+def crossing_of(a: Array, b: Array, c: Array, d: Array) -> Array | None:
+    """Where the line through two points crosses that through two others; None of parallel ones."""
+    one, other = b - a, d - c
+    turn = across(one, other)
+    if abs(turn) <= SHORTEST * float(np.hypot(*one) * np.hypot(*other)):
+        return None
+    return np.asarray(a + one * across(c - a, other) / turn)
+
+
+def near_pieces(pieces: Pieces) -> Iterator[Array]:
+    """Control points (N, 2) of runs of a curve in running order, each near to its chord and ahead along it.
+
+    Raises
+    ------
+    InputError
+        For a curve that takes too many.
+    """
+    run: Array | None = None
+    for control in small_pieces(pieces):
+        longer = control if run is None else np.concatenate([run, control[1:]])
+        if run is not None and not is_near_chord(longer):
+            yield run
+            longer = control
+        run = longer
+    if run is not None:
+        yield run
+
+
+def is_near_chord(control: Array) -> bool:
+    """Whether points (N, 2) are near to the chord of the first and the last, and run ahead along it."""
+    chord = control[-1] - control[0]
+    size = hypot(*chord)
+    if size <= SHORTEST:
+        return False
+    away = control - control[0]
+    along, off = away @ chord / size, np.abs(away @ np.array([-chord[1], chord[0]])) / size
+    return bool(off.max() <= SAFE and (np.diff(along) >= 0.0).all())
+
+
+def small_pieces(pieces: Pieces) -> Iterator[Array]:
+    """As :func:`near_pieces`, of each of a curve's pieces by itself."""
+    waiting, found = [pieces[k : k + 1] for k in reversed(range(len(pieces)))], 0
+    while waiting:
+        piece = waiting.pop()
+        control = piece[0, :, :2] / piece[0, :, 2:]
+        if is_near_chord(control):
+            found += 1
+            yield control
+            continue
+        if float(np.hypot(*(control - control[0]).T).max()) <= SHORTEST:
+            continue
+        if found + len(waiting) > MOST_PIECES:
+            raise InputError("a curve of a level face bends too sharply.")
+        waiting += [cut(piece, 0.5, 1.0), cut(piece, 0.0, 0.5)]
+
+
+def enclosed_curves(
+    faces: Sequence[SolidFace],
+    edges: Sequence[EdgeCurve],
+    low: float,
+    high: float,
+    folds_of: Callable[[int], Sequence[Found]],
+    squares: Squares,
+    is_there: Callable[[Point], bool],
+) -> Enclosure:
+    """What holds the curves that are neither line nor arc of all that can bound a slab of a solid from above.
+
+    Parameters
+    ----------
+    low, high : z in mm of the slab.
+    folds_of : see :func:`workhold.files.step.projected.projected_curves`.
+    squares : those that hold the folds of free-form faces, kept for other slabs.
+    is_there : whether a point belongs to what is bounded; folds are only where some points around do.
+
+    Raises
+    ------
+    InputError
+        For curves that take too many pieces.
+    """
+    found, known, boxes = Enclosure(), set[int](), list[Array]()
+    leaning = [*leaning_between(faces, low, high)]
+    free = [k for k in leaning if any(isinstance(one, np.ndarray) for one in folds_of(k))]
+    size = BOX * max(1.0, len(free) / FEW)
+    for edge in bounding_edges(faces, edges, low, high):
+        # Two faces have an edge, and it is enclosed once.
+        if edge.is_other and id(edge.curve) not in known:
+            known.add(id(edge.curve))
+            enclose_edge(found, edge.curve.Edge(), edge.points[:, :2])
+    for index in leaning:
+        face = faces[index]
+        if index in free:
+            if (index, size) not in squares:
+                squares[index, size] = fold_squares(surface_of(face.shape), size)
+            boxes += fold_boxes(squares[index, size], size, is_there)
+        for z in (low, high):
+            if face.low < z < face.high and any(isinstance(one, np.ndarray) for one in level_cuts(face, z)):
+                plane = occ.gp_Pln(occ.gp_Pnt(0.0, 0.0, z), occ.gp_Dir(0.0, 0.0, 1.0))
+                section = occ.BRepAlgoAPI_Section(face.shape, plane)
+                for edge in sub_shapes(section.Shape(), "EDGE"):
+                    enclose_edge(found, edge, None)
+    # Of an edge that is in the slab in part the rest bounds nothing of it.
+    found.polygons = [one for one in found.polygons if is_beside_some(one, is_there)] + boxes
+    found.boxes = None
+    return found
+
+
+def is_beside_some(polygon: Array, is_there: Callable[[Point], bool]) -> bool:
+    """Whether something is on one side of a convex polygon and not on another."""
+    corners = np.concatenate([polygon, (polygon + np.roll(polygon, -1, axis=0)) / 2])
+    away = corners - polygon.mean(axis=0)
+    size = np.hypot(*away.T)[:, None]
+    places = corners + away / size * (SAFE + 0.1 * size)
+    return len({is_there((float(x), float(y))) for x, y in places}) == 2
+
+
+def enclose_edge(found: Enclosure, edge: Any, points: Array | None) -> None:
+    """Adds what holds an edge.
+
+    Parameters
+    ----------
+    points : (N, 2) along it, of which boxes are made where the library knows no curve of the edge.
+    """
+    try:
+        pieces = edge_curve(edge)
+    except InputError:
+        if points is None:
+            raise
+        for start, end in pairwise(points):
+            wide = 0.5 * float(np.hypot(*(end - start))) + SAFE
+            low, high = np.minimum(start, end) - wide, np.maximum(start, end) + wide
+            found.polygons.append(np.array(corners_of(low, high)))
+        return
+    for control in near_pieces(pieces):
+        found.add_points((float(x), float(y)) for x, y in control)
+
+
+def corners_of(low: Array, high: Array) -> list[Point]:
+    """The corners of a box, counter-clockwise."""
+    (x0, y0), (x1, y1) = low.tolist(), high.tolist()
+    return [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
+
+
+def fold_boxes(squares: set[tuple[int, int]], size: float, is_there: Callable[[Point], bool]) -> list[Array]:
+    """Boxes that hold a fold where something is on one side of it: rows of squares, larger ones of a long fold.
+
+    Parameters
+    ----------
+    squares : of a raster, by column and row, that hold it.
+    size : of the squares in mm.
+    is_there : see :func:`enclosed_curves`.
+    """
+    while len(squares) > MOST_SQUARES:
+        size *= 2.0
+        squares = {(i // 2, j // 2) for i, j in squares}
+
+    def is_mixed(square: tuple[int, int]) -> bool:
+        i, j = square
+        places = [
+            (i - 0.5, j - 0.5),
+            (i + 1.5, j - 0.5),
+            (i + 1.5, j + 1.5),
+            (i - 0.5, j + 1.5),
+            (i + 0.5, j + 0.5),
+        ]
+        return len({is_there((x * size, y * size)) for x, y in places}) == 2
+
+    kept = sorted((j, i) for i, j in squares if is_mixed((i, j)))
+    rows: list[list[int]] = []
+    for j, i in kept:
+        if rows and rows[-1][0] == j and rows[-1][2] == i:
+            rows[-1][2] = i + 1
+        else:
+            rows.append([j, i, i + 1])
+    return [
+        np.array(corners_of(np.array([first, j]) * size, np.array([last, j + 1]) * size))
+        for j, first, last in rows
+    ]
+
+
+def fold_squares(surface: Any, size: float) -> set[tuple[int, int]]:
+    """The squares of a raster, by column and row, in which a surface may stand upright, seen from above."""
+    u = np.linspace(surface.FirstUParameter(), surface.LastUParameter(), CELLS + 1)
+    v = np.linspace(surface.FirstVParameter(), surface.LastVParameter(), CELLS + 1)
+    waiting = [(u0, u1, v0, v1, 0) for u0, u1 in pairwise(u.tolist()) for v0, v1 in pairwise(v.tolist())]
+    found: set[tuple[int, int]] = set()
+    while waiting:
+        u0, u1, v0, v1, level = waiting.pop()
+        places = [(a, b) for a in (u0, (u0 + u1) / 2, u1) for b in (v0, (v0 + v1) / 2, v1)]
+        leans = [normal_height(surface, a, b) for a, b in places]
+        if min(leans) > 0.0 or max(leans) < 0.0:
+            continue
+        values = [surface.Value(a, b) for a, b in places]
+        points = np.array([(value.X(), value.Y()) for value in values])
+        low, high = points.min(axis=0), points.max(axis=0)
+        if float((high - low).max()) <= size or level >= QUARTERED:
+            wide = WIDER * (high - low) + SAFE
+            (i0, j0), (i1, j1) = (
+                np.floor(one / size).astype(int).tolist() for one in (low - wide, high + wide)
+            )
+            found |= {(i, j) for i in range(i0, i1 + 1) for j in range(j0, j1 + 1)}
+        else:
+            middle_u, middle_v = (u0 + u1) / 2, (v0 + v1) / 2
+            waiting += [
+                (a, b, c, d, level + 1)
+                for a, b in ((u0, middle_u), (middle_u, u1))
+                for c, d in ((v0, middle_v), (middle_v, v1))
+            ]
+    return found
