@@ -15,7 +15,7 @@ from workhold import OpeningVise, Plate, Query, Result, Vise, Workpiece, answer,
 from workhold.contact.problem import Problem
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc
-from workhold.listing.bounds import square_angles, tilted_keys
+from workhold.listing.bounds import preferred_angles, tilted_keys
 from workhold.listing.ranking import is_worse, ranking_keys
 from workhold.model.quality import LOCATION_ERROR, PREFERENCES, TILT
 from workhold.model.requirements import Tolerance
@@ -75,7 +75,7 @@ def test_no_tilted_fixture_ranks_before_the_bound(toolkit: Toolkit, ranking: str
         assert bound is not None
         assert not any(is_worse(bound[None], key)[0] for key in np.unique(keys[tilted], axis=0))
         angles = np.degrees(result.table.theta[~tilted])
-        near = [(angles - low) % 360.0 < high - low - 1.9e-3 for low, high in square_angles(query)]
+        near = [(angles - low) % 360.0 < high - low - 1.9e-3 for low, high in preferred_angles(query)]
         assert np.any(near, axis=0).all()
         tilts += int(tilted.sum())
     assert tilts > 0

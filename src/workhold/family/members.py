@@ -23,7 +23,7 @@ from workhold.family.patterns import half_turn, pattern_words, turned, zero_word
 from workhold.listing.canonical_form import changes
 from workhold.listing.ranking import measured
 from workhold.model.fixture_table import FixtureTable
-from workhold.model.quality import DEFAULT_RANKING, FIGURES, PAIR_RANKING, Figure, figure_number
+from workhold.model.quality import FIGURE_RANKING, FIGURES, PAIR_FIGURES, Figure, figure_number
 from workhold.model.query import Query
 from workhold.model.requirements import ANY_DIRECTION, Load, Restrictions, Tolerance, zone_of
 from workhold.model.result import Result
@@ -48,7 +48,7 @@ __all__ = [
 # A family is asked for what it loses in location; after that what a machinist looks at counts, by how many
 # things move.
 LOCATION = "location_error"
-RANKINGS = {1: (LOCATION, *DEFAULT_RANKING), 2: (LOCATION, *PAIR_RANKING)}
+RANKINGS = {1: (LOCATION, *FIGURE_RANKING), 2: (LOCATION, *PAIR_FIGURES)}
 # Losses are rounded to this number of decimals.
 LOSS_DECIMALS = 9
 

@@ -13,6 +13,7 @@ from typing import TypeVar
 from attrs import frozen
 
 from workhold.errors import InputError
+from workhold.model.first_choice import HOUSE_ORDER, has_house_order
 from workhold.model.requirements import Load
 
 __all__ = [
@@ -23,9 +24,11 @@ __all__ = [
     "EDGE_DISTANCE",
     "END_DISTANCE",
     "FIGURES",
+    "FIGURE_RANKING",
     "JAW_FORCE_NEEDED",
     "LOAD_REACTION",
     "LOCATION_ERROR",
+    "PAIR_FIGURES",
     "PAIR_RANKING",
     "PENALTY",
     "PREFERENCES",
@@ -54,10 +57,11 @@ T = TypeVar("T")
 # The loads, or whether there are any.
 Loaded = Sequence[Load] | bool
 
-# docs/quality.md, "Which comes first", says why. With loads the load reaction is in third place.
-DEFAULT_RANKING = ("warnings", "penalty", "clamp_amplification", "closure_margin", "edge_distance")
+# docs/quality.md, "Which comes first", says why. With loads the load reaction takes the place of the
+# amplification.
+FIGURE_RANKING = ("warnings", "penalty", "clamp_amplification", "closure_margin", "edge_distance")
 # Of two clamps the one whose forces may differ most: it is set up without a torque wrench.
-PAIR_RANKING = (
+PAIR_FIGURES = (
     "warnings",
     "penalty",
     "clamp_freedom",
@@ -65,6 +69,7 @@ PAIR_RANKING = (
     "closure_margin",
     "edge_distance",
 )
+DEFAULT_RANKING, PAIR_RANKING = (*HOUSE_ORDER, *FIGURE_RANKING), (*HOUSE_ORDER, *PAIR_FIGURES)
 # Orders by what a user wants most.
 PREFERENCES = {
     "square": ("warnings", "tilt", "penalty", "clamp_amplification", "closure_margin", "edge_distance"),
@@ -257,6 +262,8 @@ def chosen_ranking(
 ) -> tuple[str, ...]:
     """Keys of the figures to rank by, from their names as a user writes them; None is the default ranking.
 
+    A file that was ranked by the default names what that begins with, too.
+
     Raises
     ------
     InputError
@@ -265,6 +272,9 @@ def chosen_ranking(
     """
     if names is None:
         return for_loads(PAIR_RANKING if pairs else DEFAULT_RANKING, loaded)
+    if has_house_order(names):
+        figures = chosen_ranking(names[len(HOUSE_ORDER) :], loaded, pairs, seated)
+        return (*HOUSE_ORDER, *figures)
     keys = []
     for name in names:
         number = ranked_number(name)

@@ -46,6 +46,9 @@ class Result:
     pairs, seats : with two clamps, how many pairs of clamps hold the part, and at how many seats and pairs of
         directions. None for other toolkits, and where only the best were sought.
     seating : where else the pegs can hold the part, of as many of the first fixtures as there are entries.
+    least_effective_error : in mm, the least effective location error of all fixtures that are fit and without warning,
+        or as near to it as any is, from which steps count (``model.first_choice``). None where the order has
+        no steps, and of results from before there were any.
     """
 
     query: Query
@@ -59,6 +62,7 @@ class Result:
     pairs: int | None = None
     seats: int | None = None
     seating: tuple[Seating, ...] = field(default=(), hash=False)
+    least_effective_error: float | None = None
 
     def __attrs_post_init__(self) -> None:
         notes, asked = self.reasons, asked_note(self.query.restricted_by)
