@@ -6,6 +6,7 @@ Packed they take half the room of records, since all of a range wait to be order
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+
 import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray

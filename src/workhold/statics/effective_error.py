@@ -22,7 +22,6 @@ from numpy.typing import NDArray
 
 from workhold.conventions import AGREEMENT, FIGURE_DECIMALS, WRITTEN_ANGLE
 from workhold.fixels.contacts import CLAMP_TIP
-from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.hull import convex_hull
 from workhold.geometry.segment import Arc, Line
 from workhold.model.first_choice import FACTORS

@@ -8,9 +8,9 @@ worked out from the vertices of the outline.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from functools import cached_property
-from math import atan2, ceil, cos, floor, hypot, inf, pi, radians, sin, tau
+from math import atan2, cos, floor, hypot, inf, pi, radians, sin, tau
 
 from attrs import frozen
 
