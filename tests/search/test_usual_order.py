@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
-from pathlib import Path
 from random import Random
 
 import pytest
@@ -14,13 +12,10 @@ from test_random_restrictions import random_toolkit
 import workhold
 from cad_parts import cad_part
 from strategies import random_outline
-from workhold import FlatJaw, Plate, Query, Vise, Workpiece, answer
+from workhold import FlatJaw, Plate, Query, Vise, answer
 from workhold.fixels.toolkit import Toolkit
 from workhold.listing import collector
-from workhold.model.fixture import Fixture
-from workhold.model.first_choice import HOUSE_ORDER
 from workhold.search import lattice_shares, shares
-from workhold.verification import verify, verify_file
 
 PLATE = [(0, 0, 0), (100, 0, 0), (100, 60, 0), (0, 60, 0)]
 BORE = [(38, 30, 1), (62, 30, 1)]

@@ -339,8 +339,8 @@ def error_steps(error: IntArray, least: int) -> IntArray:
 
 def billionths(error: Array) -> IntArray:
     """Errors (N,) in mm as whole billionths; the largest there is for what is no number."""
-    known = np.where(np.isnan(error), inf, error) * PER_MM
-    return np.rint(np.minimum(known, float(MOST_ERROR))).astype(np.int64)
+    known = np.minimum(np.where(np.isnan(error), inf, error), MOST_ERROR / PER_MM)
+    return np.rint(known * PER_MM).astype(np.int64)
 
 
 def in_mm(error: int | None) -> float | None:

@@ -12,7 +12,6 @@ from collections.abc import Sequence
 from attrs import frozen
 
 __all__ = [
-    "ANGLE_WORDS",
     "FACTORS",
     "HOUSE_ORDER",
     "Factor",
@@ -22,8 +21,6 @@ __all__ = [
 
 # What an order begins with where nobody names another: a warning, k, and the angle as written.
 HOUSE_ORDER = ("warned", "error_steps", "angle")
-# Of the angle as written: 0 degrees, a quarter, half or three quarter turn, any other.
-ANGLE_WORDS = ("as drawn", "turned by 90°, 180° or 270°", "turned aslant")
 
 
 @frozen

@@ -6,7 +6,7 @@ from math import isfinite
 
 import numpy as np
 
-from workhold.model.first_choice import ANGLE_WORDS, FACTORS
+from workhold.model.first_choice import FACTORS
 from workhold.model.quality import LOCATION_ERROR, WARNINGS
 from workhold.model.result import Result
 from workhold.statics.effective_error import EffectiveErrors, angle_classes
@@ -49,7 +49,12 @@ def why_first(result: Result, unit: Unit = MILLIMETRE) -> str:
         said = "none is fit for a workshop"
     else:
         said = "all that are fit have a warning" if warned else "no warning"
-    against = [factor.words for factor, holding in zip(FACTORS, holds, strict=True) if holding]
+    turned = f"turned by {round(float(np.degrees(row.theta[0])))}°"
+    against = [
+        turned if factor.key == "quarter_turn" else factor.words
+        for factor, holding in zip(FACTORS, holds, strict=True)
+        if holding
+    ]
     size = f"location error {length(error)}"
     if against:
         size += f", counted as {length(counted)} ({', '.join(against)})"
@@ -61,10 +66,8 @@ def why_first(result: Result, unit: Unit = MILLIMETRE) -> str:
     else:
         near = "within a tenth of the least"
     lies = (
-        ANGLE_WORDS[0]
-        if angle == 0
-        else "nothing as drawn is"
-        if angle == 1
-        else "nothing square to the drawing is"
-    )
+        "as drawn",
+        "as drawn nothing comes within a tenth",
+        "square to the drawing nothing comes within a tenth",
+    )[angle]
     return f"First: {said}; {size}, {near}; {lies}."

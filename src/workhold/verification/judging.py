@@ -199,11 +199,6 @@ class OrderJudge:
                 f"the least effective error is given as {least:.9f} mm, and that of the fixtures listed is "
                 f"{high / 1e9:.9f} mm"
             )
-        if fixtures[0].seating is None and self.effective.steps(fixtures[0])[0] > 0:
-            return (
-                f"the least effective error is given as {least:.9f} mm, a step below that of the first "
-                "fixture, which would then come after the one that has it"
-            )
         return ""
 
 
@@ -266,6 +261,10 @@ def order_faults(
                 "and pose"
             )
             return
+    # That which has the least error stands no step above it, so neither does the first.
+    is_bare = judge is not None and least is not None and count == 0 and bool(fixtures)
+    if is_bare and judge is not None and judge.effective.steps(fixtures[0])[0] > 0:
+        yield f"the least effective error is given as {least:.9f} mm, a step below that of the first fixture"
 
 
 def figures_stated(fixture: Fixture) -> dict[str, float] | None:
