@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
+from functools import partial
+from operator import mul
+from pathlib import Path
 from random import Random
 
 import pytest
@@ -12,10 +16,12 @@ from test_random_restrictions import random_toolkit
 import workhold
 from cad_parts import cad_part
 from strategies import random_outline
-from workhold import FlatJaw, Plate, Query, Vise, answer
+from workhold import FlatJaw, Plate, Query, Vise, Workpiece, answer
 from workhold.fixels.toolkit import Toolkit
 from workhold.listing import collector
+from workhold.model.first_choice import HOUSE_ORDER
 from workhold.search import lattice_shares, shares
+from workhold.verification import verify_file
 
 PLATE = [(0, 0, 0), (100, 0, 0), (100, 60, 0), (0, 60, 0)]
 BORE = [(38, 30, 1), (62, 30, 1)]
@@ -65,3 +71,53 @@ def test_the_best_are_the_first_of_all_of_random_parts(seed: int) -> None:
     random = Random(seed)
     part, toolkit = random_outline(random, random.choice([3, 4, 5, 6])), random_toolkit(random)
     assert_first(Query(part, toolkit), (1, 5, 20))
+
+
+def written(tmp_path: Path, **changes: object) -> tuple[str, ...]:
+    """What verification says of a file with some entries of its head changed; None takes one away."""
+    query = Query(cad_part(0), TOOLKITS["flat jaw"])
+    workhold.save(answer(query, threads=1), tmp_path / "r.json")
+    fields = json.loads((tmp_path / "r.json").read_text())
+    for key, value in changes.items():
+        fields[key] = value(fields[key]) if callable(value) else value
+        if fields[key] is None:
+            del fields[key]
+    (tmp_path / "s.json").write_text(json.dumps(fields))
+    return verify_file(tmp_path / "s.json").faults
+
+
+def test_the_file_says_the_least_error_and_verification_holds_it_to_that(tmp_path: Path) -> None:
+    """Missing, too small, too large, and of a list whose first ones change places."""
+    key = "least_effective_error"
+    assert written(tmp_path) == ()
+    assert any("is missing" in fault for fault in written(tmp_path, **{key: None}))
+    for times in (1 - 1e-6, 1 + 1e-6):
+        changed = written(tmp_path, **{key: partial(mul, times)})
+        assert any("is given as" in fault for fault in changed)
+    swapped = written(tmp_path, fixtures=lambda rows: [rows[-1], *rows[:-1]])
+    assert any("is better than the one before it" in fault for fault in swapped)
+
+
+def test_old_files_keep_their_order(tmp_path: Path) -> None:
+    """Files ranked by figures alone say no least error, and verify."""
+    figures = ["warnings", "penalty", "clamp_freedom", "clamp_amplification"]
+    plate = Workpiece.from_loops("plate", [PLATE])
+    result = answer(Query(plate, TOOLKITS["two clamps"], ranking=figures), threads=1)
+    assert result.least_effective_error is None
+    workhold.save(result, tmp_path / "old.json")
+    assert "least_effective_error" not in json.loads((tmp_path / "old.json").read_text())
+    again = workhold.open(tmp_path / "old.json")
+    assert again.query.ranking == tuple(figures) and len(again) == len(result)
+    usual = answer(Query(plate, TOOLKITS["two clamps"]), threads=1)
+    workhold.save(usual, tmp_path / "new.json")
+    assert workhold.open(tmp_path / "new.json").query.ranking[:3] == HOUSE_ORDER
+
+
+def test_the_first_lies_as_drawn_where_others_are_hardly_better() -> None:
+    """A plate that could stand on any of its sides lies as drawn, a bore is left alone, whatever is ranked by then."""
+    result = answer(
+        Query(Workpiece.from_loops("plate", [PLATE, BORE]), Plate(pitch=20, peg_radius=3, clamps=2), best=5),
+        threads=1,
+    )
+    assert [fixture.pose.theta_deg for fixture in result] == [0.0] * 5
+    assert all(peg.face < 4 for fixture in result for peg in fixture.pegs)

@@ -174,7 +174,7 @@ def to_ends(points: Array, lines: Array) -> Array:
     lines : (..., 5) of the faces, see :class:`EffectiveErrors`.
     """
     along = ((points - lines[..., :2]) * lines[..., 2:4]).sum(axis=-1)
-    return np.round(np.minimum(along, lines[..., 4] - along), FIGURE_DECIMALS)
+    return np.asarray(np.round(np.minimum(along, lines[..., 4] - along), FIGURE_DECIMALS))
 
 
 def outermost(workpiece: Workpiece) -> tuple[Array, Array]:
