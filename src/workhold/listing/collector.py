@@ -167,8 +167,7 @@ class BestFixtures:
         self.kept = self.cut(listed_once(Candidates.joined(parts)))
 
     def cut(self, everything: Candidates) -> Candidates:
-        """Those of fixtures that are listed once which may be among the best, and those that tie with the
-        last of these."""
+        """The fixtures of those listed once that may be among the best, or tie with the last of these."""
         if len(everything.standing) <= self.most:
             return everything
         table = measured(placed(everything, self.problem), self.problem)
@@ -357,7 +356,7 @@ class ResultCollector:
 
     @property
     def least(self) -> int | None:
-        """The least effective error of all that is measured, in billionths of a mm; None where none counts."""
+        """The least effective error of all in billionths of a mm; None where none counts."""
         return None if self.fine is None else self.fine.least
 
     def rank(self) -> None:

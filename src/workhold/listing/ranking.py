@@ -4,10 +4,11 @@ Where somebody names figures, these count: all but the last to two significant d
 has a say among fixtures that are about as good, the last to nine decimals. A fixture's place depends on no
 other fixture then.
 
-In the usual order a warning counts first. Then comes how many steps of a tenth the effective location error is
-above the least of all fixtures that are fit and without warning, or as near to it as any is; then the angle as
-written, and then the figures. So a place depends on that least error, which is known at the end. Parts of a
-list are kept and left out by what holds whatever it is (:meth:`OrderKeys.beaten`):
+In the usual order a warning counts first. Then steps count, of a tenth each, by which the effective location
+error is above the least one. That is the least of all fixtures that are fit and without warning, or as near
+to that as any is. Then comes the angle as written, and then the figures. So a place depends on the least
+error, which is known at the end. Parts of a list are kept and left out by what holds whatever it is
+(:meth:`OrderKeys.beaten`):
 
 - One fixture comes before another one whose effective error is a tenth larger or more, if it is fit and has
   no warning: steps count from an error no larger than either, so that the other has a step more.
@@ -72,8 +73,7 @@ IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
 COARSE_DIGITS = 2
-# Effective errors in whole billionths of a millimetre, of which there are no more than an integer holds eleven
-# times.
+# Effective errors are whole billionths of a millimetre, no more than an integer holds eleven times.
 PER_MM, MOST_ERROR = 10.0**FIGURE_DECIMALS, 4 * 10**17
 # Rows compared with others at a time.
 TOGETHER = 1 << 22
@@ -108,8 +108,8 @@ class OrderKeys:
 
     Parameters
     ----------
-    first : (N, A) numbers that count before any steps, smaller being better. In the usual order whether a
-        fixture is unfit, and whether there is a warning; else all numbers there are.
+    first : (N, A) numbers that count before any steps, smaller being better. In the usual order these are
+        whether a fixture is unfit, and whether there is a warning; else they are all numbers there are.
     error : (N,) effective location errors in billionths of a millimetre; None where steps do not count.
     rest : (N, B) numbers that count after the steps.
     """
@@ -144,7 +144,7 @@ class OrderKeys:
         """The least error of any that may be fit and without warning; the largest there is without one."""
         if self.error is None:
             return MOST_ERROR
-        return int(self.error[(self.first <= 0.0).all(axis=1)].min(initial=MOST_ERROR))
+        return min(self.error[(self.first <= 0.0).all(axis=1)].tolist(), default=MOST_ERROR)
 
     @property
     def is_known(self) -> BoolArray:
@@ -294,7 +294,7 @@ class OrderKeys:
         return out
 
     def is_known_above(self, floor: int) -> bool:
-        """Whether the least error of these is that of all, if no other fixture has less than ``floor``."""
+        """Whether the least error of these is that of all, if no other has less than ``floor``."""
         if self.error is None or not self.is_fine.any():
             return False
         return (self.least or 0) <= floor
@@ -349,7 +349,7 @@ def in_mm(error: int | None) -> float | None:
 
 
 def usual_errors(query: Query) -> EffectiveErrors | None:
-    """What tells effective errors, where these count in the order of a query; else None."""
+    """What gives effective errors, where these count in the order of a query; else None."""
     return EffectiveErrors.of(query) if query.has_house_order else None
 
 
@@ -375,11 +375,12 @@ def keys_of(quality: Array, query: Query, error: Array | IntArray | None, angle:
         return OrderKeys(np.column_stack([bad, *figures]), None, np.zeros((len(bad), 0)))
     first = np.column_stack([bad, quality[:, WARNINGS] > 0.0])
     rest = np.column_stack([angle.astype(np.float64), *figures])
-    return OrderKeys(first, error if error.dtype == np.int64 else billionths(error), rest)
+    whole = error.astype(np.int64) if error.dtype.kind == "i" else billionths(error.astype(np.float64))
+    return OrderKeys(first, whole, rest)
 
 
 def figure_keys(quality: NDArray[np.float64], ranking: Sequence[str]) -> list[NDArray[np.float64]]:
-    """Numbers (N,) to sort by, the first counting most and smaller being better, for the figures of a ranking."""
+    """Numbers (N,) to sort by for the figures of a ranking, the first counting most."""
     keys, ranking = [], figures_ranked_by(ranking)
     for place, key in enumerate(ranking):
         number = ranked_number(key)

@@ -295,7 +295,8 @@ def least_factors(records: Array, off: Array, problem: Problem, query: Query) ->
         "face_end": near.any(axis=1),
         "dowel_in_bore": effective.unasked[faces].any(axis=1),
     }
-    return np.prod([np.where(held[one.key], one.times, 1.0) for one in FACTORS if one.key in held], axis=0)
+    times = [np.where(held[one.key], one.times, 1.0) for one in FACTORS if one.key in held]
+    return np.asarray(np.prod(times, axis=0))
 
 
 def best_figures(

@@ -1,7 +1,7 @@
 """What makes one fixture the first choice before others: the order's own words, and what each doubt costs.
 
-The order is lexicographic (docs/quality.md, "Which comes first"): unfit; warned or not; steps of the effective
-location error above the best; the angle; figures of quality; identity. The effective location error is the
+The order is lexicographic (docs/quality.md, "Which comes first"): unfit; warned or not; steps of the
+effective location error above the best; the angle; figures of quality; identity. The effective location error is the
 location error times the factors below that hold of the fixture. They are data, each with its reason.
 """
 

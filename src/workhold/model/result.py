@@ -46,9 +46,9 @@ class Result:
     pairs, seats : with two clamps, how many pairs of clamps hold the part, and at how many seats and pairs of
         directions. None for other toolkits, and where only the best were sought.
     seating : where else the pegs can hold the part, of as many of the first fixtures as there are entries.
-    least_effective_error : in mm, the least effective location error of all fixtures that are fit and without warning,
-        or as near to it as any is, from which steps count (``model.first_choice``). None where the order has
-        no steps, and of results from before there were any.
+    least_effective_error : in mm, the least effective location error of all fixtures that are fit and without
+        warning, or as near to that as any is; steps count from it (``model.first_choice``). None where the
+        order has no steps, and of results from before there were any.
     """
 
     query: Query

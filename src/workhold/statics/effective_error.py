@@ -60,7 +60,7 @@ def faces_unasked_for(query: Query) -> BoolArray:
 
 @frozen(eq=False)
 class EffectiveErrors:
-    """What is needed to tell which factors hold of the fixtures of a query.
+    """What is needed to find which factors hold of the fixtures of a query.
 
     Parameters
     ----------
@@ -142,7 +142,7 @@ class EffectiveErrors:
         return out
 
     def extent(self, table: FixtureTable, axis: int) -> tuple[Array, Array]:
-        """From where to where (N,) the part reaches along x or y of the toolkit."""
+        """The least and largest places (N,) that the part reaches along x or y of the toolkit."""
         # The axis as the part sees it.
         turn = (pi / 2) * axis - table.theta
         along = np.stack([np.cos(turn), np.sin(turn)], axis=1)
@@ -150,7 +150,7 @@ class EffectiveErrors:
         return low + table.position[:, axis], high + table.position[:, axis]
 
     def spare(self, table: FixtureTable, axis: int) -> tuple[Array, Array]:
-        """By how many holes (N,) all may be moved back, and ahead, along x or y."""
+        """The holes (N,) by which all may be moved back, and ahead, along x or y."""
         toolkit, none = self.query.toolkit, np.zeros(len(table))
         slides = [plate for plate in toolkit.plates if plate.travel is not None]
         if any(plate.is_along_x == (axis == 0) for plate in slides) or (axis == 1 and toolkit.wall):

@@ -17,7 +17,7 @@ __all__ = ["why_first"]
 
 
 def why_first(result: Result, unit: Unit = MILLIMETRE) -> str:
-    """Say why the first fixture of a result stands first; nothing where another order was asked for.
+    """Says why the first fixture of a result stands first; nothing where another order was asked for.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ def why_first(result: Result, unit: Unit = MILLIMETRE) -> str:
     if against:
         size += f", counted as {length(counted)} ({', '.join(against)})"
     if np.round(counted, 9) >= 1.1 * least:
-        # Where what seating tells changed the order.
+        # Where what is known of its seating changed the order.
         near = f"the least is {length(least)}"
     elif np.round(counted, 9) <= least:
         near = "the least of all"

@@ -96,7 +96,7 @@ class EffectiveJudge:
         return peg.face in self.holes and self.carrier(peg).contact.is_placed
 
     def touches_an_end(self, fixture: Fixture) -> tuple[bool, bool]:
-        """Whether a contact is nearer than its peg's radius to the end of a straight face: surely, perhaps."""
+        """Whether a contact is near the end of a straight face, surely and perhaps."""
         faces = {face.number: face.segment for face in self.query.workpiece.numbered.faces}
         surely = perhaps = False
         for peg in fixture.pegs:
@@ -120,7 +120,7 @@ class EffectiveJudge:
         return surely, perhaps
 
     def is_over(self, fixture: Fixture, axis: int, spare: float) -> bool:
-        """Whether the part reaches beyond the plates along x or y by more than a length, wherever all stands."""
+        """Whether the part reaches beyond the plates by more than a length, wherever all stands."""
         toolkit, plates = self.query.toolkit, self.query.toolkit.plates
         counts = [(plate.columns, plate.rows)[axis] for plate in plates]
         if None in counts:
@@ -144,7 +144,7 @@ class EffectiveJudge:
         return not any(least + k * pitch >= below and most + k * pitch <= high + spare for k in shifts)
 
     def extent(self, fixture: Fixture, axis: int) -> Range:
-        """From where to where the part reaches along x or y of the toolkit."""
+        """The least and the largest place that the part reaches along x or y of the toolkit."""
         part, turn = self.query.workpiece, radians(fixture.pose.theta_deg)
         values = list[float]()
         for loop in part.loops[: part.pieces]:

@@ -3,8 +3,9 @@
 Both are rules of docs/quality.md. Warnings and penalties are counted in balls. The file's numbers may be off,
 so a figure may lie on either side of the number that decides; then the ball holds both counts.
 
-In the order ("Which comes first") fixtures that are none for a workshop come last. In the usual one a warning,
-steps of the effective error and the angle come before figures (``verification.first_choice``). Every figure but the last
+In the order ("Which comes first") fixtures that are none for a workshop come last. In the usual one a
+warning, steps of the effective error and the angle come before figures (``verification.first_choice``). Every
+figure but the last
 counts to two significant digits, the last to nine decimals; what is equal stands in the order of types,
 holes, orientations and faces. Fixtures whose seating is known come first, its warnings counting as those of
 quality do. Equal ones among them stand as they would without it. A figure is written rounded, and that
@@ -172,7 +173,7 @@ class OrderJudge:
         return [(warned, warned), self.effective.steps(fixture), (low, high)]
 
     def least_fault(self, fixtures: Sequence[Fixture], is_whole: bool) -> str:
-        """What is wrong with the least effective error of all, or nothing; ``is_whole`` where all are listed."""
+        """What is wrong with the least effective error of all; ``is_whole`` where all are listed."""
         if not fixtures:
             return ""
         least = self.effective.least
@@ -249,7 +250,7 @@ def order_faults(
     for place in range(1, len(rows)):
         one, before = seated[place], seated[place - 1]
         if before is not None and one is None:
-            ranking = usual
+            ranking = usual.ranking
             continue
         better = is_better(one or rows[place], before or rows[place - 1])
         if better:
