@@ -144,7 +144,7 @@ class OrderKeys:
         """The least error of any that may be fit and without warning; the largest there is without one."""
         if self.error is None:
             return MOST_ERROR
-        return min(self.error[(self.first <= 0.0).all(axis=1)].tolist(), default=MOST_ERROR)
+        return int(min(self.error[(self.first <= 0.0).all(axis=1)].tolist(), default=MOST_ERROR))
 
     @property
     def is_known(self) -> BoolArray:
