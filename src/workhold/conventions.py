@@ -243,6 +243,14 @@ NO_FORCE = 1e-9
 FLAT = 1e-12
 OUTSIDE = 1e-9
 
+# == What stands first (docs/quality.md says why) ==
+
+# Degrees. An angle as written that is nearer to a whole quarter turn is that: poses are known to far less.
+WRITTEN_ANGLE = 1e-6
+# No unit. Each step of the effective location error above the best is by a tenth: so many tenths more, as a
+# fraction, which is counted exactly.
+STEP_TENTHS = 11, 10
+
 # == What is warned of, and what counts against a fixture (docs/quality.md says why) ==
 
 # mm. A contact nearer than this to an edge: edges are commonly broken by some tenths of a millimetre.

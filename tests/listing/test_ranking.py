@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from fractions import Fraction
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from workhold import InputError
-from workhold.listing.ranking import best_marked, rank
+from workhold.listing.ranking import OrderKeys, billionths, error_steps, is_worse, keys_of
+from workhold.model.first_choice import has_house_order
 from workhold.model.quality import (
     CLOSURE_MARGIN,
     DEFAULT_RANKING,
@@ -31,6 +37,19 @@ def figures(count: int, **columns: list[float]) -> np.ndarray:
     for name, values in columns.items():
         quality[:, [figure.key for figure in FIGURES].index(name)] = values
     return quality
+
+
+def keys(quality: np.ndarray, ranking: Sequence[str], tolerance: Tolerance, angles: Any = 0) -> OrderKeys:
+    """The keys of fixtures without any factor."""
+    error = quality[:, LOCATION_ERROR] if has_house_order(ranking) else None
+    asked: Any = SimpleNamespace(ranking=ranking, tolerance=tolerance)
+    return keys_of(quality, asked, error, np.zeros(len(quality), np.int64) + angles)
+
+
+def rank(quality: np.ndarray, ranking: Sequence[str], tolerance: Tolerance) -> np.ndarray:
+    """The order of fixtures, best first."""
+    found = keys(quality, ranking, tolerance)
+    return found.order(found.least)
 
 
 def test_the_next_figure_decides_among_those_about_as_good() -> None:
@@ -59,15 +78,12 @@ def test_equal_fixtures_stay_in_the_order_of_their_identities() -> None:
     st.data(),
 )
 def test_the_best_marked_are_the_first_ranked(errors: list[float], most: int, data: st.DataObject) -> None:
-    """Without ties exactly the first so many; with ties also those equal to the last of them, and none else."""
+    """The first so many, also those equal to the last of them, and none else."""
     margins = data.draw(st.lists(st.sampled_from([0.1, 0.2]), min_size=len(errors), max_size=len(errors)))
     quality = figures(len(errors), location_error=errors, closure_margin=margins)
     ranking = ("location_error", "closure_margin")
     order = rank(quality, ranking, LOOSE)
-    assert np.flatnonzero(best_marked(quality, ranking, LOOSE, most, ties=False)).tolist() == sorted(
-        order[:most]
-    )
-    marked = best_marked(quality, ranking, LOOSE, most, ties=True)
+    marked = keys(quality, ranking, LOOSE).kept(most)
     assert marked[order[:most]].all()
     last = quality[order[min(most, len(order)) - 1]]
     for index in np.flatnonzero(marked):
@@ -119,11 +135,12 @@ def test_what_is_none_for_a_workshop_comes_last(
 def test_fixtures_with_a_warning_never_stand_before_those_without(
     warnings: list[int], data: st.DataObject
 ) -> None:
-    """Whatever is preferred."""
+    """Whatever is preferred; how many there are counts first only where something is."""
     errors = data.draw(st.lists(st.floats(0.01, 0.9), min_size=len(warnings), max_size=len(warnings)))
     quality = figures(len(warnings), warnings=list(map(float, warnings)), location_error=errors)
     for ranking in (DEFAULT_RANKING, *PREFERENCES.values()):
         told = [warnings[k] for k in rank(quality, ranking, LOOSE)]
+        told = [number > 0 for number in told] if has_house_order(ranking) else told
         assert told == sorted(told)
 
 
@@ -136,3 +153,79 @@ def test_a_preference_is_an_order_and_not_two() -> None:
         asked_ranking(None, "pretty", [])
     with pytest.raises(InputError, match="two orders"):
         asked_ranking(["closure-margin"], "square", [])
+
+
+def test_steps_are_counted_in_whole_numbers() -> None:
+    """A tenth more is a step, however numbers are rounded; and so is each further tenth of what is then."""
+    least = 50_000_000
+    errors = [least, 54_999_999, 55_000_000, 60_499_999, 60_500_000, 66_549_999, 66_550_000, least - 7]
+    assert error_steps(np.array(errors), least).tolist() == [0, 0, 1, 1, 2, 2, 3, 0]
+    many = np.random.default_rng(1).integers(1, 10**12, 300)
+    for one, steps in zip(many.tolist(), error_steps(many, 977).tolist(), strict=True):
+        assert one * 10**steps >= 977 * 11**steps or steps == 0
+        assert one < Fraction(11, 10) ** (steps + 1) * 977
+    assert error_steps(np.array([0, 1, 2]), 0).tolist() == [0, 0, 7]
+    assert billionths(np.array([0.055, np.nan, 1e300])).tolist() == [55_000_000, 4 * 10**17, 4 * 10**17]
+
+
+def test_a_warning_counts_before_steps_and_steps_before_the_angle() -> None:
+    """And the angle before any figure."""
+    quality = figures(
+        6,
+        warnings=[1, 0, 0, 0, 0, 0],
+        location_error=[0.01, 0.043, 0.0435, 0.04, 0.044, 0.0399],
+        penalty=[0, 0, 0, 5, 0, 7],
+    )
+    found = keys(quality, DEFAULT_RANKING, LOOSE, np.array([0, 1, 0, 2, 0, 2]))
+    assert found.least == 39_900_000
+    assert found.order(found.least).tolist() == [2, 1, 3, 5, 4, 0]
+
+
+class Drawn:
+    """Random fixtures of few different numbers, so that many are equal."""
+
+    def __init__(self, data: st.DataObject) -> None:
+        count = data.draw(st.integers(1, 14))
+
+        def some(values: list[float]) -> list[float]:
+            return data.draw(st.lists(st.sampled_from(values), min_size=count, max_size=count))
+
+        errors = some([0.04, 0.041, 0.0439, 0.044, 0.0441, 0.0483, 0.0484, 0.05, 0.9])
+        warnings, points = some([0.0, 0.0, 0.0, 1.0]), some([1.0, 2.0])
+        quality = figures(count, warnings=warnings, location_error=errors, penalty=points)
+        self.keys = keys(quality, DEFAULT_RANKING, LOOSE, np.array(some([0, 1, 2]), np.int64))
+
+
+@given(st.data(), st.integers(1, 5), st.integers(0, 13))
+def test_what_is_kept_holds_the_best_whatever_comes_later(data: st.DataObject, most: int, cut: int) -> None:
+    """Kept of a part and then of all: the first so many of all are among it, and the least error stays."""
+    whole = Drawn(data).keys
+    first = np.flatnonzero(whole.take(slice(cut)).kept(most))
+    rest = np.arange(min(cut, len(whole)), len(whole))
+    some = np.concatenate([first, rest])
+    kept = some[whole.take(some).kept(most)]
+    assert set(whole.order(whole.least)[:most].tolist()) <= set(kept.tolist())
+    assert whole.take(kept).least == whole.least
+
+
+@given(st.data(), st.integers(1, 4))
+def test_what_is_beaten_is_not_among_the_best(data: st.DataObject, most: int) -> None:
+    """With an error known to be the least of all, and without; and a bound is never beaten by itself."""
+    found, others = Drawn(data).keys, Drawn(data).keys
+    kept = found.take(found.kept(most))
+    for floor in (0, others.lowest):
+        beaten = others.beaten(kept, most, min(floor, others.lowest))
+        whole = kept.followed_by(others)
+        best = whole.order(whole.least)[:most] - len(kept)
+        assert not beaten[best[best >= 0]].any()
+        assert (
+            not beaten[others.error == (whole.least or 0)][
+                others.first[others.error == (whole.least or 0)].max(axis=1) == 0
+            ].any()
+            or kept.least == whole.least
+        )
+
+
+def test_keys_are_compared_in_lexicographic_order() -> None:
+    rows = np.array([[0.0, 5.0], [1.0, 0.0], [1.0, 2.0], [1.0, 3.0], [2.0, 0.0]])
+    assert is_worse(rows, np.array([1.0, 2.0])).tolist() == [False, False, False, True, True]

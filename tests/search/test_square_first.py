@@ -17,7 +17,7 @@ from workhold.contact.problem import Problem
 from workhold.conventions import SQUARE_TILT
 from workhold.files.result.writer import write_result
 from workhold.fixels.toolkit import Toolkit
-from workhold.listing.bounds import square_angles
+from workhold.listing.bounds import preferred_angles
 from workhold.model.quality import TILT
 from workhold.model.requirements import Restrictions
 from workhold.model.search_report import best_note
@@ -114,7 +114,7 @@ def test_the_first_blocks_and_the_rest_find_everything(loose: bool, monkeypatch:
         monkeypatch.setattr("workhold.search.toolkit_search.VAGUE", 0.0)
     query = Query(cad_part(0), VISE)
     search = ToolkitSearch.of(Problem.of(query))
-    angles = square_angles(query)
+    angles = preferred_angles(query)
     everything = records_of(search)
     first, rest = (records_of(search, first=angles, rest=rest) for rest in (False, True))
     assert np.array_equal(np.unique(np.concatenate([first, rest]), axis=0), everything)

@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 
 from workhold import Result, Vise, design, load
-from workhold.listing.ranking import ranking_keys
+from workhold.listing.ranking import order_keys, usual_errors
+from workhold.model.first_choice import figures_ranked_by
 from workhold.model.quality import FIGURES
 from workhold.model.requirements import Load, Restrictions, circle_zone
 from workhold.verification import Verification, verify
@@ -129,8 +130,8 @@ def test_two_neighbours_that_change_places(limited: Result, place: int) -> None:
     order = np.arange(len(limited))
     order[[place, place + 1]] = place + 1, place
     query = limited.query
-    keys = np.array(ranking_keys(limited.table.quality, query.ranking, query.tolerance))
-    equal = np.array_equal(*np.round(keys.T[order[place:][:2]], 9))
+    keys = order_keys(limited.table, query, usual_errors(query))
+    equal = np.array_equal(*np.round(keys.numbers(keys.least)[order[place:][:2]], 9))
     outcome = verify(attrs.evolve(limited, table=limited.table.take(order)))
     assert (outcome.faults == ()) == equal
     assert outcome.proven == len(limited)
@@ -141,7 +142,7 @@ def test_other_keys_to_rank_by_are_a_fault(limited: Result) -> None:
     for ranking in (
         ("closure_margin",),
         ("end_distance", "location_error"),
-        tuple(reversed(limited.query.ranking)),
+        tuple(reversed(figures_ranked_by(limited.query.ranking))),
     ):
         outcome = verify(attrs.evolve(limited, query=attrs.evolve(limited.query, ranking=ranking)))
         assert len(outcome.faults) == 1, ranking

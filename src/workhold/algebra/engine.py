@@ -11,6 +11,7 @@ these faces may then be missing, and a note names them.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
 from threading import Event
 
 import numpy as np
@@ -236,7 +237,11 @@ def stages(solver: ResultantSolver, arrangements: Sequence[str]) -> Iterator[Arr
 
 
 def answer_by_algebra(
-    query: Query, *, progress: Progress | None = None, cancel: Event | None = None
+    query: Query,
+    *,
+    progress: Progress | None = None,
+    cancel: Event | None = None,
+    is_part: bool = False,
 ) -> Result:
     """Finds every fixture that a query asks for as the paper does, by resultants.
 
@@ -246,6 +251,7 @@ def answer_by_algebra(
         best are.
     progress : called as ``progress(fraction done, fixtures found so far)``; the fraction is a guess.
     cancel : when set, the search stops soon and the result, marked incomplete, holds what was found.
+    is_part : whether others are joined with it before they are ranked.
 
     Returns
     -------
@@ -262,7 +268,8 @@ def answer_by_algebra(
     ways = query.toolkit.ways
     if len(ways) > 1:
         alone = [evolve(query, toolkit=way) for way in ways]
-        return joined_ways([answer_by_algebra(one, progress=progress, cancel=cancel) for one in alone], query)
+        part = partial(answer_by_algebra, progress=progress, cancel=cancel, is_part=True)
+        return joined_ways(list(map(part, alone)), query)
     problem = Problem.of(query)
     refuse_unlike(problem.frame)
     solver = ResultantSolver(problem.rows, problem.frame, query.contact_margin, problem.diameter)
@@ -280,5 +287,5 @@ def answer_by_algebra(
         **solver.counts,
         "undecided": sum(map(len, solver.undecided)),
     }
-    result = listed_result(problem, records, Work(complete, statistics), cancel=cancel)
+    result = listed_result(problem, records, Work(complete, statistics), cancel=cancel, is_part=is_part)
     return evolve(result, notes=(*result.notes, *undecided_notes(solver.undecided, problem.faces)))

@@ -268,7 +268,13 @@ def report(
     stream: TextIO,
 ) -> None:
     """Reports a result on a stream: stderr where stdout carries the file."""
-    from workhold.cli.tables import counts_sentence, proof_sentences, result_table, unfit_sentence
+    from workhold.cli.tables import (
+        counts_sentence,
+        first_sentence,
+        proof_sentences,
+        result_table,
+        unfit_sentence,
+    )
     from workhold.listing.identity import entries
 
     for note in result.notes:
@@ -276,6 +282,8 @@ def report(
     shown = entries(result, unfit)
     if len(result) and listed > 0:
         print_tables(result_table(result, shown, listed, unit), stream=stream)
+        if reason := first_sentence(result, unit):
+            print_tables(reason, stream=stream)
     sentence = counts_sentence(result)
     if not sum(result.found.values()):
         found = "exists" if result.complete else "was found before the interruption"

@@ -145,11 +145,12 @@ class QueryWords:
     rank_by: str | None = option(
         RANKING,
         "FIGURES",
-        "What makes a fixture good, the first counting most, such as penalty,tilt: "
-        "warnings, penalty, clamp-amplification, closure-margin, edge-distance if not given, with "
-        "load-reaction in third place if there are loads or cutting forces; also location-error, tilt, "
-        "smallest-face, wrench-radius, end-distance, jaw-force-needed, with a program program-clearance, and "
-        "of two clamps clamp-freedom, which is then in third place.",
+        "What makes a fixture good, the first counting most, such as penalty,tilt, instead of the usual "
+        "order: no warning; location error in steps of a tenth, more where the part is turned, hangs over or "
+        "is held from inside a hole; as drawn; then warnings, penalty, clamp-amplification (or "
+        "load-reaction), closure-margin, edge-distance. Also location-error, tilt, smallest-face, "
+        "wrench-radius, end-distance, jaw-force-needed, with a program program-clearance, and of two clamps "
+        "clamp-freedom.",
     )
     prefer: str | None = option(
         RANKING,

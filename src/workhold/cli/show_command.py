@@ -128,12 +128,14 @@ def print_fixture(
     ----------
     closing : the jaw force in N, None where it is open, and how stiff the jaw is.
     """
-    from workhold.cli.tables import fixture_tables, quality_table, standing_sentences
+    from workhold.cli.tables import first_sentence, fixture_tables, quality_table, standing_sentences
 
     fixture, toolkit = result[rank - 1], result.toolkit
     quality = quality_table(fixture, toolkit.moving.noun, unit, result.query.jaw_force)
     standing = standing_sentences(fixture, result, unit)
     print_tables(*fixture_tables(fixture, toolkit, rank, len(result), unit), *standing, "", quality)
+    if rank == 1 and (reason := first_sentence(result, unit)):
+        print_tables(reason)
     if fixture.seating is not None:
         print_tables(*seating_words(fixture, result, unit))
     elif not toolkit.closes_at_once and rank <= (result.query.seating or 0):

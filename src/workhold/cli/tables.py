@@ -76,6 +76,13 @@ def counts_sentence(result: Result) -> str:
     return sentence
 
 
+def first_sentence(result: Result, unit: Unit) -> str:
+    """Says why the first fixture stands first; nothing where another order was asked for."""
+    from workhold.statics.why_first import why_first
+
+    return why_first(result, unit)
+
+
 def unfit_sentence(unfit: int) -> str:
     """Says how many fixtures are not shown because they are none for a workshop, and how to see them."""
     are = "is no fixture" if unfit == 1 else "are no fixtures"

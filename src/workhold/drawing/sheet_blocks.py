@@ -66,6 +66,8 @@ def write_quality(column: TextColumn, sheet: Sheet) -> None:
         read = f", of which {off} because the drawing's curves were read as arcs"
         allowed = f"pegs off by up to {peg}, faces by {face}{read if tolerance.departure else ''}"
         column.paragraph(f"Location error: {allowed}.", NOTE)
+    if sheet.details.why_first:
+        column.paragraph(sheet.details.why_first, NOTE)
 
 
 def load_words(load: Load, lengths: LengthUnit) -> str:

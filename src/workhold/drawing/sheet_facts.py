@@ -35,6 +35,7 @@ from workhold.statics.judging import is_astray, is_near_edge, is_strong, is_unfi
 from workhold.statics.loads import LoadCase, load_cases
 from workhold.statics.program_clearance import Passing, passing_of
 from workhold.statics.program_forces import CuttingNeed, cutting_need_of
+from workhold.statics.why_first import why_first
 from workhold.units import MILLIMETRE, Unit
 from workhold.version import __version__
 
@@ -79,6 +80,7 @@ class SheetDetails:
     peg_length, peg_height : of the pegs, and how far they stand out of the jaws, in mm.
     dowel : what the pegs are and how they fit their holes, in the user's words instead of the tolerance's.
     others : how many other fixtures of the result use the same holes.
+    why_first : why this is the first choice, in a sentence; empty for others.
     seating : where else the pegs can hold the part; None where the sheet does not show it.
     by_hand : how the part is put into two clamps; None where the sheet does not show it.
     not_seated : why there is no seating though it was asked for, in a sentence.
@@ -114,6 +116,7 @@ class SheetDetails:
     peg_height: float | None = None
     dowel: str | None = None
     others: int = 0
+    why_first: str = ""
     seating: Seating | None = None
     by_hand: ByHand | None = None
     not_seated: str = ""
@@ -437,6 +440,7 @@ def result_details(
         zero=place,
         peg_height=peg_height,
         others=result.table.same_holes(rank - 1) if others is None else others,
+        why_first=why_first(result, unit) if rank == (number or 1) == 1 else "",
         seating=known,
         by_hand=put_in,
         not_seated=not_seated,

@@ -24,9 +24,9 @@ from workhold.listing.canonical_form import changes
 from workhold.listing.ranking import measured
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import (
-    DEFAULT_RANKING,
+    FIGURE_RANKING,
     FIGURES,
-    PAIR_RANKING,
+    PAIR_FIGURES,
     Figure,
     figure_column,
     figure_number,
@@ -55,7 +55,7 @@ __all__ = [
 # A family is asked for what it loses in location; after that what a machinist looks at counts, by how many
 # things move.
 LOCATION = "location_error"
-RANKINGS = {1: (LOCATION, *DEFAULT_RANKING), 2: (LOCATION, *PAIR_RANKING)}
+RANKINGS = {1: (LOCATION, *FIGURE_RANKING), 2: (LOCATION, *PAIR_FIGURES)}
 # Losses are rounded to this number of decimals.
 LOSS_DECIMALS = 9
 

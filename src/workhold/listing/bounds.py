@@ -18,13 +18,13 @@ fixtures" of docs/method-theorems.md).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import hypot, inf, sqrt
+from math import hypot, inf, pi, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
-from workhold.conventions import NO_REACTION, SQUARE_TILT
+from workhold.conventions import LOOSE, NO_REACTION, SQUARE_TILT
 from workhold.geometry.segment import Arc
 from workhold.kernels.base.feature import IS_ARC, RADIUS
 from workhold.kernels.contact import record
@@ -42,8 +42,9 @@ from workhold.listing.canonical_form import Candidates, candidates_of
 from workhold.listing.clamp_placement import DIRECTION_NAMES, direction_number
 from workhold.listing.contact_groups import PackedContacts
 from workhold.listing.placing import LOCATOR_CONTACTS, TIP
-from workhold.listing.ranking import best_possible, ranking_keys
+from workhold.listing.ranking import OrderKeys, best_possible, keys_of
 from workhold.model.clamps import LOCATORS
+from workhold.model.first_choice import FACTORS
 from workhold.model.quality import (
     CLAMP_AMPLIFICATION,
     CLAMP_FREEDOM,
@@ -59,7 +60,7 @@ from workhold.statics.contact_matrix import locators_inverse, outward_normals, w
 from workhold.statics.judging import Judging
 from workhold.statics.quality import face_sizes, main_direction
 
-__all__ = ["BOUNDED", "first_of_clamps", "pair_bounds", "square_angles", "tilted_keys"]
+__all__ = ["BOUNDED", "first_of_clamps", "pair_bounds", "preferred_angles", "tilted_keys"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -142,19 +143,25 @@ def clamp_forces(records: Array, c: Candidates, problem: Problem) -> Array:
     return out
 
 
-# Degrees beside square orientations that count as such: far more than any orientation is off.
+# Degrees beside preferred orientations that count as such: far more than any orientation is off.
 BESIDE = 1e-3
 
 
-def square_angles(query: Query) -> list[tuple[float, float]]:
-    """Ranges in degrees of the part's angle in which it may lie square."""
-    direction, beside = main_direction(query.workpiece), SQUARE_TILT + BESIDE
+def preferred_angles(query: Query) -> list[tuple[float, float]]:
+    """Ranges in degrees of the part's angle in which the order prefers it: square, as drawn or by quarters.
+
+    In the usual order these are quarters of a turn as written, else where the part's main direction is square.
+    """
+    direction = 0.0 if query.has_house_order else main_direction(query.workpiece)
+    beside = SQUARE_TILT + BESIDE
     middles = [90.0 * k - direction for k in range(4)]
     return [(middle - beside, middle + beside) for middle in middles]
 
 
-def tilted_keys(query: Query, problem: Problem) -> Array | None:
-    """Keys (R,) that no tilted fixture ranks before; None where tilt has no say, or nothing is bounded.
+def tilted_keys(query: Query, problem: Problem) -> OrderKeys | None:
+    """The least keys, one row, that fixtures at other than the preferred angles can have.
+
+    None where angles have no say, or nothing is bounded.
 
     Parameters
     ----------
@@ -164,15 +171,35 @@ def tilted_keys(query: Query, problem: Problem) -> Array | None:
     toolkit, part = query.toolkit, query.workpiece
     if toolkit.has_flats or part.outlines:
         return None
+    if query.has_house_order:
+        # Where the drawing lies aslant, other angles may be square.
+        tilt = SQUARE_TILT if main_direction(part) == 0.0 else 0.0
+        return least_keys(query, problem, tilt)
     tilted, square = (least_keys(query, problem, tilt) for tilt in (SQUARE_TILT, 0.0))
-    return None if (tilted == square).all() else tilted
+    return None if (tilted.first == square.first).all() else tilted
 
 
-def least_keys(query: Query, problem: Problem, tilt: float) -> Array:
-    """Keys (R,) that no fixture of a tilt in degrees or more ranks before."""
+def shared_arcs(query: Query) -> list[int]:
+    """Numbers of the arcs that two pegs which fix the part may touch: pegs are a pitch or the gap apart."""
+    carriers, gap = query.toolkit.carriers, query.toolkit.gap
+    least = min((*(min(one.pitch) for one in carriers if one.has_lattice), *(() if gap is None else (gap,))))
+    radius = max(one.peg_radius for one in carriers)
+    out = []
+    for face in query.workpiece.numbered.faces:
+        arc = face.segment
+        if isinstance(arc, Arc):
+            # Pegs of any radius: about the centre of a bore they are no farther out than the bore.
+            far = arc.radius + (radius if arc.sign > 0 else 0.0)
+            if 2.0 * far * sin(min(arc.half_sweep, pi / 2)) >= least - LOOSE:
+                out.append(face.number)
+    return out
+
+
+def least_keys(query: Query, problem: Problem, tilt: float) -> OrderKeys:
+    """The least keys that fixtures of a tilt in degrees or more, at other than preferred angles, can have."""
     part, tolerance = query.workpiece, query.tolerance
     sizes, off = face_sizes(part), tolerance.peg + tolerance.face
-    arcs = [face.number for face in part.numbered.faces if isinstance(face.segment, Arc)]
+    arcs = shared_arcs(query)
     # Whether two pegs share an arc or not.
     cases = [(sqrt(2.0) * off, np.nanmax(sizes))]
     if arcs:
@@ -182,5 +209,11 @@ def least_keys(query: Query, problem: Problem, tilt: float) -> Array:
     quality[:, LOCATION_ERROR] *= 1.0 - SHARE
     quality[:, TILT] = tilt
     quality[:, PENALTY] = Judging.of(problem.wrench_length, query.toolkit, tolerance).penalty(quality)
-    keys = np.stack(ranking_keys(quality, query.ranking, tolerance), axis=1)
-    return np.asarray(keys[np.lexsort(keys.T[::-1])[0]])
+    aslant = next(factor.times for factor in FACTORS if factor.key == "other_angle")
+    error = quality[:, LOCATION_ERROR] * aslant if query.has_house_order else None
+    keys = keys_of(quality, query, error, np.full(len(cases), 2))
+    if keys.error is None:
+        return keys.take(keys.order(None)[:1])
+    # No one of them need have all that is least.
+    rest = keys.rest[np.lexsort(keys.rest.T[::-1])[:1]]
+    return OrderKeys(keys.first[:1], keys.error.min(keepdims=True), rest)

@@ -35,11 +35,12 @@ from workhold.listing.canonical_form import (
 )
 from workhold.listing.identity import Identity
 from workhold.listing.placing import placeable, placed
-from workhold.listing.ranking import best_marked, is_behind, last_keys, measured, ranking_keys
+from workhold.listing.ranking import OrderKeys, keys_of, measured, order_keys, usual_errors
 from workhold.listing.runs import Runs, SortedRun, in_order, key_of
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import CLOSURE_MARGIN
 from workhold.proof.deciding import Account, Course, decided
+from workhold.statics.effective_error import EffectiveErrors, angle_classes
 from workhold.statics.judging import unfit
 
 __all__ = ["BLOCK", "Batches", "BestFixtures", "ResultCollector", "blocks_of", "finish", "listed_form"]
@@ -119,21 +120,22 @@ class BestFixtures:
     problem : what is searched.
     cancel : when set, only what needs no ball arithmetic and the like is decided, and soon after nothing.
     margin : the closure margin that further fixtures must reach.
-    last : keys (R,) of the last of the best, once more were decided than are kept.
+    keys : of those kept, once more were decided than are.
     """
 
     problem: Problem
     cancel: Event | None = None
     margin: float = field(default=0.0, init=False)
-    last: NDArray[np.float64] | None = field(default=None, init=False)
+    keys: OrderKeys | None = field(default=None, init=False)
     has_dropped: bool = field(default=False, init=False)
     waiting: list[NDArray[np.float64]] = field(factory=list, init=False)
     kept: Candidates | None = field(default=None, init=False)
     accounts: list[Account] = field(factory=list, init=False)
     course: Course = field(init=False)
+    effective: EffectiveErrors | None = field(init=False)
 
     def __attrs_post_init__(self) -> None:
-        self.course = Course(0, cancel=self.cancel)
+        self.course, self.effective = Course(0, cancel=self.cancel), usual_errors(self.problem.query)
 
     @property
     def most(self) -> int:
@@ -161,34 +163,36 @@ class BestFixtures:
             fresh += len(part.standing)
             # Measured a share at a time, so that one who asks to stop does not wait for all.
             if fresh >= max(BLOCK, self.most):
-                parts, fresh = [self.cut(listed_once(Candidates.joined(parts)), ties=True)], 0
-        self.kept = self.cut(listed_once(Candidates.joined(parts)), ties=True)
+                parts, fresh = [self.cut(listed_once(Candidates.joined(parts)))], 0
+        self.kept = self.cut(listed_once(Candidates.joined(parts)))
 
-    def cut(self, everything: Candidates, ties: bool) -> Candidates:
-        """The best ``most`` of fixtures that are listed once, and those that tie with the last."""
+    def cut(self, everything: Candidates) -> Candidates:
+        """The fixtures of those listed once that may be among the best, or tie with the last of these."""
         if len(everything.standing) <= self.most:
             return everything
         table = measured(placed(everything, self.problem), self.problem)
         query = self.problem.query
-        chosen = best_marked(table.quality, query.ranking, query.tolerance, self.most, ties)
+        keys = order_keys(table, query, self.effective)
+        chosen = keys.kept(self.most)
         self.has_dropped |= not chosen.all()
-        self.last = last_keys(table.quality[chosen], query, self.most)
+        self.keys = keys.take(chosen)
         # One that is none for a workshop is worse than any that is, whatever its margin.
         if query.by_margin_alone and not unfit(table.quality[chosen], query.tolerance).any():
             self.margin = max(float(table.quality[chosen, CLOSURE_MARGIN].min()) - MARGIN_SLACK, 0.0)
         return everything.take(chosen)
 
-    def rules_out(self, bound: NDArray[np.float64]) -> bool:
-        """Whether no fixture that ranks after keys (R,) is among the best: so many were decided already that
-        some of them are dropped."""
+    def rules_out(self, bound: OrderKeys) -> bool:
+        """Whether nothing that has no less than one bound is among the best: so many were decided already
+        that some of them are dropped."""
         self.decide()
-        return is_behind(bound, self.last)
+        return self.keys is not None and bool(bound.beaten(self.keys, self.most, bound.lowest).all())
 
     def finished(self) -> tuple[Candidates, Account]:
-        """The best fixtures and the account of all records, once the search is over."""
+        """All that may be among the best, and the account of all records, once the search is over."""
         self.decide()
         assert self.kept is not None
-        return self.cut(self.kept, ties=False), Account.together(self.accounts)
+        self.has_dropped |= len(self.kept.standing) > self.most
+        return self.kept, Account.together(self.accounts)
 
 
 # Bits of a fixture's place in its part.
@@ -211,6 +215,8 @@ class ResultCollector:
     cancel : when set, records that cannot be decided quickly are left, fixtures that are not measured soon
         are, and of those measured no more than the best ``LISTED_LATE`` are listed.
     folder : of what does not stay in memory; None for memory alone.
+    is_part : whether this is a part of a search, from which steps do not count: then fixtures come in the
+        order of their identities.
     course : how far the deciding has come.
     found, distinct : numbers of fixtures and of sets of each arrangement, once they are measured.
     """
@@ -220,6 +226,7 @@ class ResultCollector:
     ahead: int
     cancel: Event | None = None
     folder: Path | None = None
+    is_part: bool = False
     course: Course = field(init=False)
     found: NDArray[np.int64] = field(init=False)
     distinct: NDArray[np.int64] = field(init=False)
@@ -230,9 +237,11 @@ class ResultCollector:
     by_turn: Runs = field(init=False)
     by_rank: Runs = field(init=False)
     identity: Identity = field(init=False)
+    effective: EffectiveErrors | None = field(init=False)
+    fine: OrderKeys | None = field(default=None, init=False)
 
     def __attrs_post_init__(self) -> None:
-        self.course = Course(0, cancel=self.cancel)
+        self.course, self.effective = Course(0, cancel=self.cancel), usual_errors(self.problem.query)
         self.by_holes, self.by_turn, self.by_rank = (Runs(self.folder) for _ in range(3))
         self.identity = Identity(self.problem.query.toolkit, self.problem.workpiece)
         kinds = len(self.problem.query.toolkit.arrangements)
@@ -296,8 +305,11 @@ class ResultCollector:
         """Lists once, measures and counts; whether nothing was left because somebody asked to stop."""
         parts, done = self.by_holes.parts(), 0
         course = Course(len(parts), cancel=self.cancel)
-        for table, turned in in_order(self.pool, self.ahead, self.measured_part, list(enumerate(parts))):
+        for table, turned, least in in_order(
+            self.pool, self.ahead, self.measured_part, list(enumerate(parts))
+        ):
             done += 1
+            self.fine = least if self.fine is None else self.fine.followed_by(least).least_of_all
             self.by_rank.add(table)
             self.found += np.bincount(table.columns[0], minlength=len(self.found))
             if turned is not None:
@@ -307,6 +319,7 @@ class ResultCollector:
             if course.is_late:
                 break
         self.by_holes.close()
+        self.rank()
         if self.identity.is_symmetric:
             for part in in_order(self.pool, self.ahead, taken, self.by_turn.parts()):
                 arrangement, pose, *words = part.columns
@@ -318,21 +331,53 @@ class ResultCollector:
 
     def measured_part(
         self, numbered: tuple[int, Callable[[], SortedRun]]
-    ) -> tuple[SortedRun, SortedRun | None]:
-        """The fixtures of a part in the order of their ranks; and of a symmetric workpiece the smallest of
-        the forms that its turns give them."""
+    ) -> tuple[SortedRun, SortedRun | None, OrderKeys]:
+        """The fixtures of a part in the order of their ranks, as far as these depend on no other part.
+
+        Beside them, of a symmetric workpiece the smallest of the forms that its turns give them, and the keys
+        of the one with the least effective error.
+        """
         number, part = numbered
         candidates = listed_once(Candidates(*part().columns))
         table = measured(placed(candidates, self.problem), self.problem)
         # However many rank alike, each has a key of its own, so that parts stay small.
         identity = np.arange(len(table)) + (number << PLACE_BITS)
-        query = self.problem.query
-        keys = key_of(*ranking_keys(table.quality, query.ranking, query.tolerance), identity)
-        ranked = SortedRun.of(keys, table.columns)
+        keys, columns = order_keys(table, self.problem.query, self.effective), table.columns
+        if keys.error is None:
+            ranked = SortedRun.of(key_of(*keys.first.T, identity), columns)
+        else:
+            # Steps are known when all are measured.
+            ranked = SortedRun(key_of(identity), (*columns, keys.error))
         if not self.identity.is_symmetric:
-            return ranked, None
+            return ranked, None, keys.least_of_all
         words, pose = self.identity.smallest(table)
-        return ranked, SortedRun.of(key_of(*words), (table.arrangement, pose, *words))
+        turned = SortedRun.of(key_of(*words), (table.arrangement, pose, *words))
+        return ranked, turned, keys.least_of_all
+
+    @property
+    def least(self) -> int | None:
+        """The least effective error of all in billionths of a mm; None where none counts."""
+        return None if self.fine is None else self.fine.least
+
+    def rank(self) -> None:
+        """Orders what is measured by the steps above the least error of all."""
+        if self.effective is None:
+            return
+        measured, self.by_rank = self.by_rank, Runs(self.folder)
+        for run in in_order(self.pool, self.ahead, self.ranked_run, measured.each()):
+            self.by_rank.add(run)
+        measured.close()
+
+    def ranked_run(self, part: Callable[[], SortedRun]) -> SortedRun:
+        """Measured fixtures in the order of their ranks."""
+        run = part()
+        *columns, error = run.columns
+        if self.is_part and not self.course.is_stopped:
+            return SortedRun(run.keys, tuple(columns))
+        table = FixtureTable(*columns)
+        keys = keys_of(table.quality, self.problem.query, error, angle_classes(table.theta))
+        identity = run.keys.view(">u8").astype(np.int64)
+        return SortedRun.of(key_of(*keys.numbers(self.least).T, identity), table.columns)
 
     @property
     def listed(self) -> int:

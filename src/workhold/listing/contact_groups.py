@@ -6,17 +6,16 @@ Packed they take half the room of records, since all of a range wait to be order
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from math import inf
 
 import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
 from workhold.kernels.contact.record import PSI, RECORD_LENGTH
-from workhold.listing.ranking import is_worse
+from workhold.listing.ranking import OrderKeys
 from workhold.listing.results import RankedTable
 
-__all__ = ["PackedContacts", "SeatGroups", "in_order_of_bounds"]
+__all__ = ["PackedContacts", "SeatGroups"]
 
 Array = NDArray[np.float64]
 
@@ -74,71 +73,80 @@ FIRST_CONTACTS = 1 << 12
 
 @frozen(eq=False)
 class SeatGroups:
-    """Contacts of all directions in groups that hold whole seats, those first that may rank first.
+    """Contacts of all directions in groups that hold whole seats.
 
     Parameters
     ----------
     order : (M,) numbers of the contacts, counted through all directions, group by group.
-    ends : (G,) where each group ends in the order.
-    bounds : (G, R) keys to rank by, none of a fixture in the group being better, in lexicographic order.
+    starts : (G,) where each group begins in the order.
+    bounds : of each of G groups the keys that no fixture in it has less than: before, at and after steps each
+        by itself.
     sharpened : the bounds of groups, given with their contacts, by the pairs of their clamps; None where
         these bound nothing that is ranked by, or all are known already.
-    alike : how many keys, the first ones, no pairs bound.
+    alike : how many numbers that order, the first ones, no pairs bound.
     """
 
     order: IntArray
-    ends: IntArray
-    bounds: Array
-    sharpened: Callable[[IntArray, IntArray], Array] | None = None
+    starts: IntArray
+    bounds: OrderKeys
+    sharpened: Callable[[IntArray, IntArray], OrderKeys] | None = None
     alike: int = 0
 
-    def reach(self, last: Array | None) -> int:
-        """The number of groups, the first ones, that may hold what ranks no worse than keys (R,).
+    def __len__(self) -> int:
+        return len(self.starts)
 
-        They are all groups where ``last`` is None.
+    def batches(self, kept: RankedTable, floor: int, together: int = FIRST_CONTACTS) -> Iterator[IntArray]:
+        """Numbers of contacts, sorted, of more and more groups, until what is kept cannot get better.
+
+        Those come first that may have the least error of all, then those that may rank first.
+
+        Parameters
+        ----------
+        floor : an error that nothing beside these groups has less than which is not found yet.
         """
-        if last is None:
-            return len(self.ends)
-        return len(self.ends) - int(is_worse(self.bounds, last).sum())
-
-    def batches(self, kept: RankedTable, together: int = FIRST_CONTACTS) -> Iterator[IntArray]:
-        """Numbers of contacts, sorted, of more and more groups, until what is kept cannot get better."""
-        first = 0
-        while first < (end := self.reach(kept.last)):
-            begin = int(self.ends[first - 1]) if first else 0
-            end = min(end, int(np.searchsorted(self.ends, begin + together)) + 1)
+        left = np.arange(len(self))
+        sizes = np.diff(self.starts, append=len(self.order))
+        while len(left):
+            bounds = self.bounds.take(left)
+            lowest = min(floor, bounds.lowest)
+            left, keys = left[~(out := kept.beaten(bounds, lowest))], kept.keys
+            kept.has_dropped |= bool(out.any())
+            if len(left) == 0:
+                return
+            bounds = bounds.take(~out)
+            numbers = bounds.numbers(keys.least if keys.is_fine.any() else bounds.lowest)
+            if bounds.error is not None and not keys.is_known_above(bounds.lowest):
+                # First what may have the least error.
+                numbers = np.column_stack([bounds.first, bounds.error, numbers])
+            by_bound = np.lexsort(numbers.T[::-1])
+            left, numbers = left[by_bound], numbers[by_bound]
+            end = int(np.searchsorted(np.cumsum(sizes[left]), together)) + 1
             if self.sharpened is None:
-                yield np.sort(self.order[begin : self.ends[end - 1]])
+                yield np.sort(self.among(left[:end])[0])
             else:
-                same = (self.bounds[:, : self.alike] == self.bounds[first, : self.alike]).all(axis=1)
+                shift = numbers.shape[1] - self.bounds.width
+                same = (numbers[:, : self.alike + shift] == numbers[0, : self.alike + shift]).all(axis=1)
                 end = max(end, int(np.flatnonzero(same)[-1]) + 1)
-                yield from self.between(first, end).batches(kept, together)
-            first, together = end, 2 * together
-        kept.has_dropped |= first < len(self.ends)
+                rest = self.bounds.take(left[end:]).lowest
+                yield from self.between(left[:end]).batches(kept, min(floor, rest), together)
+            left, together = left[end:], 2 * together
+
+    def among(self, groups: IntArray) -> tuple[IntArray, IntArray]:
+        """The contacts of some groups one after the other, and where each begins."""
+        sizes = np.diff(self.starts, append=len(self.order))[groups]
+        starts = np.cumsum(sizes) - sizes
+        return self.order[np.arange(sizes.sum()) + np.repeat(self.starts[groups] - starts, sizes)], starts
 
     def followed_by(self, last: IntArray) -> SeatGroups:
         """The groups, and one after them of contacts (N,) that hold nothing."""
         if len(last) == 0:
             return self
-        order, ends = np.concatenate([self.order, last]), np.append(self.ends, len(self.order) + len(last))
-        return SeatGroups(order, ends, np.concatenate([self.bounds, np.full((1, self.bounds.shape[1]), inf)]))
+        order, starts = np.concatenate([self.order, last]), np.append(self.starts, len(self.order))
+        return SeatGroups(order, starts, self.bounds.followed_by(self.bounds.nothing))
 
-    def between(self, first: int, end: int) -> SeatGroups:
-        """Some of the groups, with the bounds by their pairs, and in the order of these."""
+    def between(self, groups: IntArray) -> SeatGroups:
+        """Some of the groups, with the bounds by their pairs."""
         assert self.sharpened is not None
-        begin = int(self.ends[first - 1]) if first else 0
-        order, ends = self.order[begin : self.ends[end - 1]], self.ends[first:end] - begin
-        starts = np.concatenate([[0], ends[:-1]])
-        bounds = np.where(
-            self.bounds[first:end, :1] == -inf, self.bounds[first:end], self.sharpened(order, starts)
-        )
-        return in_order_of_bounds(order, starts, bounds)
-
-
-def in_order_of_bounds(order: IntArray, starts: IntArray, bounds: Array) -> SeatGroups:
-    """Groups that begin at some places (G,) of an order (M,), in the order of their bounds (G, R)."""
-    by_bound = np.lexsort(bounds.T[::-1])
-    sizes = np.diff(starts, append=len(order))[by_bound]
-    ends = np.cumsum(sizes)
-    shifts = np.repeat(starts[by_bound] - (ends - sizes), sizes)
-    return SeatGroups(order[np.arange(len(order)) + shifts], ends, bounds[by_bound])
+        order, starts = self.among(groups)
+        sharp, bounds = self.sharpened(order, starts), self.bounds.take(groups)
+        return SeatGroups(order, starts, sharp.where(bounds.is_known, bounds))

@@ -1,23 +1,40 @@
-"""The order of fixtures: by figures of quality, the first of them counting most.
+"""The order of fixtures, in keys of which the first count most.
 
-Every figure but the last counts to two significant digits, so that the next one has a say among fixtures that
-are about as good. The last counts to nine decimals. Fixtures that are none for a workshop come after all
-others. What is equal then stays in the order of types, holes, poses and faces. A fixture's place depends on
-no other fixture. So the best of a part of a list are those of the whole that are in it, and ``--best`` needs
-a part at a time.
+Where somebody names figures, these count: all but the last to two significant digits, so that the next one
+has a say among fixtures that are about as good, the last to nine decimals. A fixture's place depends on no
+other fixture then.
+
+In the usual order a warning counts first. Then steps count, of a tenth each, by which the effective location
+error is above the least one. That is the least of all fixtures that are fit and without warning, or as near
+to that as any is. Then comes the angle as written, and then the figures. So a place depends on the least
+error, which is known at the end. Parts of a list are kept and left out by what holds whatever it is
+(:meth:`OrderKeys.beaten`):
+
+- One fixture comes before another one whose effective error is a tenth larger or more, if it is fit and has
+  no warning: steps count from an error no larger than either, so that the other has a step more.
+- It does so, too, if its effective error is no larger, and all that comes after the steps is better.
+
+What as many fixtures come before as are asked for is not among the best. The fixture with the least error is
+never left out, for only one with an error no larger comes before it for certain.
+
+Fixtures that are none for a workshop come after all others. What is equal stays in the order of types, holes,
+poses and faces.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import inf
+from fractions import Fraction
+from heapq import heappushpop
+from math import ceil, inf
 
 import numpy as np
-from attrs import evolve
+from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
-from workhold.conventions import FIGURE_DECIMALS
+from workhold.conventions import FIGURE_DECIMALS, STEP_TENTHS
+from workhold.model.first_choice import figures_ranked_by
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import (
     CLAMP_FREEDOM,
@@ -26,28 +43,40 @@ from workhold.model.quality import (
     PROGRAM_CLEARANCE,
     PROGRAM_FIGURE,
     RANKED,
+    WARNINGS,
     ranked_number,
 )
 from workhold.model.query import Query
-from workhold.model.requirements import Tolerance
 from workhold.statics.contact_matrix import Touched
+from workhold.statics.effective_error import EffectiveErrors, angle_classes
 from workhold.statics.judging import unfit
 from workhold.statics.quality import quality_of
 
 __all__ = [
-    "best_marked",
+    "MOST_ERROR",
+    "OrderKeys",
     "best_possible",
+    "billionths",
+    "error_steps",
     "figure_keys",
-    "is_behind",
+    "in_mm",
     "is_worse",
-    "last_keys",
+    "keys_of",
     "measured",
     "measured_as",
-    "rank",
-    "ranking_keys",
+    "order_keys",
+    "usual_errors",
 ]
 
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
 COARSE_DIGITS = 2
+# Effective errors are whole billionths of a millimetre, no more than an integer holds eleven times.
+PER_MM, MOST_ERROR = 10.0**FIGURE_DECIMALS, 4 * 10**17
+# Rows compared with others at a time.
+TOGETHER = 1 << 22
 
 
 def measured(table: FixtureTable, problem: Problem) -> FixtureTable:
@@ -74,18 +103,286 @@ def measured_as(table: FixtureTable, query: Query, touched: Touched) -> FixtureT
     return evolve(table, quality=quality)
 
 
-def ranking_keys(
-    quality: NDArray[np.float64], ranking: Sequence[str], tolerance: Tolerance
-) -> list[NDArray[np.float64]]:
-    """Numbers (N,) to sort by, the first counting most and smaller being better, from figures of quality (N,
-    12)."""
-    return [unfit(quality, tolerance).astype(np.float64), *figure_keys(quality, ranking)]
+@frozen(eq=False)
+class OrderKeys:
+    """What N fixtures, or bounds of some, are ordered by.
+
+    Parameters
+    ----------
+    first : (N, A) numbers that count before any steps, smaller being better. In the usual order these are
+        whether a fixture is unfit, and whether there is a warning; else they are all numbers there are.
+    error : (N,) effective location errors in billionths of a millimetre; None where steps do not count.
+    rest : (N, B) numbers that count after the steps.
+    """
+
+    first: Array
+    error: IntArray | None
+    rest: Array
+
+    def __len__(self) -> int:
+        return len(self.first)
+
+    def take(self, chosen: NDArray[np.integer] | BoolArray | slice) -> OrderKeys:
+        """The keys of some."""
+        error = None if self.error is None else self.error[chosen]
+        return OrderKeys(self.first[chosen], error, self.rest[chosen])
+
+    def followed_by(self, other: OrderKeys) -> OrderKeys:
+        """The keys, and others after them."""
+        error = None
+        if self.error is not None and other.error is not None:
+            error = np.concatenate([self.error, other.error])
+        first, rest = (np.concatenate(both) for both in ((self.first, other.first), (self.rest, other.rest)))
+        return OrderKeys(first, error, rest)
+
+    @property
+    def width(self) -> int:
+        """How many numbers :meth:`numbers` gives."""
+        return int(self.first.shape[1] + self.rest.shape[1] + (self.error is not None))
+
+    @property
+    def lowest(self) -> int:
+        """The least error of any that may be fit and without warning; the largest there is without one."""
+        if self.error is None:
+            return MOST_ERROR
+        return int(min(self.error[(self.first <= 0.0).all(axis=1)].tolist(), default=MOST_ERROR))
+
+    @property
+    def is_known(self) -> BoolArray:
+        """Which (N,) bounds say anything."""
+        return np.asarray(self.first[:, 0] != -inf)
+
+    @property
+    def nothing(self) -> OrderKeys:
+        """The keys, in one row, of what holds nothing."""
+        error = None if self.error is None else np.full(1, MOST_ERROR)
+        return OrderKeys(np.full((1, self.first.shape[1]), inf), error, np.full((1, self.rest.shape[1]), inf))
+
+    def where(self, chosen: BoolArray, other: OrderKeys) -> OrderKeys:
+        """The keys of those chosen (N,), and other ones of the rest."""
+        error = None
+        if self.error is not None and other.error is not None:
+            error = np.where(chosen, self.error, other.error)
+        first, rest = (
+            np.where(chosen[:, None], *both) for both in ((self.first, other.first), (self.rest, other.rest))
+        )
+        return OrderKeys(first, error, rest)
+
+    def unknown_where(self, chosen: BoolArray) -> OrderKeys:
+        """The keys, those chosen (N,) without any bound."""
+        error = None if self.error is None else np.where(chosen, 0, self.error)
+        first, rest = (np.where(chosen[:, None], -inf, rows) for rows in (self.first, self.rest))
+        return OrderKeys(first, error, rest)
+
+    def least_of(self, groups: IntArray) -> OrderKeys:
+        """The least numbers before steps, least error and least numbers after steps, of each of some groups.
+
+        The groups (N,) are numbered from 0 in ascending order.
+        """
+
+        def least(rows: Array) -> Array:
+            ordered = np.lexsort([*rows.T[::-1], groups])
+            return rows[ordered[np.diff(groups[ordered], prepend=-1) > 0]]
+
+        error = self.error
+        if error is not None:
+            error = np.minimum.reduceat(error, np.flatnonzero(np.diff(groups, prepend=-1) > 0))
+        return OrderKeys(least(self.first), error, least(self.rest))
+
+    @property
+    def is_fine(self) -> BoolArray:
+        """Which (N,) are fit and without a warning, as far as known; none where that does not count."""
+        return np.asarray((self.first <= 0.0).all(axis=1)) & (self.error is not None)
+
+    @property
+    def least_of_all(self) -> OrderKeys:
+        """The keys, in one row if there is any, of one with the least error of those that count for it."""
+        if self.error is None:
+            return self.take(slice(0))
+        return self.take(np.lexsort([self.error, *self.first.T[::-1]])[:1])
+
+    @property
+    def least(self) -> int | None:
+        """The least effective error of those that no other is better than before steps count; None if there
+        is none."""
+        if self.error is None or len(self) == 0:
+            return None
+        best = self.first[np.lexsort(self.first.T[::-1])[0]]
+        return int(self.error[(self.first == best).all(axis=1)].min())
+
+    def numbers(self, least: int | None) -> Array:
+        """Numbers (N, R) to order by, given the least effective error of all."""
+        if self.error is None:
+            return self.first
+        steps = error_steps(self.error, 0 if least is None else least)
+        return np.column_stack([self.first, steps.astype(np.float64), self.rest])
+
+    def order(self, least: int | None) -> NDArray[np.intp]:
+        """Best first: the order of fixtures that are given in the order of their identities."""
+        return np.lexsort(self.numbers(least).T[::-1])
+
+    def kept(self, most: int) -> BoolArray:
+        """Which (N,) may be among the best so many, or tie with the last of them, whatever the least error
+        is."""
+        if len(self) <= most:
+            return np.ones(len(self), np.bool_)
+        if self.error is None:
+            numbers = self.first
+            return ~is_worse(numbers, numbers[self.order(None)[most - 1]])
+        rest, first = ranks_of(self.rest), ranks_of(self.first)
+        out, before = np.zeros(len(self), np.bool_), 0
+        for number in range(int(first.max()) + 1):
+            if before >= most:
+                break
+            there = np.flatnonzero(first == number)
+            out[there] = self.kept_among(there, rest[there], most - before)
+            before += len(there)
+        return out
+
+    def kept_among(self, there: NDArray[np.intp], rest: IntArray, most: int) -> BoolArray:
+        """The same of some (T,) that nothing distinguishes before the steps."""
+        assert self.error is not None
+        error, out = self.error[there], np.ones(len(there), np.bool_)
+        if len(there) <= most:
+            return out
+        if self.is_fine[there[0]]:
+            out = ~has_a_step_more(error, np.partition(error, most - 1)[most - 1])
+        chosen = np.flatnonzero(out)
+        chosen = chosen[np.argsort(rest[chosen], kind="stable")]
+        # The least errors, as many as are asked for, of all whose rest is better; a heap has the largest first.
+        ranks, errors = rest[chosen].tolist(), error[chosen].tolist()
+        heap, waiting, largest = [-MOST_ERROR - 1] * most, list[int](), MOST_ERROR + 1
+        marks = np.ones(len(chosen), np.bool_)
+        for place, one in enumerate(errors):
+            if place and ranks[place] != ranks[place - 1]:
+                for other in waiting:
+                    heappushpop(heap, -other)
+                waiting, largest = [], -heap[0]
+            marks[place] = one < largest
+            if one < largest:
+                waiting.append(one)
+        out[chosen] = marks
+        return out
+
+    def beaten(self, kept: OrderKeys, most: int, floor: int) -> BoolArray:
+        """Which (N,) of these bounds so many of some fixtures surely come before.
+
+        Parameters
+        ----------
+        kept : of the fixtures found so far that may be among the best.
+        floor : an error that no fixture has less than which is not found yet.
+        """
+        if len(kept) < most or len(self) == 0:
+            return np.zeros(len(self), np.bool_)
+        least = kept.least
+        if self.error is None or kept.is_known_above(floor):
+            numbers = kept.numbers(least)
+            return is_worse(self.numbers(least), numbers[np.lexsort(numbers.T[::-1])[most - 1]])
+        together = self.followed_by(kept)
+        assert together.error is not None
+        count = len(self)
+        first, rest, fine = ranks_of(together.first), ranks_of(together.rest), kept.is_fine
+        error, errors = self.error, together.error[count:]
+        out = np.zeros(count, np.bool_)
+        size = max(TOGETHER // len(kept), 1)
+        for start in range(0, count, size):
+            some = slice(start, min(start + size, count))
+            alike = first[some, None] == first[count:]
+            steps = has_a_step_more(error[some, None], errors) & fine
+            after = (error[some, None] >= errors) & (rest[some, None] > rest[count:])
+            before = (first[some, None] > first[count:]) | (alike & (steps | after))
+            out[some] = before.sum(axis=1) >= most
+        return out
+
+    def is_known_above(self, floor: int) -> bool:
+        """Whether the least error of these is that of all, if no other has less than ``floor``."""
+        if self.error is None or not self.is_fine.any():
+            return False
+        return (self.least or 0) <= floor
+
+
+def has_a_step_more(error: IntArray, than: IntArray | np.int64) -> BoolArray:
+    """Where an error surely is a step above others, none of which is below the least of all."""
+    eleven, ten = STEP_TENTHS
+    return np.asarray((ten * error >= eleven * than) & (than > 0))
+
+
+def ranks_of(rows: Array) -> IntArray:
+    """Ranks (N,) of rows (N, K) in lexicographic order, equal ones alike."""
+    if len(rows) == 0 or rows.shape[1] == 0:
+        return np.zeros(len(rows), np.int64)
+    order = np.lexsort(rows.T[::-1])
+    ordered = rows[order]
+    fresh = np.zeros(len(rows), np.int64)
+    fresh[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)
+    out = np.empty(len(rows), np.int64)
+    out[order] = np.cumsum(fresh)
+    return out
+
+
+def error_steps(error: IntArray, least: int) -> IntArray:
+    """How many steps (N,) errors (N,) are above the least of all, both in billionths of a millimetre.
+
+    So many numbers j from 1 on have error >= 1.1^j least, in whole numbers.
+
+    Examples
+    --------
+    >>> error_steps(np.array([100, 109, 110, 121, 122, 90]), 100).tolist()
+    [0, 0, 1, 2, 2, 0]
+    """
+    edges, most = list[int](), int(error.max(initial=0))
+    # Errors of nothing have no tenth; then steps count from the least that is something.
+    step, edge = Fraction(*STEP_TENTHS), Fraction(max(least, 1))
+    while (edge := edge * step) <= most:
+        edges.append(ceil(edge))
+    return np.searchsorted(np.array(edges, np.int64), error, side="right").astype(np.int64)
+
+
+def billionths(error: Array) -> IntArray:
+    """Errors (N,) in mm as whole billionths; the largest there is for what is no number."""
+    known = np.minimum(np.where(np.isnan(error), inf, error), MOST_ERROR / PER_MM)
+    return np.rint(known * PER_MM).astype(np.int64)
+
+
+def in_mm(error: int | None) -> float | None:
+    """An error in billionths as files have it, in mm."""
+    return None if error is None or error >= MOST_ERROR else round(error / PER_MM, FIGURE_DECIMALS)
+
+
+def usual_errors(query: Query) -> EffectiveErrors | None:
+    """What gives effective errors, where these count in the order of a query; else None."""
+    return EffectiveErrors.of(query) if query.has_house_order else None
+
+
+def order_keys(table: FixtureTable, query: Query, effective: EffectiveErrors | None) -> OrderKeys:
+    """The keys of a table of fixtures with all its figures; ``effective`` as of :func:`usual_errors`."""
+    error = None if effective is None else effective.errors(table)
+    return keys_of(table.quality, query, error, angle_classes(table.theta))
+
+
+def keys_of(quality: Array, query: Query, error: Array | IntArray | None, angle: IntArray) -> OrderKeys:
+    """The keys of N fixtures.
+
+    Parameters
+    ----------
+    quality : (N, Q) figures.
+    error : (N,) effective errors, in mm or as whole billionths; None where they do not count.
+    angle : (N,) classes of angles.
+    """
+    bad = unfit(quality, query.tolerance).astype(np.float64)
+    # What is no number counts as the worst there is.
+    figures = [np.where(np.isnan(key), inf, key) for key in figure_keys(quality, query.ranking)]
+    if error is None:
+        return OrderKeys(np.column_stack([bad, *figures]), None, np.zeros((len(bad), 0)))
+    first = np.column_stack([bad, quality[:, WARNINGS] > 0.0])
+    rest = np.column_stack([angle.astype(np.float64), *figures])
+    whole = error.astype(np.int64) if error.dtype.kind == "i" else billionths(error.astype(np.float64))
+    return OrderKeys(first, whole, rest)
 
 
 def figure_keys(quality: NDArray[np.float64], ranking: Sequence[str]) -> list[NDArray[np.float64]]:
-    """Numbers (N,) to sort by, as of :func:`ranking_keys`, without regard to what is no fixture for a
-    workshop."""
-    keys = []
+    """Numbers (N,) to sort by for the figures of a ranking, the first counting most."""
+    keys, ranking = [], figures_ranked_by(ranking)
     for place, key in enumerate(ranking):
         number = ranked_number(key)
         assert number is not None
@@ -107,28 +404,6 @@ def coarse(values: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.where(known, np.rint(values / step) * step, values)
 
 
-def rank(quality: NDArray[np.float64], ranking: Sequence[str], tolerance: Tolerance) -> NDArray[np.intp]:
-    """Best first: the order of fixtures that are given in the order of their identities."""
-    return np.lexsort(ranking_keys(quality, ranking, tolerance)[::-1])
-
-
-def best_marked(
-    quality: NDArray[np.float64], ranking: Sequence[str], tolerance: Tolerance, most: int, ties: bool
-) -> NDArray[np.bool_]:
-    """Which fixtures (N,), given in the order of their identities, are among the best ``most``.
-
-    With ``ties`` those that tie with the last of them are, too.
-    """
-    order = rank(quality, ranking, tolerance)
-    chosen = np.zeros(len(order), np.bool_)
-    chosen[order[:most]] = True
-    if ties and most < len(order):
-        keys = ranking_keys(quality, ranking, tolerance)
-        last = order[most - 1]
-        chosen |= np.all([key == key[last] for key in keys], axis=0)
-    return chosen
-
-
 def best_possible(count: int, query: Query) -> NDArray[np.float64]:
     """Figures of quality of so many fixtures (N, F), none of any fixture of a query being better.
 
@@ -138,18 +413,6 @@ def best_possible(count: int, query: Query) -> NDArray[np.float64]:
     best[[CLOSURE_MARGIN, CLAMP_FREEDOM]] = 1.0 / query.toolkit.peg_count, 90.0
     # With a program the clearance of its tools stands behind.
     return np.tile(best if query.program is None else np.append(best, inf), (count, 1))
-
-
-def last_keys(quality: NDArray[np.float64], query: Query, most: int) -> NDArray[np.float64]:
-    """The keys (R,) of the last of the best ``most`` of as many fixtures or more, infinite for NaN."""
-    keys = np.stack(ranking_keys(quality, query.ranking, query.tolerance), axis=1)
-    worst = keys[rank(quality, query.ranking, query.tolerance)[most - 1]]
-    return np.asarray(np.where(np.isnan(worst), np.inf, worst))
-
-
-def is_behind(bound: NDArray[np.float64], last: NDArray[np.float64] | None) -> bool:
-    """Whether keys (R,) come after those of the last of the best; not while there are too few to have one."""
-    return last is not None and bool(is_worse(bound[None], last)[0])
 
 
 def is_worse(keys: NDArray[np.float64], last: NDArray[np.float64]) -> NDArray[np.bool_]:

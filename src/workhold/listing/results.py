@@ -20,7 +20,7 @@ from workhold.contact.problem import Problem, Progress
 from workhold.listing.canonical_form import Candidates
 from workhold.listing.collector import BestFixtures, ResultCollector
 from workhold.listing.identity import Identity, SetCount, identity_order
-from workhold.listing.ranking import best_marked, is_behind, last_keys, measured_as, rank
+from workhold.listing.ranking import OrderKeys, in_mm, measured_as, order_keys, usual_errors
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.query import Query
 from workhold.model.result import Result
@@ -34,6 +34,7 @@ from workhold.model.search_report import (
 )
 from workhold.proof.deciding import Account
 from workhold.statics.contact_matrix import Touched
+from workhold.statics.effective_error import EffectiveErrors
 
 __all__ = [
     "MEASURED",
@@ -87,6 +88,7 @@ def listed_result(
     progress: Progress | None = None,
     cancel: Event | None = None,
     threads: int = 1,
+    is_part: bool = False,
 ) -> Result:
     """Checks, lists once, ranks and counts the fixtures that an engine found.
 
@@ -97,15 +99,16 @@ def listed_result(
     progress : called as ``progress(fraction done, records that still may be fixtures)``.
     cancel : when set, records that cannot be decided quickly are left, and the result is incomplete.
     threads : how many threads share the deciding.
+    is_part : whether others are joined with it before they are ranked.
     """
     with ThreadPoolExecutor(max_workers=threads) as pool:
-        collector = ResultCollector(problem, pool, 2 * threads, cancel)
+        collector = ResultCollector(problem, pool, 2 * threads, cancel, is_part=is_part)
         with collector.given_up_on_errors():
             for array in records:
                 collector.take(array)
             result = collected_result(collector, work, stage(progress, 0.0, MEASURED))
             result = with_table(result, collector, stage(progress, MEASURED, 1.0))
-    return evolve(result, table=result.table.take(slice(0, problem.query.best)))
+    return result if is_part else evolve(result, table=result.table.take(slice(0, problem.query.best)))
 
 
 def collected_result(collector: ResultCollector, work: Work, progress: Progress | None = None) -> Result:
@@ -131,6 +134,7 @@ def collected_result(collector: ResultCollector, work: Work, progress: Progress 
         notes=(undecided_note(len(account.undecided)),) if account.undecided else (),
         statistics=work.statistics,
         proof=proof_of(account, work),
+        least_effective_error=in_mm(collector.least),
     )
 
 
@@ -144,22 +148,32 @@ def with_table(result: Result, collector: ResultCollector, progress: Progress | 
     return result if len(table) == sum(result.found.values()) else result.cut_short(len(table))
 
 
-def best_result(kept: BestFixtures, work: Work) -> Result:
-    """The result of a search for the best fixtures only.
+def best_result(kept: BestFixtures, work: Work, is_part: bool = False) -> Result:
+    """The result of a search for the best fixtures only; of a part of one, all that may be among the best.
 
     How many fixtures there are in all is not known: those that could not be among the best were not examined.
     """
     candidates, account = kept.finished()
-    result = result_of(kept.problem, candidates, account, work)
+    result = result_of(kept.problem, candidates, account, work, is_part)
+    if kept.has_dropped and not is_part:
+        # Only those that are listed are counted.
+        result = evolve(result, table=result.table.take(slice(kept.most)))
+        counted = SetCount(Identity(result.toolkit, result.workpiece))
+        counted.add(result.table)
+        result = evolve(
+            result, found=counted.by_type(counted.found), distinct=counted.by_type(counted.distinct)
+        )
     if not (work.complete and kept.has_dropped):
         return result
     return evolve(result, notes=(best_note(kept.most), *result.notes))
 
 
-def result_of(problem: Problem, candidates: Candidates, account: Account, work: Work) -> Result:
+def result_of(
+    problem: Problem, candidates: Candidates, account: Account, work: Work, is_part: bool = False
+) -> Result:
     """The result of fixtures that are decided."""
     with ThreadPoolExecutor(max_workers=1) as pool:
-        collector = ResultCollector(problem, pool, 1)
+        collector = ResultCollector(problem, pool, 1, is_part=is_part)
         collector.add(candidates, account)
         return with_table(collected_result(collector, work), collector)
 
@@ -193,6 +207,8 @@ class RankedTable:
     problem: Problem
     waiting: list[FixtureTable] = field(factory=list, init=False)
     touched: Touched = field(init=False)
+    effective: EffectiveErrors | None = field(init=False)
+    known: OrderKeys | None = field(default=None, init=False)
     count: SetCount = field(init=False)
     tables: list[FixtureTable] = field(init=False)
     has_dropped: bool = field(default=False, init=False)
@@ -200,6 +216,7 @@ class RankedTable:
     def __attrs_post_init__(self) -> None:
         part, toolkit = self.query.workpiece, self.query.toolkit
         self.touched = Touched.of(part, toolkit, length=self.problem.wrench_length)
+        self.effective = usual_errors(self.query)
         self.count = SetCount(Identity(toolkit, part, self.query.listing != "best"))
         self.tables = [FixtureTable.empty(toolkit)]
 
@@ -222,21 +239,32 @@ class RankedTable:
         self.tables.append(measured_as(table, query, self.touched))
         if most is not None:
             together = self.together()
-            chosen = best_marked(together.quality, query.ranking, query.tolerance, most, ties=True)
-            self.tables = [together.take(chosen)]
+            keys = order_keys(together, query, self.effective)
+            chosen = keys.kept(most)
+            self.tables, self.known = [together.take(chosen)], keys.take(chosen)
 
     @property
-    def last(self) -> NDArray[np.float64] | None:
-        """The keys of the last of the best, infinite for NaN, once there are as many as are asked for."""
+    def keys(self) -> OrderKeys:
+        """The keys of what is kept."""
         self.measure()
-        table, query = self.tables[0], self.query
-        if query.best is None or len(table) < query.best:
-            return None
-        return last_keys(table.quality, query, query.best)
+        if self.known is None:
+            return order_keys(self.together(), self.query, self.effective)
+        return self.known
 
-    def rules_out(self, bound: NDArray[np.float64]) -> bool:
-        """Whether no fixture that ranks after keys (R,) is among the best; they are left out then."""
-        is_out = is_behind(bound, self.last)
+    def beaten(self, bounds: OrderKeys, floor: int) -> NDArray[np.bool_]:
+        """Which of N bounds are those of nothing that is among the best.
+
+        Parameters
+        ----------
+        floor : an error in billionths of a mm that nothing has less than which is not found yet.
+        """
+        if self.query.best is None:
+            return np.zeros(len(bounds), np.bool_)
+        return bounds.beaten(self.keys, self.query.best, floor)
+
+    def rules_out(self, bound: OrderKeys) -> bool:
+        """Whether nothing that has no less than one bound is among the best; it is left out then."""
+        is_out = bool(self.beaten(bound, bound.lowest).all())
         self.has_dropped |= is_out
         return is_out
 
@@ -250,7 +278,8 @@ class RankedTable:
     def result(self, account: Account, work: Work) -> Result:
         """The result of all."""
         query, table = self.query, self.together()
-        order = rank(table.quality, query.ranking, query.tolerance)[: query.best]
+        keys = order_keys(table, query, self.effective)
+        order = keys.order(keys.least)[: query.best]
         table, count, notes = table.take(order), self.count, list[str]()
         if self.has_dropped:
             # Only those that are listed are counted.
@@ -268,6 +297,7 @@ class RankedTable:
             notes=tuple(notes),
             statistics=work.statistics,
             proof=proof_of(account, work),
+            least_effective_error=in_mm(keys.least),
         )
 
 
@@ -282,7 +312,8 @@ def joined_ways(results: Sequence[Result], query: Query) -> Result:
         else [len(result) for result in results if 0 < len(result) < sum(result.found.values())]
     )
     most = min(cut, default=query.best)
-    ranked = table.take(rank(table.quality, query.ranking, query.tolerance)[:most])
+    keys = order_keys(table, query, usual_errors(query))
+    ranked = table.take(keys.order(keys.least)[:most])
     proofs = [result.proof for result in results if result.proof is not None]
     found, distinct = (summed(getattr(result, name) for result in results) for name in ("found", "distinct"))
     if query.best is not None and any(best_note(query.best) in result.notes for result in results):
@@ -299,6 +330,7 @@ def joined_ways(results: Sequence[Result], query: Query) -> Result:
         notes=tuple(joined_notes(results, query)),
         statistics=summed(result.statistics for result in results),
         proof=joined_proofs(proofs) if len(proofs) == len(results) else None,
+        least_effective_error=in_mm(keys.least),
     )
     return joined.cut_short(len(ranked)) if cut else joined
 

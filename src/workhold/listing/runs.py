@@ -18,6 +18,7 @@ import os
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Executor, Future, wait
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from tempfile import TemporaryFile
@@ -241,6 +242,12 @@ class Runs:
         places = [[run.place(pivots[k : k + 1]) for run in runs] for k in range(len(pivots))]
         edges = [[0] * len(runs), *places, [len(run) for run in runs]]
         return [self.part(runs, first, end) for first, end in pairwise(edges)]
+
+    def each(self) -> Iterator[Callable[[], SortedRun]]:
+        """What gives the rows of each run by itself, which are forgotten here as they are asked for."""
+        while self.runs or self.fresh:
+            run = (self.runs or self.fresh).pop(0)
+            yield partial(run.rows, 0, len(run))
 
     def part(
         self, runs: Sequence[SortedRun | StoredRun], first: list[int], end: list[int]

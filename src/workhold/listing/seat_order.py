@@ -31,6 +31,7 @@ contacts stand by themselves, after all others.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import reduce
 from math import inf, pi, tau
 
 import numpy as np
@@ -45,9 +46,10 @@ from workhold.kernels.contact.quality import LOAD_LENGTH, figures
 from workhold.kernels.contact.seats import numbers_of_seats
 from workhold.listing.bounds import BOUNDED, first_of_clamps, pair_bounds
 from workhold.listing.canonical_form import candidates_of
-from workhold.listing.contact_groups import PackedContacts, SeatGroups, in_order_of_bounds
-from workhold.listing.ranking import best_possible, ranking_keys
+from workhold.listing.contact_groups import PackedContacts, SeatGroups
+from workhold.listing.ranking import OrderKeys, best_possible, keys_of
 from workhold.model.clamps import LOCATORS
+from workhold.model.first_choice import FACTORS
 from workhold.model.quality import (
     CLAMP_AMPLIFICATION,
     EDGE_DISTANCE,
@@ -62,6 +64,7 @@ from workhold.model.quality import (
 from workhold.model.query import Query
 from workhold.proof.degenerate import hold_nothing
 from workhold.statics.contact_matrix import Touched, locators_inverse, outward_normals, wrenches
+from workhold.statics.effective_error import EffectiveErrors, angle_classes, to_ends
 from workhold.statics.judging import Judging, is_astray, is_near_edge, is_strong
 from workhold.statics.quality import extremes, face_sizes, main_direction, tilts
 
@@ -130,17 +133,17 @@ def ordered_groups(
     known = (theta, turn), (place, off)
     bounds = group_bounds(order, group, known, records, problems, query)
     unknown = loose | ~(off <= SAME_PLACE)
-    bounds[np.logical_or.reduceat(unknown[order], starts)] = -inf
-    groups, alike = in_order_of_bounds(order, starts, bounds), first_of_clamps(query)
+    bounds = bounds.unknown_where(np.logical_or.reduceat(unknown[order], starts))
+    groups, alike = SeatGroups(order, starts, bounds), first_of_clamps(query)
     groups = groups.followed_by(np.flatnonzero(~holds))
     if alike is None:
         return groups
 
-    def sharpened(order: IntArray, starts: IntArray) -> Array:
+    def sharpened(order: IntArray, starts: IntArray) -> OrderKeys:
         group = np.cumsum(np.bincount(starts, minlength=len(order))) - 1
         return group_bounds(order, group, known, records, problems, query, by_pairs=True)
 
-    # The first key is of what is fit for a workshop.
+    # The first number is of what is fit for a workshop.
     return evolve(groups, sharpened=sharpened, alike=alike + 1)
 
 
@@ -152,8 +155,8 @@ def group_bounds(
     problems: Sequence[Problem],
     query: Query,
     by_pairs: bool = False,
-) -> Array:
-    """The keys (G, R) that no fixture of a group ranks before, the least of those of the places in it.
+) -> OrderKeys:
+    """The keys of G groups that no fixture in one has less than, the least of those of the places in it.
 
     Parameters
     ----------
@@ -168,21 +171,21 @@ def group_bounds(
     first = best_known(order, off, starts)
     edges = np.cumsum([0, *map(len, records)])
     direction = np.searchsorted(edges, first, side="right") - 1
-    bounds = np.empty((len(first), len(query.ranking) + 1))
+    parts, places = list[OrderKeys](), list[IntArray]()
     pairs = pair_bounds(order, starts, records, problems, query) if by_pairs else None
     for number, (part, problem) in enumerate(zip(records, problems, strict=True)):
         chosen = np.flatnonzero(direction == number)
         known_within = known[1][1][first[chosen]]
         some, of_pairs = part.take(first[chosen] - edges[number]), None if pairs is None else pairs[chosen]
-        bounds[chosen] = keys_bounding(some, known_within, problem, query, of_pairs)
+        parts.append(keys_bounding(some, known_within, problem, query, of_pairs))
+        places.append(chosen)
+    bounds = reduce(OrderKeys.followed_by, parts).take(np.argsort(np.concatenate(places), kind="stable"))
     for values, doubts in known:
         middle, radius = values[order], 2.0 * doubts[order]
         low, high = np.minimum.reduceat(middle + radius, starts), np.maximum.reduceat(middle - radius, starts)
         # One contact cannot stand for two seats.
-        bounds[high - low > APART] = -inf
-    whose = group[starts]
-    sorted_ = np.lexsort([*bounds.T[::-1], whose])
-    return bounds[sorted_[np.diff(whose[sorted_], prepend=-1) > 0]]
+        bounds = bounds.unknown_where(high - low > APART)
+    return bounds.least_of(group[starts])
 
 
 def best_known(order: IntArray, off: Array, starts: IntArray) -> IntArray:
@@ -251,8 +254,8 @@ def places_off(records: Array, problem: Problem) -> Array:
 
 def keys_bounding(
     records: Array, off: Array, problem: Problem, query: Query, pairs: Array | None = None
-) -> Array:
-    """Keys (N, R) that no fixture ranks before whose locators touch as those of records (N, 19) do.
+) -> OrderKeys:
+    """Keys that no fixture has less than whose locators touch as those of records (N, 19) do.
 
     Parameters
     ----------
@@ -260,8 +263,40 @@ def keys_bounding(
     pairs : (N, 3) bounds of the pairs of clamps; None where they are not known.
     """
     quality = best_figures(records, off, problem, query, pairs)
-    keys = np.stack(ranking_keys(quality, query.ranking, query.tolerance), axis=1)
-    return np.asarray(np.where(np.isnan(quality[:, LOCATION_ERROR, None]), -inf, keys))
+    theta = seen_angles(records, problem)
+    error = (
+        quality[:, LOCATION_ERROR] * least_factors(records, off, problem, query)
+        if query.has_house_order
+        else None
+    )
+    keys = keys_of(quality, query, error, angle_classes(theta, ANGLE))
+    return keys.unknown_where(np.isnan(quality[:, LOCATION_ERROR]))
+
+
+def seen_angles(records: Array, problem: Problem) -> Array:
+    """Orientations (N,) of the part on the plate in radians."""
+    return np.asarray(problem.frame.quarters * (pi / 2) - records[:, record.PSI])
+
+
+def least_factors(records: Array, off: Array, problem: Problem, query: Query) -> Array:
+    """Factors (N,) of the location error that are no larger than those of a fixture with these locators.
+
+    What the clamps do, and whether the part hangs over, can only make them larger.
+    """
+    effective, c = EffectiveErrors.of(query), candidates_of(records, problem)
+    faces = problem.faces[c.feature[:, :LOCATORS]].astype(np.int64)
+    angle = angle_classes(seen_angles(records, problem), ANGLE)
+    points = c.point[:, :LOCATORS] + np.asarray(problem.workpiece.center)
+    place = 4.0 * SAME_PLACE + 16.0 * off
+    near = to_ends(points, effective.lines[faces]) < query.toolkit.carriers[0].peg_radius - place[:, None]
+    held = {
+        "quarter_turn": angle == 1,
+        "other_angle": angle == 2,
+        "face_end": near.any(axis=1),
+        "dowel_in_bore": effective.unasked[faces].any(axis=1),
+    }
+    times = [np.where(held[one.key], one.times, 1.0) for one in FACTORS if one.key in held]
+    return np.asarray(np.prod(times, axis=0))
 
 
 def best_figures(
@@ -306,8 +341,7 @@ def best_figures(
     nearest, edge = (np.min(values, axis=1, initial=inf) + place for values in (ends, edges))
     out = best_possible(len(records), query)
     out[:, END_DISTANCE], out[:, EDGE_DISTANCE] = nearest, np.minimum(edge, touched.length)
-    theta = problem.frame.quarters * (pi / 2) - records[:, record.PSI]
-    tilt = tilts(theta, main_direction(problem.workpiece))
+    tilt = tilts(seen_angles(records, problem), main_direction(problem.workpiece))
     out[:, TILT] = np.where(tilt < SQUARE_TILT + ANGLE, 0.0, tilt - ANGLE)
     out[:, SMALLEST_FACE] = face_sizes(problem.workpiece).take(faces).min(axis=1, initial=inf)
     out[:, LOCATION_ERROR] = np.where(known, error, np.nan)

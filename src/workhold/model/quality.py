@@ -15,6 +15,7 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
+from workhold.model.first_choice import HOUSE_ORDER, has_house_order
 from workhold.model.requirements import Load
 
 __all__ = [
@@ -26,9 +27,11 @@ __all__ = [
     "END_DISTANCE",
     "FIGURES",
     "JAW_CONTACT",
+    "FIGURE_RANKING",
     "JAW_FORCE_NEEDED",
     "LOAD_REACTION",
     "LOCATION_ERROR",
+    "PAIR_FIGURES",
     "PAIR_RANKING",
     "BEFORE_PINS",
     "PENALTY",
@@ -65,10 +68,11 @@ T = TypeVar("T")
 # The loads, or whether there are any.
 Loaded = Sequence[Load] | bool
 
-# docs/quality.md, "Which comes first", says why. With loads the load reaction is in third place.
-DEFAULT_RANKING = ("warnings", "penalty", "clamp_amplification", "closure_margin", "edge_distance")
+# docs/quality.md, "Which comes first", says why. With loads the load reaction takes the place of the
+# amplification.
+FIGURE_RANKING = ("warnings", "penalty", "clamp_amplification", "closure_margin", "edge_distance")
 # Of two clamps the one whose forces may differ most: it is set up without a torque wrench.
-PAIR_RANKING = (
+PAIR_FIGURES = (
     "warnings",
     "penalty",
     "clamp_freedom",
@@ -76,6 +80,7 @@ PAIR_RANKING = (
     "closure_margin",
     "edge_distance",
 )
+DEFAULT_RANKING, PAIR_RANKING = (*HOUSE_ORDER, *FIGURE_RANKING), (*HOUSE_ORDER, *PAIR_FIGURES)
 # Orders by what a user wants most.
 PREFERENCES = {
     "square": ("warnings", "tilt", "penalty", "clamp_amplification", "closure_margin", "edge_distance"),
@@ -323,6 +328,8 @@ def chosen_ranking(
 ) -> tuple[str, ...]:
     """Keys of the figures to rank by, from their names as a user writes them; None is the default ranking.
 
+    A file that was ranked by the default names what that begins with, too.
+
     Raises
     ------
     InputError
@@ -332,6 +339,9 @@ def chosen_ranking(
     """
     if names is None:
         return for_loads(PAIR_RANKING if pairs else DEFAULT_RANKING, loaded)
+    if has_house_order(names):
+        figures = chosen_ranking(names[len(HOUSE_ORDER) :], loaded, pairs, seated)
+        return (*HOUSE_ORDER, *figures)
     keys = []
     for name in names:
         number = ranked_number(name)

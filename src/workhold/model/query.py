@@ -13,11 +13,12 @@ from attrs import evolve, field, frozen
 from workhold.errors import InputError, refuse_kind
 from workhold.fixels.toolkit import Toolkit
 from workhold.limits import counting_number, real, refuse_long, refuse_strong
+from workhold.model.first_choice import figures_ranked_by, has_house_order
 from workhold.model.own_outlines import met_by
 from workhold.model.program import Program
 from workhold.model.quality import (
     CLOSURE_MARGIN,
-    DEFAULT_RANKING,
+    FIGURE_RANKING,
     FIGURES,
     JAW_FORCE_NEEDED,
     LOAD_REACTION,
@@ -87,7 +88,7 @@ class Query:
     restrictions : faces not to touch, places where no peg may stand, angles of the part; None is no
         restriction.
     ranking : figures of quality, the first counting most, named as in ``model.quality``. None is the usual
-        order, see :data:`DEFAULT_RANKING`.
+        order, see :mod:`workhold.model.first_choice`.
     tolerance : how far pegs and faces may be off, for the location error; None is the toolkit's own where it
         has one, as presets have, or else the usual one. The workpiece's departure is added to that of the
         faces.
@@ -256,7 +257,8 @@ class Query:
         """The query of fixtures that no program has to pass."""
         of_program = {PROGRAM_FIGURE.key} if self.loads else {PROGRAM_FIGURE.key, *LOAD_KEYS}
         ranking = [key for key in self.ranking if key not in of_program]
-        return evolve(self, program=None, ranking=ranking or None)
+        known = figures_ranked_by(ranking)
+        return evolve(self, program=None, ranking=ranking if known else None)
 
     @property
     def without_seating(self) -> Query:
@@ -272,7 +274,7 @@ class Query:
         needed = len(known) < len(self.ranking)
         return evolve(
             self,
-            ranking=[*dict.fromkeys((*known, *for_loads(DEFAULT_RANKING, self.is_loaded)))]
+            ranking=[*dict.fromkeys((*known, *for_loads(FIGURE_RANKING, self.is_loaded)))]
             if needed
             else known,
             best=None if self.best is None else max(self.best, self.seating),
@@ -280,6 +282,11 @@ class Query:
             opening=None,
             foolproof=False,
         )
+
+    @property
+    def has_house_order(self) -> bool:
+        """Whether fixtures stand in the usual order, so that one's place depends on the best of all."""
+        return has_house_order(self.ranking)
 
     @property
     def by_margin_alone(self) -> bool:

@@ -47,6 +47,9 @@ class Result:
     pairs, seats : with two clamps, how many pairs of clamps hold the part, and at how many seats and pairs of
         directions. None for other toolkits, and where only the best were sought.
     seating : where else the pegs can hold the part, of as many of the first fixtures as there are entries.
+    least_effective_error : in mm, the least effective location error of all fixtures that are fit and without
+        warning, or as near to that as any is; steps count from it (``model.first_choice``). None where the
+        order has no steps, and of results from before there were any.
     """
 
     query: Query
@@ -60,6 +63,7 @@ class Result:
     pairs: int | None = None
     seats: int | None = None
     seating: tuple[Seating, ...] = field(default=(), hash=False)
+    least_effective_error: float | None = None
 
     def __attrs_post_init__(self) -> None:
         refuse_kind(self.query, Query, "the query", "give a Query, such as workhold.Query(part, toolkit)")

@@ -33,6 +33,7 @@ from workhold.model.setup import settings_of
 from workhold.model.solid import SolidOutline
 from workhold.model.workpiece import Workpiece
 from workhold.seating.clamping import by_hand
+from workhold.statics.why_first import why_first
 
 if TYPE_CHECKING:
     from workhold.files.toolkit_file import LoadedToolkit
@@ -190,6 +191,8 @@ def result_data(result: Result, shown: Entries, count: int) -> dict[str, Any]:
         "notes": list(result.notes),
         "proof": None if result.proof is None else proof_data(result.proof),
         "ranking": list(result.query.ranking),
+        "least_effective_error": result.least_effective_error,
+        "why_first": why_first(result) or None,
         "fixtures": [
             {**fixture_data(result[index], result.toolkit, index + 1), "like_it": more}
             for index, more in zip(indices, like, strict=True)

@@ -185,7 +185,8 @@ def answer(
     results = []
     for number, way in enumerate(ways):
         share = stage(progress, number / len(ways), (number + 1) / len(ways))
-        results.append(answer_of_a_way(evolve(query, toolkit=way), workers, share, cancel, preview))
+        part = evolve(query, toolkit=way)
+        results.append(answer_of_a_way(part, workers, share, cancel, preview, is_part=True))
     return deliver(joined_ways(results, query), sink)
 
 
@@ -196,8 +197,12 @@ def answer_of_a_way(
     cancel: Event | None,
     preview: Preview | None,
     sink: Sink | None = None,
+    is_part: bool = False,
 ) -> Result:
-    """The answer in a toolkit of which one carrier moves, see :func:`answer`."""
+    """The answer in a toolkit of which one carrier moves, see :func:`answer`.
+
+    Of one of several ways, it is all that may be among the best of all.
+    """
     problem = Problem.of(query)
     search = ToolkitSearch.of(problem, threads=threads, cancel=cancel)
     kept = None if query.best is None else BestFixtures(problem, cancel)
@@ -205,7 +210,7 @@ def answer_of_a_way(
     before, rest = stage(progress, 0.0, SEARCH), stage(progress, SEARCH, 1.0)
     if kept is not None:
         work = best_first(search, kept, threads, before, cancel, look)
-        return deliver(with_reason(best_result(kept, work), search, threads, cancel), sink)
+        return deliver(with_reason(best_result(kept, work, is_part), search, threads, cancel), sink)
     blocks = search.blocks(query.arrangements)
     if sink is not None:
         with ThreadPoolExecutor(max_workers=threads) as pool:
@@ -223,7 +228,9 @@ def answer_of_a_way(
         return result
     records, done = run_blocks(blocks, threads, before, cancel, look=look, stop=search.stop)
     work = work_of(search, blocks, done)
-    result = listed_result(problem, records, work, progress=rest, cancel=cancel, threads=threads)
+    result = listed_result(
+        problem, records, work, progress=rest, cancel=cancel, threads=threads, is_part=is_part
+    )
     return deliver(with_reason(result, search, threads, cancel), sink)
 
 

@@ -24,12 +24,13 @@ from workhold.conventions import SAME_POSE
 from workhold.fixels.fields import PITCH
 from workhold.kernels.curves.block_work import CANDIDATES
 from workhold.limits import refuse_much_work
-from workhold.listing.bounds import square_angles
+from workhold.listing.bounds import preferred_angles
 from workhold.listing.canonical_form import Candidates, candidates_of, canonical_form, listed_once
 from workhold.listing.clamp_contacts import contacts_of_candidates
 from workhold.listing.collector import blocks_of
 from workhold.listing.contact_groups import PackedContacts
 from workhold.listing.placing import at_angle
+from workhold.listing.ranking import MOST_ERROR, OrderKeys
 from workhold.listing.results import Work, stage, summed
 from workhold.listing.seat_order import ordered_groups
 from workhold.listing.seats import ClampedSeats, Seats, seats_of
@@ -70,7 +71,7 @@ class LatticeShares:
     collector : takes the seats.
     whole_turn : blocks of each search that find everything.
     ranges : those of each share; of the first the square ones where there is a bound.
-    bound : keys (R,) that no tilted fixture ranks before; None where square ones do not come first.
+    bound : the least keys of fixtures at other than preferred angles; None where these do not come first.
     pool : of so many threads.
     cancel : when set, the search stops soon.
     """
@@ -79,7 +80,7 @@ class LatticeShares:
     collector: ClampedSeats
     whole_turn: Sequence[list[Block]]
     ranges: Sequence[Ranges]
-    bound: Array | None
+    bound: OrderKeys | None
     pool: Executor
     threads: int
     cancel: Event | None
@@ -102,7 +103,7 @@ class LatticeShares:
         problem = searches[0].problem
         bound, ranges = tilted_bound(query, problem, ways_in(blocks)), ranges_of(blocks)
         if bound is not None:
-            ranges = square_first(ranges, square_angles(query))
+            ranges = square_first(ranges, preferred_angles(query))
         seats = ClampedSeats(query, problem)
         with ThreadPoolExecutor(max_workers=threads) as pool:
             yield cls(searches, seats, blocks, ranges, bound, pool, threads, cancel)
@@ -134,7 +135,7 @@ class LatticeShares:
             self.cells += sum(block.cells for block in done)
             is_whole = is_whole and len(done) == len(blocks)
             found.append(PackedContacts.of(records))
-        return self.seats(found, self.ranges[share]), is_whole
+        return self.seats(found, share), is_whole
 
     def blocks_of(self, share: int, search: ToolkitSearch, whole_turn: list[Block]) -> list[Block]:
         """The blocks of a search in which the seats of a share are, given those of a whole turn."""
@@ -142,28 +143,34 @@ class LatticeShares:
             return whole_turn
         blocks_in = partial(search.blocks, search.problem.toolkit.types, BLOCKS_PER_HALF_TURN)
         if share == 0 and self.bound is not None:
-            return blocks_in(first=square_angles(self.collector.query))
+            return blocks_in(first=preferred_angles(self.collector.query))
         within = [(degrees(low - OVERLAP), degrees(high + OVERLAP)) for low, high in self.ranges[share]]
         return blocks_in(within=within)
 
-    def seats(self, records: Sequence[PackedContacts], within: Ranges) -> Iterator[Seats]:
+    def seats(self, records: Sequence[PackedContacts], share: int) -> Iterator[Seats]:
         """The seats of contacts of each direction.
 
         Where only the best are asked for, those that may be at them come first, and none that cannot.
         """
-        query, total = self.collector.query, sum(map(len, records))
+        query, total, within = self.collector.query, sum(map(len, records)), self.ranges[share]
         if query.best is None or (self.shares == 1 and total <= COUNTED_WHOLE):
             yield self.seats_among([part.take(slice(None)) for part in records], within)
             return
         groups = ordered_groups(records, [search.problem for search in self.searches], query)
         edges = np.cumsum([0, *map(len, records)])
-        for chosen in groups.batches(self.collector.ranked):
+        for chosen in groups.batches(self.collector.ranked, self.floor(share)):
             places = np.searchsorted(chosen, edges).tolist()
             some = [
                 part.take(chosen[first:end] - start)
                 for part, start, (first, end) in zip(records, edges, pairwise(places), strict=False)
             ]
             yield self.seats_among(some, within)
+
+    def floor(self, share: int) -> int:
+        """An error in billionths of a mm that no fixture of the shares after this one has less than."""
+        if share == self.shares - 1:
+            return MOST_ERROR
+        return 0 if self.bound is None or self.bound.error is None else int(self.bound.error.min())
 
     def seats_among(self, records: Sequence[Array], within: Ranges) -> Seats:
         """All seats of contacts (N, 19) of each direction."""

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from workhold.contact.problem import Progress
 from workhold.errors import InputError
-from workhold.listing.ranking import rank
+from workhold.listing.ranking import billionths, keys_of, usual_errors
 from workhold.listing.results import stage
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import FIGURES, SEATING_FIGURES, WARNINGS, whole_rows
@@ -30,6 +30,7 @@ from workhold.model.search_report import best_note, by_hand_note, cut_note, seat
 from workhold.model.seating import Seating
 from workhold.seating.part_features import refuse_own_outlines
 from workhold.seating.pattern import refuse_unseated
+from workhold.statics.effective_error import angle_classes
 
 __all__ = ["Sink", "refuse_unasked", "seated_answer"]
 
@@ -169,7 +170,7 @@ def seated(result: Result, work: SeatingWork, listed: int | None = None) -> Resu
     seatings = seatings_of(result.part(slice(0, count)), work)
     looked_at = np.flatnonzero([one is not None for one in seatings])
     known = [one for one in seatings if one is not None]
-    order = order_of(result.table.take(looked_at), known, query)
+    order = order_of(result.table.take(looked_at), known, query, result.least_effective_error)
     kept = [place for place in order.tolist() if is_as_asked(known[place], query)]
     notes = tuple(
         best_note(query.best) if is_best(note, result) and query.best else note for note in result.reasons
@@ -202,15 +203,25 @@ def is_as_asked(seating: Seating, query: Query) -> bool:
     return catches and (seating.is_foolproof or not query.foolproof)
 
 
-def order_of(table: FixtureTable, seatings: Sequence[Seating], query: Query) -> NDArray[np.intp]:
-    """The order of fixtures with their seating, best first; equal ones as they are."""
+def order_of(
+    table: FixtureTable, seatings: Sequence[Seating], query: Query, least_effective_error: float | None
+) -> NDArray[np.intp]:
+    """The order of fixtures with their seating, best first; equal ones as they are.
+
+    Steps count from the least effective error in mm of all fixtures, with a seating or not.
+    """
     further = [[one.figures[figure.key] for figure in SEATING_FIGURES] for one in seatings]
     seating = np.array(further).reshape(len(seatings), len(SEATING_FIGURES))
     # What there is of a program stays the last column.
     whole = whole_rows(table.quality)
     quality = np.hstack([whole[:, : len(FIGURES)], seating, whole[:, len(FIGURES) :]])
     quality[:, WARNINGS] += [one.warning_count for one in seatings]
-    return rank(quality, query.ranking, query.tolerance)
+    effective = usual_errors(query)
+    error = None if effective is None else effective.errors(table)
+    keys = keys_of(quality, query, error, angle_classes(table.theta))
+    return keys.order(
+        None if least_effective_error is None else int(billionths(np.array([least_effective_error]))[0])
+    )
 
 
 def seatings_of(result: Result, work: SeatingWork) -> list[Seating | None]:

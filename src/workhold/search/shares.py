@@ -26,9 +26,10 @@ from numpy.typing import NDArray
 from workhold.contact.problem import Problem, Progress
 from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.curves.block_work import CANDIDATES
-from workhold.listing.bounds import square_angles, tilted_keys
+from workhold.listing.bounds import preferred_angles, tilted_keys
 from workhold.listing.canonical_form import Candidates, listed_once
 from workhold.listing.collector import BestFixtures, finish
+from workhold.listing.ranking import OrderKeys
 from workhold.listing.results import Work, result_of, stage
 from workhold.model.query import Query
 from workhold.model.result import Result
@@ -204,7 +205,7 @@ def best_first(
     total = cost_of(parts[0])
     bound = tilted_bound(query, problem, total)
     if bound is not None:
-        parts = [blocks_in(first=square_angles(query), rest=rest) for rest in (False, True)]
+        parts = [blocks_in(first=preferred_angles(query), rest=rest) for rest in (False, True)]
     begun, done = list[Block](), list[Block]()
     for part in parts:
         if begun and bound is not None and kept.rules_out(bound):
@@ -215,8 +216,8 @@ def best_first(
     return work_of(search, begun, done)
 
 
-def tilted_bound(query: Query, problem: Problem, cost: float) -> Array | None:
-    """Keys (R,) that no tilted fixture ranks before, where a search of a cost begins with square ones.
+def tilted_bound(query: Query, problem: Problem, cost: float) -> OrderKeys | None:
+    """The least keys of fixtures at other than preferred angles, where a search of a cost begins with these.
 
     None where it does not.
     """

@@ -3,7 +3,9 @@
 Both are rules of docs/quality.md. Warnings and penalties are counted in balls. The file's numbers may be off,
 so a figure may lie on either side of the number that decides; then the ball holds both counts.
 
-In the order ("Which comes first") fixtures that are none for a workshop come last. Every figure but the last
+In the order ("Which comes first") fixtures that are none for a workshop come last. In the usual one a
+warning, steps of the effective error and the angle come before figures (``verification.first_choice``). Every
+figure but the last
 counts to two significant digits, the last to nine decimals; what is equal stands in the order of types,
 holes, orientations and faces. Fixtures whose seating is known come first, its warnings counting as those of
 quality do. Equal ones among them stand as they would without it. A figure is written rounded, and that
@@ -18,14 +20,17 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import accumulate
 from math import atan2, ceil, degrees, isinf, pi, radians, tau
 
+from attrs import frozen
 from flint import arb
 
+from workhold.model.first_choice import figures_ranked_by
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.quality import RANKED
 from workhold.model.query import Query
 from workhold.model.seating import Seating
 from workhold.verification.ball_geometry import LineSide, Side
 from workhold.verification.contacts import BallPose
+from workhold.verification.first_choice import EffectiveJudge, angle_class
 from workhold.verification.listing import Claim
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.rules.travel import WAYS, direction_of, directions_of, quarter_turns, seen_along_x
@@ -169,16 +174,83 @@ Rank = tuple[list[int], float, list[int]]
 MORE_IS_BETTER = {figure.key: figure.more_is_better for figure in RANKED}
 
 
-def order_faults(fixtures: Sequence[Fixture], query: Query, hardware: ToolkitRules) -> Iterator[str]:
-    """A fault for a fixture out of order, where the figures ranked by are written."""
-    off, usual = query.tolerance.peg + query.tolerance.face, query.without_seating.ranking
-    if any(key not in fixture.quality for fixture in fixtures for key in usual):
+@frozen(eq=False)
+class OrderJudge:
+    """What comes before the figures in the usual order of a query."""
+
+    query: Query
+    effective: EffectiveJudge
+
+    def first(self, fixture: Fixture, figures: Mapping[str, float]) -> list[Range]:
+        """Whether there is a warning, the steps above the least error, and the class of the angle."""
+        warned = float(figures.get("warnings", 0.0) > HAIR)
+        low, high = angle_class(fixture.pose.theta_deg)
+        return [(warned, warned), self.effective.steps(fixture), (low, high)]
+
+    def least_fault(self, fixtures: Sequence[Fixture], is_whole: bool) -> str:
+        """What is wrong with the least effective error of all; ``is_whole`` where all are listed."""
+        if not fixtures:
+            return ""
+        least = self.effective.least
+        if least is None:
+            return "the least effective error, from which steps of the order count, is missing"
+        off = self.query.tolerance.peg + self.query.tolerance.face
+        ranked = [(unfit(fixture, off), fixture) for fixture in fixtures]
+        classes = [
+            (bad[0] + (bad[0] != bad[1]) / 2, fixture.quality.get("warnings", 0.0) > HAIR)
+            for bad, fixture in ranked
+        ]
+        said, best = round(least * 1e9), min(classes)
+        if best[0] % 1:
+            # Whether the first is fit is a matter of the last digit.
+            return ""
+        errors = [
+            self.effective.error(fixture)
+            for one, (_, fixture) in zip(classes, ranked, strict=True)
+            if one == best
+        ]
+        low, high = (min(ends) for ends in zip(*errors, strict=True))
+        if said > high or (is_whole and said < low):
+            return (
+                f"the least effective error is given as {least:.9f} mm, and that of the fixtures listed is "
+                f"{high / 1e9:.9f} mm"
+            )
+        return ""
+
+
+def order_faults(
+    fixtures: Sequence[Fixture],
+    query: Query,
+    hardware: ToolkitRules,
+    least: float | None = None,
+    is_whole: bool = False,
+) -> Iterator[str]:
+    """A fault for a fixture out of order, where the figures ranked by are written.
+
+    Parameters
+    ----------
+    least : the least effective error of all in mm, as written.
+    is_whole : whether all that was found is listed.
+    """
+    usual = query.without_seating
+    if any(key not in fixture.quality for fixture in fixtures for key in figures_ranked_by(usual.ranking)):
         return
-    rows = [[unfit(fixture, off), *ranges(fixture.quality, usual)] for fixture in fixtures]
+    judge = OrderJudge(query, EffectiveJudge(query, least)) if query.has_house_order else None
+    if judge is not None and (fault := judge.least_fault(fixtures, is_whole)):
+        yield fault
+        return
+    off = query.tolerance.peg + query.tolerance.face
+
+    def row_of(fixture: Fixture, figures: Mapping[str, float], asked: Query) -> list[Range]:
+        """What a fixture is ordered by, with some figures."""
+        first = judge.first(fixture, figures) if judge is not None and asked.has_house_order else []
+        return [unfit(fixture, off), *first, *ranges(figures, figures_ranked_by(asked.ranking))]
+
+    rows = [row_of(fixture, fixture.quality, usual) for fixture in fixtures]
     stated = [figures_stated(fixture) for fixture in fixtures]
     seated = [
-        None if figures is None else [row[0], *ranges(figures, query.ranking), *row[1:]]
-        for row, figures in zip(rows, stated, strict=True)
+        None if figures is None else [*row_of(fixture, figures, query), *row[1:]]
+        for fixture, row, figures in zip(fixtures, rows, stated, strict=True)
     ]
     count = sum(one is not None for one in seated)
     if any(one is None for one in seated[:count]):
@@ -193,7 +265,7 @@ def order_faults(fixtures: Sequence[Fixture], query: Query, hardware: ToolkitRul
     for place in range(1, len(rows)):
         one, before = seated[place], seated[place - 1]
         if before is not None and one is None:
-            ranking = usual
+            ranking = usual.ranking
             continue
         better = is_better(one or rows[place], before or rows[place - 1])
         if better:
@@ -205,6 +277,10 @@ def order_faults(fixtures: Sequence[Fixture], query: Query, hardware: ToolkitRul
                 "and pose"
             )
             return
+    # That which has the least error stands no step above it, so neither does the first.
+    is_bare = judge is not None and least is not None and count == 0 and bool(fixtures)
+    if is_bare and judge is not None and judge.effective.steps(fixtures[0])[0] > 0:
+        yield f"the least effective error is given as {least:.9f} mm, a step below that of the first fixture"
 
 
 def figures_stated(fixture: Fixture) -> dict[str, float] | None:

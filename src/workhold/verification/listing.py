@@ -191,7 +191,7 @@ class Listing:
     query : what was asked.
     fixtures : as listed.
     counts, found, distinct : numbers of fixtures by type, as written.
-    complete, notes, statistics, proof, pairs, seats : see ``Result``.
+    complete, notes, statistics, proof, pairs, seats, least_effective_error : see ``Result``.
     faults : contradictions in the head of the file, one sentence each.
     """
 
@@ -207,6 +207,12 @@ class Listing:
     faults: tuple[str, ...] = ()
     pairs: int | None = None
     seats: int | None = None
+    least_effective_error: float | None = None
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether all that was found is listed."""
+        return self.complete and dict(self.found) == dict(self.counts) and self.query.best is None
 
     @property
     def hardware(self) -> ToolkitRules:
@@ -228,6 +234,7 @@ def listing_of(result: Result) -> Listing:
         result.proof,
         pairs=result.pairs,
         seats=result.seats,
+        least_effective_error=result.least_effective_error,
     )
 
 
@@ -257,6 +264,7 @@ def read_listing(path: str | Path) -> Listing:
             (*keys_missing(head), *turned_loops(head.workpiece.loops, query)),
             head.pairs,
             head.seats,
+            head.least_effective_error,
         )
     except InputError as error:
         raise InputError(f"{path} cannot be verified: {error}") from error
@@ -321,6 +329,8 @@ def keys_missing(head: Head) -> list[str]:
     spared = {"toolkit" if head.toolkit is None else "vise", "proof", "tolerance.fit"}
     # Where nobody counted pairs and seats a note says so, for which the account looks.
     spared |= {"workpiece.departure", "tolerance.departure", "pairs", "seats", "thickness"}
+    # Where steps count, its absence is a fault of the order.
+    spared |= {"least_effective_error"}
     # A toolkit without flats, or heights of its own, says nothing of them.
     silent = [row.name for row in OPTIONS if row.form in SILENT] + list(HARDWARE)
     spared |= {f"{key}.{name}" for key in ("vise", "toolkit") for name in silent}

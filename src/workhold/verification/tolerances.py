@@ -108,6 +108,13 @@ PIN_STRESS_LIMIT, PIN_MOVEMENT_LIMIT = 421.0, 0.05
 SQUARE_TILT, MAIN_DIRECTION, SMALL_FACE, GENTLE_PEG = 0.01, 0.99, 0.1, 1.5
 POINTS_PER_DECADE, TILTED_POINTS, STRONG_POINTS, SMALL_FACE_POINTS = 20, 9, 4, 2
 
+# What the order makes of a location error: times so much for the angle as written (degrees), a contact nearer
+# than its peg's radius to the end of a straight face, a clamp and a dowel in a hole, a part that hangs over
+# the plate; and the share by which each step is larger than the one before. docs/quality.md.
+WRITTEN_ANGLE = 1e-6
+TURNED, ASLANT, AT_AN_END, CLAMP_IN_HOLE, DOWEL_IN_HOLE, HANGING = 1.05, 1.5, 1.1, 1.25, 1.1, 1.1
+STEP = 11, 10
+
 
 @frozen
 class Finding:

@@ -364,7 +364,7 @@ def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verifi
     faults = [
         *listing.faults,
         *account_faults(listing, turning.order),
-        *order_faults(everything, query, judge.hardware),
+        *order_faults(everything, query, judge.hardware, listing.least_effective_error, listing.is_whole),
         *pattern_faults(everything, query),
         *seat_faults(listing, refuted),
         *stock_faults(query),

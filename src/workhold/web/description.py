@@ -268,7 +268,11 @@ EXAMPLES = {
     f"POST {FIRST}/supports": ApiExample(
         OF_FIRST, body={"thickness": 12, "best": 3}, answer={"sets": [{"holes": ["L-B2", "L-B7", "R-(0,4)"]}]}
     ),
-    f"GET {FIRST}/warnings": ApiExample(OF_FIRST, {"jaw_force": 3000}, answer={"rank": 1, "warnings": []}),
+    f"GET {FIRST}/warnings": ApiExample(
+        OF_FIRST,
+        {"jaw_force": 3000},
+        answer={"rank": 1, "warnings": [], "why_first": "First: no warning; ..."},
+    ),
     f"GET {FIRST}/seating": ApiExample(OF_FIRST, answer={"rank": 1, "capture_opening": 0.391745576}),
     f"POST {FIRST}/closing": ApiExample(
         OF_FIRST, body={"theta_deg": 269, "x": 3, "y": 66, "opening": 0.2}, answer={"ending": "right"}

@@ -184,7 +184,7 @@ async def warnings(
         "loads": asked_loads(loads),
         "others": others,
     }
-    return {"rank": rank, "warnings": await at_desk(request, "warnings", (small, asked))}
+    return {"rank": rank, **await at_desk(request, "warnings", (small, index == 0, asked))}
 
 
 def before_of(request: Request, form: FirstSideForm | None) -> Before | None:

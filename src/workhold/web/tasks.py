@@ -119,15 +119,17 @@ def loads(payload: tuple[Fixture, Workpiece, Toolkit, LoadsForm], order: Order) 
     return [load_case_data(case) for case in cases]
 
 
-def warnings(payload: tuple[Result, dict[str, Any]], order: Order) -> list[dict[str, str]]:
-    """Lists the cautions of the only fixture of a result."""
+def warnings(payload: tuple[Result, bool, dict[str, Any]], order: Order) -> dict[str, Any]:
+    """Lists the cautions of the only fixture of a result, and says why it is first if it is."""
     from workhold.drawing.sheet_facts import result_cautions
+    from workhold.statics.why_first import why_first
 
-    result, asked = payload
-    return [
-        {"kind": caution.kind, "sentence": caution.sentence}
-        for caution in result_cautions(result, 1, **asked)
-    ]
+    result, is_first, asked = payload
+    cautions = result_cautions(result, 1, **asked)
+    return {
+        "warnings": [{"kind": caution.kind, "sentence": caution.sentence} for caution in cautions],
+        "why_first": why_first(result, asked["unit"]) if is_first else "",
+    }
 
 
 def resist(payload: tuple[Result, LoadsForm], order: Order) -> list[tuple[int, float]]:

@@ -289,6 +289,9 @@ class Head(FormPart):
     thickness: float | None = None
     pairs: Annotated[int, Field(ge=0)] | None = None
     seats: Annotated[int, Field(ge=0)] | None = None
+    least_effective_error: Annotated[float, Field(ge=0)] | None = Field(
+        None, description="mm, of all that is fit and without warning; from it the steps of the order count"
+    )
 
     def asked_toolkit(self) -> Toolkit:
         """The toolkit.

@@ -264,6 +264,7 @@ def result_with(table: FixtureTable, head: Head, query: Query, path: Path) -> Re
         proof=None if head.proof is None else checked_proof(head.proof, query, path),
         pairs=head.pairs,
         seats=head.seats,
+        least_effective_error=head.least_effective_error,
     )
 
 

@@ -150,8 +150,15 @@ def head(result: Result, with_pieces: bool = True) -> dict[str, Any]:
         "complete": bool(result.complete),
         "notes": list(result.notes),
         **({} if result.pairs is None else {"pairs": result.pairs, "seats": result.seats}),
+        **error_entry(result),
         "statistics": {name: int(count) for name, count in result.statistics.items()},
     } | ({} if result.proof is None else {"proof": proof_entry(result.proof)})
+
+
+def error_entry(result: Result) -> dict[str, float]:
+    """The least effective location error as it is written; nothing where the order has no steps."""
+    least = result.least_effective_error
+    return {} if least is None else {"least_effective_error": least}
 
 
 def program_text(program: Program) -> Iterator[str]:

@@ -35,12 +35,17 @@ const askSoon = quiet(async () => {
   const { selected, job } = state;
   if (!selected?.rank || !job?.job) {
     show(byId("warnings-card"), false);
+    show(byId("why-first"), false);
     return;
   }
   const query = new URLSearchParams({ unit: state.unit, ...loadQuery() });
   try {
-    const { warnings } = await ask(`jobs/${encodeURIComponent(job.job)}/fixtures/${selected.rank}/warnings?${query}`);
+    const found = await ask(`jobs/${encodeURIComponent(job.job)}/fixtures/${selected.rank}/warnings?${query}`);
     if (mine !== asked) return;
+    const { warnings } = found;
+    const reason = byId("why-first");
+    reason.textContent = found.why_first ?? "";
+    show(reason, Boolean(found.why_first));
     byId("warnings").replaceChildren(...warnings.map(({ kind, sentence }) => make(`li.${kind}`, {}, sentence)));
     show(byId("warnings-card"), warnings.length > 0);
   } catch (error) {

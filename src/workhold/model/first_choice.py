@@ -1,0 +1,95 @@
+"""What makes one fixture the first choice before others: the order's own words, and what each doubt costs.
+
+The order is lexicographic (docs/quality.md, "Which comes first"): unfit; warned or not; steps of the
+effective location error above the best; the angle; figures of quality; identity. The effective location error is the
+location error times the factors below that hold of the fixture. They are data, each with its reason.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from attrs import frozen
+
+__all__ = [
+    "FACTORS",
+    "HOUSE_ORDER",
+    "Factor",
+    "figures_ranked_by",
+    "has_house_order",
+]
+
+# What an order begins with where nobody names another: a warning, k, and the angle as written.
+HOUSE_ORDER = ("warned", "error_steps", "angle")
+
+
+@frozen
+class Factor:
+    """What a doubt about a fixture costs, as a factor of its location error.
+
+    Parameters
+    ----------
+    key : its name.
+    times : the factor.
+    words : what holds of the fixture, after "it is" or "it has".
+    reason : why it costs anything, in one sentence.
+    """
+
+    key: str
+    times: float
+    words: str
+    reason: str
+
+
+FACTORS = (
+    Factor(
+        "quarter_turn",
+        1.05,
+        "turned by 90°, 180° or 270°",
+        "The program has to be turned, or the part is put in wrong; jaws that are equal do not ask for it.",
+    ),
+    Factor(
+        "other_angle",
+        1.5,
+        "turned aslant",
+        "Nobody can square the part up with a square or an indicator along the axes of the machine.",
+    ),
+    Factor(
+        "face_end",
+        1.1,
+        "touched near the end of a straight face",
+        "Half of a peg stands past the face there, where edges are broken and blanks are sawn.",
+    ),
+    Factor(
+        "clamp_in_hole",
+        1.25,
+        "clamped from inside a hole",
+        "The clamp stands where the hole is machined, is hard to reach, and its chips stay.",
+    ),
+    Factor(
+        "dowel_in_bore",
+        1.1,
+        "located from inside a hole",
+        "The hole has to be there and true before, the part has to be threaded over the dowel.",
+    ),
+    Factor(
+        "hangs_over",
+        1.1,
+        "hanging over the plate",
+        "What hangs over is not held up under the tool, and is in the way beside the plate.",
+    ),
+)
+
+
+def has_house_order(ranking: Sequence[str]) -> bool:
+    """Whether an order begins with warning, steps and angle, rather than with figures that somebody named."""
+    return tuple(ranking[: len(HOUSE_ORDER)]) == HOUSE_ORDER
+
+
+def figures_ranked_by(ranking: Sequence[str]) -> tuple[str, ...]:
+    """The keys of the figures in an order.
+
+    >>> figures_ranked_by(("warned", "error_steps", "angle", "penalty"))
+    ('penalty',)
+    """
+    return tuple(ranking[len(HOUSE_ORDER) :] if has_house_order(ranking) else ranking)

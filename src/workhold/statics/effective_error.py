@@ -1,0 +1,201 @@
+"""The effective location error: the location error times what a machinist would rather not have.
+
+The factors are data (``model.first_choice``); here it is found out which of them hold of a fixture.
+
+Glossary
+--------
+angle class : of the angle as written, 0 at 0 degrees, 1 at 90, 180 and 270 degrees, 2 elsewhere.
+asked for : of holes: every face outside is avoided, or the toolkit clamps by opening, so that it has to work
+    from inside.
+hangs over : of a part on plates of a known number of columns, or rows. Plates reach half a pitch beyond their
+    outermost holes. All may be moved by whole holes where the pegs stay on the plate, and nothing else says
+    where it stands. If at no such place the part lies within the plates along that direction, it hangs over.
+"""
+
+from __future__ import annotations
+
+from math import cos, pi
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.conventions import AGREEMENT, FIGURE_DECIMALS, WRITTEN_ANGLE
+from workhold.fixels.contacts import CLAMP_TIP
+from workhold.geometry.hull import convex_hull
+from workhold.geometry.segment import Arc, Line
+from workhold.model.first_choice import FACTORS
+from workhold.model.fixture_table import FixtureTable, peg_places
+from workhold.model.quality import LOCATION_ERROR
+from workhold.model.query import Query
+from workhold.model.workpiece import Workpiece
+
+__all__ = ["EffectiveErrors", "angle_classes", "faces_unasked_for", "to_ends"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+KEYS = tuple(factor.key for factor in FACTORS)
+TIMES = np.array([factor.times for factor in FACTORS])
+
+
+def angle_classes(theta: Array, beside: float = WRITTEN_ANGLE) -> IntArray:
+    """Classes (N,) of angles (N,) in radians; within so many degrees ``beside`` one it counts as that."""
+    turns = np.degrees(theta) / 90.0
+    whole = np.rint(turns)
+    there = np.abs(turns - whole) * 90.0 <= beside
+    return np.where(there, (whole % 4 != 0).astype(np.int64), 2)
+
+
+def faces_unasked_for(query: Query) -> BoolArray:
+    """Which faces (S,), by number, are those of holes that nobody asked for."""
+    every = query.workpiece.numbered
+    out = np.zeros(len(every.segments), np.bool_)
+    outside = {face.number for face in every.faces} - every.inside - query.workpiece.untouchable
+    if query.toolkit.clamping > 0 and not outside <= set(query.restrictions.avoid):
+        out[sorted(every.inside)] = True
+    return out
+
+
+@frozen(eq=False)
+class EffectiveErrors:
+    """What is needed to find which factors hold of the fixtures of a query.
+
+    Parameters
+    ----------
+    query : what is asked.
+    unasked : (S,) which faces are those of holes that nobody asked for.
+    lines : (S, 5) of each straight face by number its start, direction and length; NaN for others.
+    corners : (C, 2) of the part's convex hull, of joints of its outline.
+    arcs : (A, 6) its convex arcs: centre, radius, middle direction, cosine of half the sweep.
+    """
+
+    query: Query
+    unasked: BoolArray
+    lines: Array
+    corners: Array
+    arcs: Array
+
+    @classmethod
+    def of(cls, query: Query) -> EffectiveErrors:
+        """What is needed for a query."""
+        every = query.workpiece.numbered
+        lines = np.full((len(every.segments), 5), np.nan)
+        for face in every.faces:
+            if isinstance(face.segment, Line):
+                lines[face.number] = (*face.segment.start, *face.segment.tangent, face.segment.length)
+        return cls(query, faces_unasked_for(query), lines, *outermost(query.workpiece))
+
+    def errors(self, table: FixtureTable) -> Array:
+        """Effective location errors (N,) in mm of a table of fixtures."""
+        factors = np.where(self.holding(table), TIMES, 1.0).prod(axis=1)
+        return np.asarray(table.quality[:, LOCATION_ERROR] * factors)
+
+    def holding(self, table: FixtureTable) -> BoolArray:
+        """Which factors (N, F) hold of a table's fixtures, in the order of ``FACTORS``."""
+        toolkit, angle = self.query.toolkit, angle_classes(table.theta)
+        carriers = toolkit.peg_carriers(table.arrangement)
+        is_clamp = np.array([one.contact is CLAMP_TIP for one in toolkit.carriers])[carriers]
+        is_placed = np.array([one.contact.is_placed for one in toolkit.carriers])[carriers]
+        inside = self.unasked[table.face] & is_placed
+        found = {
+            "quarter_turn": angle == 1,
+            "other_angle": angle == 2,
+            "face_end": (self.near_end(table, carriers) & is_placed).any(axis=1),
+            "clamp_in_hole": (inside & is_clamp).any(axis=1),
+            "dowel_in_bore": (inside & ~is_clamp).any(axis=1),
+            "hangs_over": self.hangs_over(table),
+        }
+        return np.stack([found[key] for key in KEYS], axis=1)
+
+    def near_end(self, table: FixtureTable, carriers: NDArray[np.int8]) -> BoolArray:
+        """Which contacts (N, P) are nearer than their peg's radius to the end of a straight face."""
+        radius = np.array([one.peg_radius for one in self.query.toolkit.carriers])[carriers]
+        x, y = peg_places(table, self.query.toolkit, self.query.workpiece)
+        x, y = x - table.position[:, :1], y - table.position[:, 1:]
+        cosine, sine = np.cos(table.theta)[:, None], np.sin(table.theta)[:, None]
+        points = np.stack([cosine * x + sine * y, cosine * y - sine * x], axis=2)
+        return np.asarray(to_ends(points, self.lines[table.face]) < np.round(radius, FIGURE_DECIMALS))
+
+    def hangs_over(self, table: FixtureTable) -> BoolArray:
+        """Which fixtures (N,) hang over the plate."""
+        toolkit, out = self.query.toolkit, np.zeros(len(table), np.bool_)
+        plates, travel = toolkit.plates, table.jaw_separation
+        moved = travel if travel.ndim == 1 else np.zeros(len(table))
+        for axis, counts in enumerate(([p.columns for p in plates], [p.rows for p in plates])):
+            if any(count is None for count in counts) or not len(table):
+                continue
+            pitch = plates[0].pitch[axis]
+            first = np.array([plate.place(0, 0, moved)[axis] + np.zeros(len(table)) for plate in plates])
+            last = first + (np.array([count or 0 for count in counts])[:, None] - 1) * pitch
+            low, high = first.min(axis=0) - pitch / 2, last.max(axis=0) + pitch / 2
+            least, most = self.extent(table, axis)
+            back, ahead = self.spare(table, axis)
+            # By so many holes at least, and at most, all has to be moved to lie within.
+            needed = np.ceil((low - least - AGREEMENT) / pitch)
+            allowed = np.floor((high - most + AGREEMENT) / pitch)
+            if axis == 1 and toolkit.wall is not None:
+                # The part lies on the wall; nobody asks what is under its foot.
+                needed = np.full(len(table), -np.inf)
+            out |= np.maximum(needed, -back) > np.minimum(allowed, ahead)
+        return out
+
+    def extent(self, table: FixtureTable, axis: int) -> tuple[Array, Array]:
+        """The least and largest places (N,) that the part reaches along x or y of the toolkit."""
+        # The axis as the part sees it.
+        turn = (pi / 2) * axis - table.theta
+        along = np.stack([np.cos(turn), np.sin(turn)], axis=1)
+        low, high = -reach(-along, self.corners, self.arcs), reach(along, self.corners, self.arcs)
+        return low + table.position[:, axis], high + table.position[:, axis]
+
+    def spare(self, table: FixtureTable, axis: int) -> tuple[Array, Array]:
+        """The holes (N,) by which all may be moved back, and ahead, along x or y."""
+        toolkit, none = self.query.toolkit, np.zeros(len(table))
+        slides = [plate for plate in toolkit.plates if plate.travel is not None]
+        if any(plate.is_along_x == (axis == 0) for plate in slides) or (axis == 1 and toolkit.wall):
+            return none, none
+        carriers, holes = toolkit.peg_carriers(table.arrangement), (table.column, table.row)[axis]
+        counted = np.array([one.counted[axis] for one in toolkit.carriers])[carriers]
+        ends = {plate.name: (plate.columns, plate.rows)[axis] or 0 for plate in toolkit.plates}
+        last = np.array([ends.get(one.stands_on, 0) - 1 for one in toolkit.carriers])[carriers]
+        back = np.where(counted, holes, np.iinfo(np.int32).max).min(axis=1)
+        ahead = np.where(counted, last - holes, np.iinfo(np.int32).max).min(axis=1)
+        return back.astype(np.float64), ahead.astype(np.float64)
+
+
+def to_ends(points: Array, lines: Array) -> Array:
+    """Distances (...,) of contacts from the nearer ends of straight faces, in mm to nine decimals; NaN for
+    others.
+
+    Parameters
+    ----------
+    points : (..., 2) centres of what touches, in the part's coordinates.
+    lines : (..., 5) of the faces, see :class:`EffectiveErrors`.
+    """
+    along = ((points - lines[..., :2]) * lines[..., 2:4]).sum(axis=-1)
+    return np.asarray(np.round(np.minimum(along, lines[..., 4] - along), FIGURE_DECIMALS))
+
+
+def outermost(workpiece: Workpiece) -> tuple[Array, Array]:
+    """Corners and convex arcs of a part, see :class:`EffectiveErrors`."""
+    outer = [face.segment for face in workpiece.outer_faces]
+    joints = [one.start for one in outer if not (isinstance(one, Arc) and one.is_full)]
+    arcs = [
+        (*one.row()[1:3], one.radius, *one.row()[3:5], cos(min(one.half_sweep, pi)))
+        for one in outer
+        if isinstance(one, Arc) and one.sign > 0
+    ]
+    return np.array(convex_hull(joints)).reshape(-1, 2), np.array(arcs).reshape(-1, 6)
+
+
+def reach(along: Array, corners: Array, arcs: Array) -> Array:
+    """How far (N,) a part reaches in directions (N, 2)."""
+    out = np.full(len(along), -np.inf)
+    for x, y in corners.tolist():
+        np.maximum(out, along[:, 0] * x + along[:, 1] * y, out=out)
+    for x, y, radius, ahead, aside, cosine in arcs.tolist():
+        there = along[:, 0] * ahead + along[:, 1] * aside >= cosine
+        far = along[:, 0] * x + along[:, 1] * y + radius
+        np.maximum(out, np.where(there, far, -np.inf), out=out)
+    return out

@@ -1,0 +1,73 @@
+"""Why a fixture is the first choice, in one line: what the usual order found of it before any figure."""
+
+from __future__ import annotations
+
+from math import isfinite
+
+import numpy as np
+
+from workhold.model.first_choice import FACTORS
+from workhold.model.quality import LOCATION_ERROR, WARNINGS
+from workhold.model.result import Result
+from workhold.statics.effective_error import EffectiveErrors, angle_classes
+from workhold.statics.judging import unfit
+from workhold.units import MILLIMETRE, Unit
+
+__all__ = ["why_first"]
+
+
+def why_first(result: Result, unit: Unit = MILLIMETRE) -> str:
+    """Says why the first fixture of a result stands first; nothing where another order was asked for.
+
+    Parameters
+    ----------
+    unit : of lengths.
+
+    Examples
+    --------
+    >>> import workhold
+    >>> part = workhold.Workpiece.from_loops("block", [[[0, 0, 0], [100, 0, 0], [100, 60, 0], [0, 60, 0]]])
+    >>> why_first(workhold.design(part, workhold.Plate(pitch=20, peg_radius=3, clamps=2), best=5))
+    'First: no warning; location error 0.0398 mm, within a tenth of the least; as drawn.'
+    """
+
+    def length(mm: float) -> str:
+        """A length with as many decimals as figures have."""
+        return f"{unit.number(mm, unit.decimals + 1)} {unit.abbreviation}"
+
+    least, query = result.least_effective_error, result.query
+    if not query.has_house_order or least is None or len(result) == 0:
+        return ""
+    row = result.table.take(slice(0, 1))
+    effective = EffectiveErrors.of(query)
+    holds = effective.holding(row)[0]
+    error, counted = float(row.quality[0, LOCATION_ERROR]), float(effective.errors(row)[0])
+    if not isfinite(error):
+        return ""
+    warned, angle = bool(row.quality[0, WARNINGS] > 0), int(angle_classes(row.theta)[0])
+    if unfit(row.quality, query.tolerance)[0]:
+        said = "none is fit for a workshop"
+    else:
+        said = "all that are fit have a warning" if warned else "no warning"
+    turned = f"turned by {round(float(np.degrees(row.theta[0])))}°"
+    against = [
+        turned if factor.key == "quarter_turn" else factor.words
+        for factor, holding in zip(FACTORS, holds, strict=True)
+        if holding
+    ]
+    size = f"location error {length(error)}"
+    if against:
+        size += f", counted as {length(counted)} ({', '.join(against)})"
+    if np.round(counted, 9) >= 1.1 * least:
+        # Where what is known of its seating changed the order.
+        near = f"the least is {length(least)}"
+    elif np.round(counted, 9) <= least:
+        near = "the least of all"
+    else:
+        near = "within a tenth of the least"
+    lies = (
+        "as drawn",
+        "as drawn nothing comes within a tenth",
+        "square to the drawing nothing comes within a tenth",
+    )[angle]
+    return f"First: {said}; {size}, {near}; {lies}."
