@@ -24,7 +24,9 @@ from workhold.model.fixture import Peg
 from workhold.model.fixture_table import FixtureTable, fixture_at
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES, LOCATION_ERROR
 from workhold.model.requirements import Restrictions
+from workhold.statics.effective_error import EffectiveErrors
 from workhold.statics.judging import unfit
+from workhold.verification.first_choice import EffectiveJudge
 from workhold.verification.verify import Judge
 
 pytest.importorskip("scipy", reason="the extra [batch] is not installed")
@@ -69,7 +71,12 @@ def prove(family: Family) -> None:
                 fixture = fixture_at(as_listed(one), family.toolkit, 0, one.member.query.workpiece)
                 ruling = judges[id(one.member)].rule_on(fixture)
                 assert ruling.verdict == "proven", ruling.reason
-                assert one.figure / one.member.best == pytest.approx(one.loss, abs=1e-6)
+                low, high = EffectiveJudge(one.member.query, None).error(fixture)
+                error = (low + high) / 2e9 if family.figure.key == "location_error" else one.figure
+                # On a plate with ends a pattern that stands elsewhere may hang over where the list's does not.
+                hanging = (1.0,) if family.toolkit.rows is None else (1.0, 1.1, 1 / 1.1)
+                ratio = error / one.member.best
+                assert any(ratio == pytest.approx(one.loss * factor, rel=1e-6) for factor in hanging)
                 if one.in_place:
                     assert holes_of(one.row, family.toolkit) == holes_of(setup.standing.row, family.toolkit)
 
@@ -80,7 +87,7 @@ def test_the_curve_of_twenty_parts(twenty: Family) -> None:
         bound: min(p.setups for p in twenty.points if p.loss <= bound)
         for bound in (inf, 2, 1.5, 1.25, 1.1, 1.0)
     }
-    assert within == {inf: 1, 2: 1, 1.5: 2, 1.25: 3, 1.1: 6, 1.0: 15}
+    assert within == {inf: 1, 2: 2, 1.5: 5, 1.25: 5, 1.1: 8, 1.0: 14}
     assert [point.loss for point in twenty.points] == sorted(
         (point.loss for point in twenty.points), reverse=True
     )
@@ -118,7 +125,7 @@ def test_the_fewest_of_six_parts_by_trying_everything(first: int) -> None:
         result = answer(one.query, threads=1)
         table, _ = with_half_turns(result.table, one.query)
         table = table.take(np.flatnonzero(~unfit(table.quality, one.query.tolerance)))
-        errors = np.round(table.quality[:, LOCATION_ERROR], 9)
+        errors = np.round(EffectiveErrors.of(one.query).errors(table), 9)
         for row, error in enumerate(errors.tolist()):
             left, right = (
                 [r for c, r in zip(range(4), table.row[row], strict=True) if jaw(table, row, c) == k]
@@ -178,10 +185,11 @@ def test_rules_restrict_what_is_used() -> None:
     parts = TWENTY[:4]
     free = family_of(asked(parts, VISE), threads=1)
     error = free.figure.key
-    limit = sorted(member.best for member in free.members)[1] + 1e-6
+    least = {member.name: float(member.table.quality[:, LOCATION_ERROR].min()) for member in free.members}
+    limit = sorted(least.values())[1] + 1e-6
     strict = family_of(asked(parts, VISE), thresholds=[threshold(error, limit)], threads=1)
     assert sorted(one.name for one in strict.left_out) == sorted(
-        m.name for m in free.members if m.best > limit
+        name for name, value in least.items() if value > limit
     )
     assert all("may be used" in one.reason for one in strict.left_out)
     bounded = family_of(asked(parts, VISE), most_loss=1.001, threads=1)
@@ -253,7 +261,7 @@ def test_the_best_that_a_part_has_is_none_that_is_unfit() -> None:
     fit = ~unfit(quality, result.query.tolerance)
     table, _ = with_half_turns(changed.table.take(np.flatnonzero(fit)), result.query)
     member = member_of("a", changed)
-    assert member.best == pytest.approx(table.quality[:, LOCATION_ERROR].min(), abs=1e-12)
+    assert member.best == pytest.approx(EffectiveErrors.of(result.query).errors(table).min(), abs=1e-12)
     assert member.loss.min() == 1.0
     assert member_of("a", changed, unfit=True).best < member.best
 

@@ -50,12 +50,14 @@ def report(found: Family, plan: Plan | None, spent: str, unit: Unit) -> None:
     if not found.members:
         print_tables(f"No pattern holds any of the parts {toolkit.wording.inside}; {spent}.")
         return
+    from workhold.family.members import loss_figure_words
+
     assert found.table is not None
     print_tables(curve_table(found, unit))
     sentences = [
         f"{plural(len(found.members), 'part')}, {plural(len(found.table.words), 'pattern')} that hold at "
         f"least one of them; {spent}.",
-        f"The loss is the {found.figure.words} over the best that each part has {toolkit.wording.inside}.",
+        f"The loss is the {loss_figure_words(found.figure)} over the best that each part has {toolkit.wording.inside}.",
     ]
     if not all(plan.point.is_least and plan.point.at_least == plan.point.setups for plan in found.plans):
         sentences.append("Time was over before all of it was proven: a longer --time-limit may show less.")

@@ -9,7 +9,8 @@ pattern : the places of the pegs relative to each other, without faces, pose and
     takes the place of the offsets. Moving all pegs by whole lattice steps gives the same pattern. A pattern
     holds a part when a fixture of the part, as listed or after half a turn of everything, has it.
 loss : the first ranking figure of a fixture over the best that the part has in the toolkit, or the inverse
-    where more is better: 1 or more. A pattern's loss on a part is the least among the part's fixtures that
+    where more is better: 1 or more. A location error counts as the effective one (``statics.effective_error``),
+    which is higher where the part is turned. A pattern's loss on a part is the least among the part's fixtures that
     have it.
 bound : the largest loss that is accepted. At a bound a pattern is the set of the members that it holds within
     it.

@@ -36,6 +36,7 @@ from workhold.model.requirements import ANY_DIRECTION, Load, Restrictions, Toler
 from workhold.model.result import Result
 from workhold.model.setup import PartZero, part_zero
 from workhold.model.workpiece import Workpiece
+from workhold.statics.effective_error import EffectiveErrors
 from workhold.statics.judging import unfit
 
 __all__ = [
@@ -43,6 +44,7 @@ __all__ = [
     "RANKINGS",
     "Member",
     "Threshold",
+    "loss_figure_words",
     "loss_text",
     "losses",
     "may_be_used",
@@ -88,6 +90,11 @@ def threshold(name: str, value: float) -> Threshold:
             f"{name!r} is no figure: choose among {', '.join(figure.option for figure in FIGURES)}."
         )
     return Threshold(FIGURES[number], value)
+
+
+def loss_figure_words(figure: Figure) -> str:
+    """What losses are computed of, in a few words."""
+    return f"effective {figure.words}" if figure.key == LOCATION else figure.words
 
 
 def losses(values: NDArray[np.float64], figure: Figure) -> NDArray[np.float64]:
@@ -282,6 +289,9 @@ def member_of(
     figure = FIGURES[figure_number(query.ranking[0]) or 0]
     table, number = with_half_turns(result.table, query)
     values = figure_column(table.quality, figure)
+    if figure.key == LOCATION:
+        # A part that is held to a hundredth, but aslant, is not held well.
+        values = EffectiveErrors.of(query).errors(table)
     good = may_be_used(table, (), query.tolerance, unfit)
     loss = np.full(len(table), np.inf)
     loss[good] = losses(values[good], figure)

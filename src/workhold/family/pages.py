@@ -34,7 +34,7 @@ from workhold.drawing.scene import (
 )
 from workhold.family.covering import Point
 from workhold.family.family import Family
-from workhold.family.members import loss_text
+from workhold.family.members import loss_figure_words, loss_text
 from workhold.family.plan import Holding, Plan, SetUp
 from workhold.model.quality import Figure
 from workhold.model.setup import settings_of
@@ -64,8 +64,8 @@ def draw_curve(family: Family, chosen: Point | None = None) -> str:
     group = scene.group("heading")
     group.text((EDGE, EDGE + 12), held, 26, bold=True)
     words = (
-        f"The loss is the {family.figure.words} over the best that each part has; at each point that of the "
-        "worst part."
+        f"The loss is the {loss_figure_words(family.figure)} over the best that each part has; at each point that "
+        "of the worst part."
     )
     group.text((EDGE, EDGE + 44), words, 15, fill=GREY)
     room = Box(EDGE + AT_LEFT, EDGE + CURVE_HEADER, width - EDGE - 30, height - EDGE - BELOW)
