@@ -153,6 +153,9 @@ def carriers_answer(seen: Shown, fixture: Fixture) -> list[dict[str, Any]]:
     def numbers_on(carrier: Carrier) -> list[int]:
         return [number for number, name in enumerate(names) if name == carrier.name]
 
+    # Two clamps that push the same way are one carrier.
+    tips = {name: iter([number for number, other in enumerate(names) if other == name]) for name in set(names)}
+
     lattices: list[dict[str, Any]] = [
         {
             "letter": each.carrier.letter,
@@ -192,7 +195,7 @@ def carriers_answer(seen: Shown, fixture: Fixture) -> list[dict[str, Any]]:
         {
             **lattice_of_none(each.carrier),
             **body_answer(each.room),
-            "pegs": numbers_on(each.carrier),
+            "pegs": [next(tips[each.carrier.name])],
             "peg_radius": each.carrier.peg_radius,
             "clamping": each.clamping,
             "measured": axes if is_reached(each) else None,
