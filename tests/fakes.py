@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 from workhold.fixels.vise import Vise
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import (
+    BEFORE_PINS,
     CLOSURE_MARGIN,
-    FIGURES,
+    JAW_CONTACT,
     JAW_FORCE_NEEDED,
     LOAD_REACTION,
     LOCATION_ERROR,
@@ -60,11 +61,11 @@ def fake_result(count: int, seed: int = 0, **changes: object) -> Result:
 
 def fake_quality(null_vector: NDArray[np.float64], random: np.random.Generator) -> NDArray[np.float64]:
     """Made-up figures of quality, but for the closure margin; without loads."""
-    quality = random.uniform(0.01, 2.0, (len(null_vector), len(FIGURES)))
+    quality = random.uniform(0.01, 2.0, (len(null_vector), BEFORE_PINS))
     quality[:, CLOSURE_MARGIN] = null_vector.min(axis=1, initial=1.0)
     # Nearly all of them are for a workshop.
     quality[:, LOCATION_ERROR] /= 4
-    quality[:, [LOAD_REACTION, JAW_FORCE_NEEDED]] = np.nan
+    quality[:, [LOAD_REACTION, JAW_FORCE_NEEDED, JAW_CONTACT]] = np.nan
     quality[:, [WARNINGS, PENALTY]] = random.integers(0, 9, (len(null_vector), 2))
     return quality
 

@@ -14,6 +14,7 @@ import workhold
 from workhold import OpeningVise, Plate, Vise, Workpiece
 from workhold.drawing.scene import LengthUnit
 from workhold.drawing.seating_words import SeatingSentences
+from workhold.model.quality import FIGURE_RANKING
 from workhold.seating.clamping import WHY
 from workhold.seating.contact_forces import WAS_NOT_FOUND
 from workhold.seating.solver import Solver
@@ -26,7 +27,8 @@ WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
 def result_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The best fixtures of a wedge."""
     path = tmp_path_factory.mktemp("seat") / "r.json"
-    workhold.save(workhold.design(WEDGE, Vise(pitch=20, columns=2, peg_radius=3), best=12), path)
+    vise = Vise(pitch=20, columns=2, peg_radius=3)
+    workhold.save(workhold.design(WEDGE, vise, best=12, rank_by=FIGURE_RANKING), path)
     return path
 
 

@@ -176,7 +176,7 @@ def test_every_vise_is_shown_with_its_source(run: Any, name: str) -> None:
 def test_the_figures_of_a_vise(run: Any, tmp_path: Path) -> None:
     """In its own unit, or in the one asked for; a user's file too; what was assumed is said to be."""
     inches = run("toolkits", "plate-one-inch").stdout
-    assert "distance between holes                     1 in" in inches
+    assert re.search(r"distance between holes +1 in", inches)
     assert "0.2501 to 0.2503 in" in inches
     assert "0.00039 in (assumed: no source says)" in inches
     assert "6.353 to 6.358 mm" in run("toolkits", "plate-one-inch", "--unit", "mm").stdout
@@ -223,7 +223,7 @@ def test_the_worked_examples_of_the_manual(
 def test_the_vise_file_of_the_manual(tmp_path: Path) -> None:
     """Every entry there is one, and its peg tolerance is the sum that the page reckons."""
     page = (ROOT / "docs" / "hardware.md").read_text()
-    (block,) = re.findall(r"```toml\n(.*?)```", page, flags=re.S)
+    block = next(one for one in re.findall(r"```toml\n(.*?)```", page, flags=re.S) if "columns" in one)
     (tmp_path / "jaws.toml").write_text(block)
     loaded = load_toolkit(tmp_path / "jaws.toml")
     assert isclose(loaded.tolerance.peg, 0.044)

@@ -21,6 +21,7 @@ from workhold.model.fixture_table import FixtureTable, unknown_quality
 from workhold.model.query import Query
 from workhold.model.requirements import Tolerance
 from workhold.model.search_report import Proof
+from workhold.statics.effective_error import EffectiveErrors
 from workhold.statics.quality import quality_of
 from workhold.verification.account import SEARCH
 from workhold.verification.verify import not_shown
@@ -115,7 +116,11 @@ def on_the_edge(hair: float) -> Result:
     table = attrs.evolve(table, quality=quality_of(table, part, vise, Tolerance(), ()))
     counts, proof = {"I": 0, "II": 1}, Proof(96, 1, 0, 1, 0)
     statistics = dict.fromkeys(SEARCH, 0) | {"features": 9}
-    return Result(Query(part, vise), table, counts, counts, statistics=statistics, proof=proof)
+    query = Query(part, vise)
+    least = round(float(EffectiveErrors.of(query).errors(table).min()), 9)
+    return Result(
+        query, table, counts, counts, statistics=statistics, proof=proof, least_effective_error=least
+    )
 
 
 @pytest.mark.parametrize(("hair", "verdict"), [(1e-9, "undecided"), (2e-9, "proven"), (5e-10, "refuted")])

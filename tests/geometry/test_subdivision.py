@@ -135,7 +135,8 @@ def test_a_short_piece_of_a_border_is_not_passed_over(first: int) -> None:
     corners = [(0.0, 0.0), (10 - 5e-5, 0.0), (10.0, 5e-5), (10.0, 10.0), (0.0, 10.0)]
     segments = [Line(corners[k - 1], corners[k]) for k in range(5)]
     pieces = border_pieces(
-        subdivide(segments), lambda at: 0 < at[0] < 10 and 0 < at[1] < 10 and at[0] - at[1] < 10 - 5e-5
+        subdivide(segments),
+        each(lambda at: 0 < at[0] < 10 and 0 < at[1] < 10 and at[0] - at[1] < 10 - 5e-5),
     )
     (loop,) = border_loops([*pieces[first:], *pieces[:first]])
     assert len(loop) == 5
@@ -153,7 +154,7 @@ def test_of_twins_the_outer_one_is_the_border() -> None:
         def inside(at: Point) -> bool:
             return (abs(at[0]) < 5 and -5 < at[1] < 1 - over) or hypot(*at) < 1
 
-        (loop,) = border_loops(border_pieces(carriers, inside))
+        (loop,) = border_loops(border_pieces(carriers, each(inside)))
         kinds = [type(piece.carrier.segment) for piece in loop]
         assert kinds.count(Arc) == 1 and len(loop) == 6
         assert all(

@@ -13,6 +13,7 @@ import workhold
 from seating_examples import LEFT, RIGHT, Obstacle, held, solved
 from workhold import Fence, InputError, OpeningVise, Plate, Pose, Vise, Workpiece
 from workhold.model.fixture import Fixture
+from workhold.model.quality import FIGURE_RANKING
 from workhold.model.seating import Seat
 from workhold.seating.closing_simulation import ENDINGS, ClosingSimulation, simulate_closing
 from workhold.seating.solver import Solver
@@ -210,7 +211,7 @@ FENCE = Fence(pitch=20, peg_radius=3, wall_offset=10, travel=(1, 60))
 )
 def test_whatever_clamps_leads_home(part, toolkit):
     """A clamp along a row and along a column, and jaws that open; the travel told is the toolkit's own."""
-    result = workhold.design(part, toolkit, best=1)
+    result = workhold.design(part, toolkit, best=1, rank_by=FIGURE_RANKING)
     fixture, (told,) = result[0], workhold.seatings(result, with_cage=False)
     opening = 0.5 * min(told.capture_opening or 2.0, 2.0)
     if toolkit.moving.travel.most is not None and toolkit.clamping > 0:

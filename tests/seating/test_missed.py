@@ -12,6 +12,7 @@ from attrs import evolve
 import workhold
 from workhold import Fence, Fixture, Result, Vise, Workpiece
 from workhold.kernels.seating.columns import THETA
+from workhold.model.quality import FIGURE_RANKING
 from workhold.seating import solver as solver_module
 from workhold.seating.contact_forces import OTHERS_MAY_BE, WAS_NOT_FOUND
 from workhold.seating.equilibria import Equilibria
@@ -43,7 +44,7 @@ def missing(fixture: Fixture, toolkit: Any) -> Any:
 @pytest.fixture(scope="module", params=list(KITS))
 def result(request: pytest.FixtureRequest) -> Result:
     """Two fixtures with their seating."""
-    return workhold.design(WEDGE, KITS[request.param], seating=2, best=2)
+    return workhold.design(WEDGE, KITS[request.param], seating=2, best=2, rank_by=FIGURE_RANKING)
 
 
 def test_it_is_named_and_tells_what_is_known(
@@ -51,7 +52,7 @@ def test_it_is_named_and_tells_what_is_known(
 ) -> None:
     first, other = result[:]
     monkeypatch.setattr(solver_module, "equilibria", missing(first, result.toolkit))
-    made = workhold.design(WEDGE, result.toolkit, seating=2, best=2)
+    made = workhold.design(WEDGE, result.toolkit, seating=2, best=2, rank_by=FIGURE_RANKING)
     assert len(made.seating) == 2 and made.complete
     told, kept = (made.seating[made[:].index(one)] for one in (first, other))
     assert (told.capture_opening, told.lowest_pass, told.way_out, told.placing) == (0.0, None, 0.0, None)

@@ -22,6 +22,7 @@ from workhold.kernels.seating.columns import (
     SECOND,
     THETA,
 )
+from workhold.model.quality import FIGURE_RANKING
 from workhold.seating.contact_forces import settle_on_wall
 from workhold.seating.obstacle_boundary import ObstacleBoundary
 from workhold.seating.pattern import Pattern
@@ -312,7 +313,7 @@ def test_the_tip_is_in_a_pocket_wherever_the_locator_touches_too(way):
 def test_no_two_fixtures_of_a_design_are_in_doubt():
     """What was to be settled by other means is: of the pattern of a listed fixture no balance is in doubt."""
     toolkit = Fence(pitch=20, peg_radius=3, wall_offset=10)
-    for fixture in workhold.design(PART, toolkit, best=3):
+    for fixture in workhold.design(PART, toolkit, best=3, rank_by=FIGURE_RANKING):
         pattern = Pattern.of(fixture, toolkit)
         fence = WallEquilibria(ObstacleBoundary.of(PART, pattern.radii), pattern)
         assert not fence.three_contacts()[:, DOUBT].any()

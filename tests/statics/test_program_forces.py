@@ -141,7 +141,7 @@ def test_a_longer_path_never_asks_for_less(direction: Any) -> None:
 
 def test_loads_of_a_program_rank_like_other_loads() -> None:
     result = result_of("vise")
-    assert result.query.ranking[2] == "load_reaction"
+    assert result.query.ranking[5] == "load_reaction"
     bare = evolve(result.query.program, forces=None)
     assert evolve(result.query, program=bare, ranking=None).ranking[2] == "clamp_amplification"
     assert "load_reaction" not in result.query.without_program.ranking

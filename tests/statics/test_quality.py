@@ -19,10 +19,10 @@ from workhold.model.fixture import Fixture
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.own_outlines import outline_diameter
 from workhold.model.quality import (
+    BEFORE_PINS,
     CLAMP_AMPLIFICATION,
     CLOSURE_MARGIN,
     END_DISTANCE,
-    FIGURES,
     LOAD_REACTION,
     LOCATION_ERROR,
     WRENCH_RADIUS,
@@ -242,7 +242,7 @@ def test_blocks_do_not_show(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_no_fixtures_no_figures() -> None:
     """An empty table gives an empty array; without loads the load reaction is not known."""
     result = held("widget", 8, 1, 3, 50)
-    assert quality_of(FixtureTable.empty(), result.workpiece, result.toolkit).shape == (0, len(FIGURES))
+    assert quality_of(FixtureTable.empty(), result.workpiece, result.toolkit).shape == (0, BEFORE_PINS)
     quality = quality_of(result.table, result.workpiece, result.toolkit)
     assert np.isnan(quality[:, LOAD_REACTION]).all() and not np.isnan(quality[:, :LOAD_REACTION]).any()
 

@@ -14,7 +14,7 @@ import pytest
 from workhold import Result, Vise, design, load
 from workhold.listing.ranking import order_keys, usual_errors
 from workhold.model.first_choice import figures_ranked_by
-from workhold.model.quality import FIGURES
+from workhold.model.quality import FIGURES, whole_rows
 from workhold.model.requirements import Load, Restrictions, circle_zone
 from workhold.verification import Verification, verify
 from workhold.verification.placing import broken_restriction
@@ -83,7 +83,7 @@ def test_blocked_holes_and_bodies_are_looked_at(limited: Result) -> None:
 @pytest.mark.parametrize("number", range(len(FIGURES)))
 def test_a_wrong_figure_refutes(limited: Result, number: int) -> None:
     """Each figure of quality is derived again."""
-    quality = limited.table.quality.copy()
+    quality = whole_rows(limited.table.quality).copy()
     # A figure that such fixtures do not have is wrong whatever it is.
     quality[4, number] = np.nan_to_num(quality[4, number]) + 1e-6 * max(
         np.nan_to_num(quality[4, number]), 1.0

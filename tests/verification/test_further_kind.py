@@ -18,6 +18,7 @@ import pytest
 from attrs import evolve, frozen
 
 from workhold import Fixture, InputError, Workpiece
+from workhold.fixels.support_hardware import PinLimits
 from workhold.fixels.toolkit import Arrangement, Carrier, Limit, Symmetry, Toolkit, Travel
 from workhold.geometry.segment import Line, distance_to_segment
 from workhold.verification import Ruling, verify_fixture
@@ -49,6 +50,7 @@ class FlatJaw(Toolkit):
     columns: int | None = None
     rows: int | None = None
     max_opening: float | None = None
+    pins: PinLimits | None = None
 
     @property
     def carriers(self) -> tuple[Carrier, Carrier]:

@@ -19,6 +19,7 @@ from toolkit_results import assert_all_proven, part, verify_edited
 from undecided_examples import as_undecided
 from workhold import Fixture, InputError, Plate, Pose, Query, Result, answer, design
 from workhold.listing.results import joined_ways
+from workhold.model.quality import FIGURE_RANKING
 from workhold.model.requirements import Load, Restrictions, circle_zone
 from workhold.model.search_report import GIVEN_UP, Undecided, no_fixture_notes, undecided_note
 from workhold.verification import Verification, verify, verify_file, verify_fixture
@@ -433,7 +434,8 @@ def test_the_order_is_that_of_the_plate_turned_to_the_clamp() -> None:
     workpiece = part(NOTCHED)
     upright, lying = Plate((14, 20), 3, directions="-y"), Plate((20, 14), 3, directions="-x")
     one, other = (
-        [rank(f, ToolkitRules(plate)) for f in design(workpiece, plate)] for plate in (upright, lying)
+        [rank(f, ToolkitRules(plate)) for f in design(workpiece, plate, rank_by=FIGURE_RANKING)]
+        for plate in (upright, lying)
     )
     assert len(one) == len(other) > 10
     for ((_, kind, *holes), angle, faces), ((_, second, *others), theta, touched) in zip(

@@ -346,7 +346,9 @@ def write_flats(column: TextColumn, sheet: Sheet) -> None:
 
 def lies_words(sheet: Sheet) -> str:
     """How the part lies beside its drawing."""
-    return f"turned {sheet.fixture.pose.written_deg:.1f}° counter-clockwise from its drawing"
+    turn = f"{sheet.fixture.pose.written_deg:.1f}"
+    way = "clockwise" if turn.startswith("-") else "counter-clockwise"
+    return f"turned {turn.removeprefix('-')}° {way} from its drawing" if float(turn) else "not turned"
 
 
 def inside_words(sheet: Sheet) -> str:

@@ -235,6 +235,9 @@ def order_faults(
     usual = query.without_seating
     if any(key not in fixture.quality for fixture in fixtures for key in figures_ranked_by(usual.ranking)):
         return
+    if query.has_house_order and not all(map(hardware.has_carriers, fixtures)):
+        # What stands on something else is refuted, and no effective error of it is known.
+        return
     judge = OrderJudge(query, EffectiveJudge(query, least)) if query.has_house_order else None
     if judge is not None and (fault := judge.least_fault(fixtures, is_whole)):
         yield fault

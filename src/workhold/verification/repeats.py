@@ -237,6 +237,9 @@ def pattern_faults(fixtures: Sequence[Fixture], query: Query) -> Iterator[str]:
     if not query.toolkit.closes_at_once:
         return
     seated = [fixture for fixture in fixtures[: query.seating or 0] if fixture.seating is not None]
+    if seated and not all(map(ToolkitRules(query.toolkit).has_carriers, fixtures)):
+        # What stands on something else is refuted, and its pegs stand as nothing does.
+        return
     stances = [stance(fixture, query.toolkit) for fixture in (fixtures if seated else ())]
     patterns: dict[tuple[Any, ...], list[int]] = {stances[number].key: [] for number in range(len(seated))}
     for place, other in enumerate(stances):

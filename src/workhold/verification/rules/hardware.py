@@ -97,6 +97,10 @@ class ToolkitRules:
                 return Jaw(wall.noun, wall.width, self.lattices[0].pitch[0], columns)
         return None
 
+    def has_carriers(self, fixture: Fixture) -> bool:
+        """Whether there is all that a fixture stands on: no clamp that moves in a direction not asked for."""
+        return all(peg.carrier in self.carriers for peg in fixture.pegs)
+
     @property
     def half_turns(self) -> bool:
         """Whether half a turn leaves the toolkit as it is.
