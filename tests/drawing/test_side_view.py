@@ -248,15 +248,20 @@ def test_view_is_taken_where_pegs_stand_apart() -> None:
 
 
 def test_pegs_other_than_those_of_the_outline_are_seen() -> None:
-    """The length of pegs follows from how far they stand out, which a sheet may say anew."""
+    """The length of pegs follows from how far they stand out, which a sheet may say anew: that of a dowel that is sold, or of
+    a peg 1.5 diameters deep in its hole, or through the plate where it has no thickness."""
     result = result_of("plate")
     details = SheetDetails(1, 1, sheet_day(), "", "1", plate_thickness=12.0)
-    heights = heights_of(result[0], SOLID, result.toolkit, details)
-    assert heights is not None and (heights.above_plate, heights.peg_length) == (
-        PEG_HEIGHT,
-        PEG_HEIGHT + 12.0,
-    )
-    assert "plate_thickness" not in heights.assumed and "peg_length" in heights.assumed
+    for radius, length, is_sold in (
+        (3.0, 18.0, True),
+        (3.3, PEG_HEIGHT + 1.5 * 6.6, False),
+        (0.0, PEG_HEIGHT + 12.0, False),
+    ):
+        toolkit = evolve(result.toolkit, peg_radius=radius)
+        heights = heights_of(result[0], SOLID, toolkit, details)
+        assert heights is not None and heights.above_plate == PEG_HEIGHT
+        assert heights.peg_length == pytest.approx(length) and (heights.dowel is not None) == is_sold
+        assert "plate_thickness" not in heights.assumed and ("peg_length" in heights.assumed) != is_sold
     other = heights_of(result[0], SOLID, result.toolkit, evolve(details, peg_height=5.0, peg_length=30.0))
     assert other is not None and (other.peg_top, other.peg_length) == (5.0, 30.0)
 

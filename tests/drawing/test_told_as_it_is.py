@@ -47,6 +47,11 @@ def mm(length: float) -> str:
     return f"{length:.3f}".replace("-", "−")
 
 
+def turn_of(held: Held) -> float:
+    """How far the part is turned in degrees, as it is told: less than an eighth of a turn clockwise is negative."""
+    return (held.fixture.pose.theta_deg + 45.0) % 360.0 - 45.0
+
+
 def place_of(tip: Peg, held: Held) -> str:
     """The hole of a clamp, or its line."""
     letter = chr(ord("A") + tip.column)
@@ -135,7 +140,7 @@ def test_a_picture_tells_the_fixture(held: Held) -> None:
     ]
     assert has_run(words, ["force", *(cell for row in rows for cell in row)])
     pose = fixture.pose
-    assert has_run(words, ["Part turned by θ", f"{pose.theta_deg:.3f}°"])
+    assert has_run(words, ["Part turned by θ", f"{turn_of(held):.3f}°"])
     assert has_run(words, ["Part origin x, y", f"{mm(pose.x)}, {mm(pose.y)} mm"])
     assert has_run(words, ["Closure margin", f"{fixture.quality['closure_margin']:.4f}"])
     tips = tips_of(fixture)
@@ -276,11 +281,10 @@ def test_a_sheet_tells_pose_calipers_and_figures(held: Held) -> None:
     turn = radians(pose.theta_deg)
     x, y = pose.x + u * cos(turn) - v * sin(turn), pose.y + u * sin(turn) + v * cos(turn)
     assert re.search(rf"x from \D+A1? {re.escape(mm(x))} mm y from .{{4,12}} {re.escape(mm(y))} mm", words)
-    assert f"counter-clockwise {pose.theta_deg:.4f}°" in words
-    assert (
-        f"G68 X0 Y0 R{pose.theta_deg:.3f}" in words
-        and f"turned {pose.theta_deg:.1f}° counter-clockwise" in words
-    )
+    told, way = turn_of(held), "clockwise" if turn_of(held) < 0 else "counter-clockwise"
+    assert f"counter-clockwise {told:.4f}°" in words
+    assert f"G68 X0 Y0 R{told:.3f}" in words
+    assert f"as drawn, turned {abs(told):.1f}° {way} from its drawing" in words
     quality = fixture.quality
     for name in ("closure margin", "clamp amplification", "wrench radius"):
         assert f"{name} {quality[name.replace(' ', '_')]:.4f}" in words
@@ -337,7 +341,7 @@ def test_the_terminal_tells_the_fixture(
     assert [f"Fixture 3 of 70, type {title}"] in lines
     pose = fixture.pose
     assert (
-        f"turned by {pose.theta_deg:.3f} degrees, its origin lies at ({pose.x:.3f}, {pose.y:.3f}) mm" in said
+        f"turned by {turn_of(held):.3f} degrees, its origin lies at ({pose.x:.3f}, {pose.y:.3f}) mm" in said
     )
     for tip, (sign, length) in zip(tips_of(fixture) or [None], settings(held), strict=True):
         if tip is None:

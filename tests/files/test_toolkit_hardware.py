@@ -1,4 +1,4 @@
-"""Supports and the clamp on top of a toolkit's file are the usual ones of what is asked, and kept in files."""
+"""Supports, the clamp on top and limits of pins of a toolkit's file are the usual ones of what is asked, and kept in files."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from workhold.errors import InputError
 from workhold.files.result.writer import toolkit_entry, toolkit_fields
 from workhold.files.toolkit_file import LoadedToolkit, load_toolkit
 from workhold.fixels.kinds import KINDS, table_of, toolkit_of
-from workhold.fixels.support_hardware import HARDWARE, SupportPads, TopClamp
+from workhold.fixels.support_hardware import HARDWARE, PinLimits, SupportPads, TopClamp
 from workhold.model.support_request import SupportRequest
 from workhold.units import MILLIMETRE
 from workhold.web.forms import FORMS
@@ -125,10 +125,12 @@ def test_every_kind_writes_and_reads_them_and_says_nothing_without(kind: str) ->
     """The keys of files and requests; a toolkit without them has the keys of its table alone."""
     plain = toolkit_of(kind, given(kind))
     assert not toolkit_fields(plain).keys() & HARDWARE.keys()
-    made = evolve(plain, supports=PADS, top_clamp=TopClamp(tip_radius=4, reach=CLAMP.reach))
+    clamp = TopClamp(tip_radius=4, reach=CLAMP.reach, tip_margin=0.5)
+    made = evolve(plain, supports=PADS, top_clamp=clamp, pins=PinLimits(movement_limit=0.25))
     entry = json.loads(json.dumps(toolkit_fields(made)))
     assert entry["supports"] == {"pad_radius": 3, "pad_margin": 1, "height": 12}
-    assert entry["top_clamp"] == {"tip_radius": 4, "reach": [[0, -30, 5, 290]]}
+    assert entry["top_clamp"] == {"tip_radius": 4, "tip_margin": 0.5, "reach": [[0, -30, 5, 290]]}
+    assert entry["pins"] == {"movement_limit": 0.25}
     assert toolkit_of(kind, entry) == made
     asked = json.loads(json.dumps(given(kind))) | {name: entry[name] for name in HARDWARE}
     assert FORMS[table_of(kind).noun].model_validate({"kind": kind, **asked}).toolkit() == made

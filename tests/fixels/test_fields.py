@@ -35,12 +35,15 @@ def typed_of(kind: str) -> dict[str, Any]:
 
 
 def test_every_kind_has_a_table_of_its_constructors_fields() -> None:
-    """Names, and which must be given; what may be left out is what the constructor takes for nothing given."""
+    """Names, and which must be given; what may be left out is what the constructor takes for nothing given. Beside them and
+    the hardware there is only the tolerance, which makes no other toolkit."""
     assert TABLES.keys() == KINDS.keys() and USUAL in KINDS
     for kind, table in TABLES.items():
         taken = fields_dict(KINDS[kind])  # type: ignore[arg-type]
         rows = {row.name: row for row in table.fields}
-        assert rows.keys() | HARDWARE.keys() == taken.keys() and not rows.keys() & HARDWARE.keys()
+        others = HARDWARE.keys() | {"tolerance"}
+        assert rows.keys() | others == taken.keys() and not rows.keys() & others
+        assert [name for name, one in taken.items() if not one.eq] == ["tolerance"]
         assert {name for name, row in rows.items() if row.is_required} == {
             name for name, one in taken.items() if one.default is NOTHING
         }

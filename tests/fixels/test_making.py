@@ -7,6 +7,7 @@ from math import inf, nan
 from typing import Any
 
 import pytest
+from attrs import fields_dict
 
 from toolkit_values import given
 from workhold import Plate, Vise
@@ -62,16 +63,29 @@ def test_a_length_that_is_not_given_is_the_one_that_it_follows(kind: str, row: T
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_limits_are_those_of_the_rows_and_each_is_lifted_alone(kind: str) -> None:
-    """In the order of bodies, travel and holes; without all of them the toolkit has none."""
+    """In the order of bodies, travel, reach and holes; without all of them the toolkit has none. Columns without end, beside
+    which jaws cannot end, take the width of these away as well."""
     toolkit = made(kind)
     limited = [row for row in TABLES[kind].fields if row.lifted is not None]
     assert {limit.rule for limit in toolkit.limits} == {row.lifted.rule for row in limited if row.lifted}
-    order = [("bodies", "travel", "holes").index(limit.bounds) for limit in toolkit.limits]
+    order = [("bodies", "travel", "reach", "holes").index(limit.bounds) for limit in toolkit.limits]
     assert order == sorted(order)
     for limit in toolkit.limits:
-        assert list(toolkit.without([limit]).limits) == [one for one in toolkit.limits if one != limit]
-        ((name, value),) = limit.lifted.fields.items()
-        assert made(kind, **{name: value}) == toolkit.without([limit])
+        (name, *others), lifted = limit.lifted.fields, toolkit.without([limit])
+        goes_along = name == "columns" and "jaw_width" in fields_dict(type(toolkit))
+        assert others == (["jaw_width"] if goes_along else [])
+        gone = {row.lifted.rule for row in limited if row.lifted and row.name in limit.lifted.fields}
+        assert limit.rule in gone and len(gone) == 1 + len(others)
+        assert [one.rule for one in lifted.limits] == [
+            one.rule for one in toolkit.limits if one.rule not in gone
+        ]
+        assert made(kind, **limit.lifted.fields) == lifted
+        # Others stay lifted as they were, but for what went along.
+        kept = {one.rule: one.lifted.fields for one in toolkit.limits}
+        for one in lifted.limits:
+            assert one.lifted.fields == {
+                field: value for field, value in kept[one.rule].items() if field not in limit.lifted.fields
+            }
     assert toolkit.without(toolkit.limits).limits == ()
 
 

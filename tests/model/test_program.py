@@ -178,7 +178,7 @@ def test_a_file_has_all_of_a_program(rapid: str) -> None:
     assert set(data["pieces"][0]) == {"line", "tool", "kind", "path", "z", "radius", "heights"}
     again = Program.of_entries(data)
     bare = evolve(program.moves, feed=np.zeros(4), spindle=np.zeros(4))
-    assert again == evolve(program, moves=bare) and again.pieces == program.pieces
+    assert again == evolve(program, moves=bare, stock=None) and again.pieces == program.pieces
     assert again != evolve(program, moves=evolve(bare, end=bare.end + 1e-9))
 
 

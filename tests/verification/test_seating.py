@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterator
 from copy import deepcopy
 from pathlib import Path
@@ -11,6 +12,7 @@ import attrs
 import pytest
 
 import workhold
+from toolkit_results import verify_edited
 from workhold import Fence, OpeningVise, Peg, Plate, Pose, Result, Vise, Workpiece
 from workhold.completeness import first_other
 from workhold.fixels.carrier import WALL
@@ -161,20 +163,41 @@ def test_words_and_whole_parts_that_are_off_are_refuted(listing: Listing, judge:
 
 def test_a_fixture_on_the_same_pegs_must_be_among_the_seats(tmp_path: Path) -> None:
     """A seat left out with all counts adjusted is seen where the list has that fixture."""
-    result = workhold.design(WEDGE, VISE, types="I", seating=1)
+    result = workhold.design(WEDGE, VISE, types="I", seating=3)
     listing = written(result, tmp_path / "r.json")
     assert not list(pattern_faults(listing.fixtures, listing.query))
-    first = listing.fixtures[0]
-    fields = deepcopy(dict(first.seating.fields))
-    alike = [seat for seat in fields["seats"] if seat["kind"] == "fixture" and not seat["mirrored"]]
-    assert len(alike) > 2
-    found = 0
-    for seat in alike:
-        cut = fields | {"seats": [one for one in fields["seats"] if one is not seat]}
-        claim = attrs.evolve(first.seating, fields=cut)
-        changed = [attrs.evolve(first, seating=claim), *listing.fixtures[1:]]
-        found += bool(list(pattern_faults(changed, listing.query)))
+
+    def alike(fixture: Any) -> list[Fields]:
+        seats = fixture.seating.fields["seats"]
+        return [seat for seat in seats if seat["kind"] == "fixture" and not seat["mirrored"]]
+
+    # The first on whose pegs others stand, too.
+    place = next(k for k in range(3) if len(alike(listing.fixtures[k])) > 2)
+    fixture, found = listing.fixtures[place], 0
+    fields = deepcopy(dict(fixture.seating.fields))
+    for seat in alike(fixture):
+        cut = fields | {"seats": [one for one in fields["seats"] if one != seat]}
+        assert len(cut["seats"]) == len(fields["seats"]) - 1
+        changed = list(listing.fixtures)
+        changed[place] = attrs.evolve(fixture, seating=attrs.evolve(fixture.seating, fields=cut))
+        faults = list(pattern_faults(changed, listing.query))
+        assert all(f"stands on the pegs of fixture {place + 1}," in words for words in faults)
+        found += bool(faults)
     assert found > 1
+
+
+def test_of_a_clamp_whose_direction_is_not_asked_for_no_seat_is_looked_for(tmp_path: Path) -> None:
+    """Such a fixture is refuted by name, and stops nothing that is said of the others."""
+    workhold.save(solved(WEDGE, PLATE), tmp_path / "r.json")
+    data = json.loads((tmp_path / "r.json").read_text())
+    listed = {fixture["direction"] for fixture in data["fixtures"]}
+
+    def edit(content: Fields) -> None:
+        content["toolkit"]["directions"] = sorted({"-x", "+x", "-y", "+y"} - listed)
+
+    outcome = verify_edited(data, edit, tmp_path)
+    assert outcome.refuted == 2
+    assert all("which is not asked for" in item.reason for item in outcome.unproven)
 
 
 def stepped(fixture: Any, toolkit: Any) -> Any:
@@ -218,9 +241,15 @@ def test_the_order_is_that_of_the_seating(listing: Listing) -> None:
     fixtures = list(listing.fixtures)
     hardly = attrs.evolve(fixtures[0].seating.seating, capture_opening=0.5)
     worse = attrs.evolve(fixtures[0], seating=attrs.evolve(fixtures[0].seating, seating=hardly))
-    assert "is better than" in next(order_faults([worse, *fixtures[1:]], listing.query, listing.hardware))
-    untold = [attrs.evolve(fixtures[0], seating=None), *fixtures[1:]]
-    assert "not that of all before it" in next(order_faults(untold, listing.query, listing.hardware))
+    untold = attrs.evolve(fixtures[0], seating=None)
+
+    def fault_with(first: Any) -> str:
+        asked = listing.query, listing.hardware, listing.least_effective_error
+        return next(order_faults([first, *fixtures[1:]], *asked), "")
+
+    assert fault_with(fixtures[0]) == ""
+    assert "is better than" in fault_with(worse)
+    assert "not that of all before it" in fault_with(untold)
 
 
 def test_a_search_compares_what_a_file_alone_cannot_show(result: Result, tmp_path: Path) -> None:

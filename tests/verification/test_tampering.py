@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
 
-from workhold.model.quality import CLAMP_FREEDOM, FIGURES, JAW_CONTACT, PIN_FIGURES
+from toolkit_results import verify_edited
+from workhold import FlatJaw, Workpiece, design, save
+from workhold.model.quality import CLAMP_FREEDOM, FIGURES, JAW_CONTACT, PIN_FIGURES, PIN_KEYS
 from workhold.verification import Verification
 
 Verify = Callable[[Callable[[dict[str, Any]], object]], Verification]
@@ -59,7 +63,7 @@ def test_every_real_number_of_a_fixture(verified: Verify, place: str, change: fl
 
 
 # Figures that a fixture in a vise of pegs has without loads, two clamps, ends of a jaw and heights. Those that need these
-# are tampered with where they are known: in test_asked.py, test_two_clamps.py, test_pins.py and search/test_jaw_width.py.
+# are tampered with where they are known: below, in test_asked.py and in test_two_clamps.py.
 OTHERS = {FIGURES[number] for number in (CLAMP_FREEDOM, JAW_CONTACT, *PIN_FIGURES)}
 KEYS = [figure.key for figure in FIGURES if figure.unit != "N" and figure not in OTHERS]
 
@@ -75,6 +79,33 @@ def test_a_millionth_of_a_force_or_a_figure(verified: Verify, key: str, change: 
             numbers[key] += change * max(numbers[key], 1.0)
 
     assert verified(edit).refuted == 12
+
+
+@pytest.fixture(scope="module")
+def on_a_jaw(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """The file of fixtures on a flat jaw that has ends, whose heights are known."""
+    kite = Workpiece.from_loops("kite", [[[0, 0, 0], [56, 6, 0], [48, 44, 0], [10, 37, 0]]])
+    path = tmp_path_factory.mktemp("jaw") / "r.json"
+    vise = FlatJaw(pitch=10, peg_radius=3, columns=6, jaw_width=30)
+    save(design(kite, vise, best=6, thickness=20, jaw_force=500), path)
+    data: dict[str, Any] = json.loads(path.read_text())
+    return data
+
+
+@pytest.mark.parametrize("change", [1e-6, -1e-6, 0.0])
+@pytest.mark.parametrize("key", [FIGURES[JAW_CONTACT].key, *PIN_KEYS])
+def test_a_millionth_of_a_figure_of_ends_or_bending(
+    on_a_jaw: dict[str, Any], key: str, change: float, tmp_path: Path
+) -> None:
+    """Where the jaw has ends and heights are known, they are derived again to as many digits."""
+
+    def edit(data: dict[str, Any]) -> None:
+        for fixture in data["fixtures"]:
+            fixture["quality"][key] += change * max(fixture["quality"][key], 1.0)
+
+    outcome = verify_edited(on_a_jaw, edit, tmp_path)
+    assert (outcome.fixtures, outcome.refuted) == (6, 6 if change else 0)
+    assert all(f"its {key.replace('_', ' ')} is" in item.reason for item in outcome.unproven)
 
 
 @pytest.mark.parametrize("change", [1, -1, 7])

@@ -235,7 +235,7 @@ def draw_settings(column: TextColumn, fixture: Fixture, toolkit: Toolkit, length
         column.fact("Clamp freedom", f"{fixture.quality['clamp_freedom']:.1f}°")
     elif moving.towards:
         column.fact(f"{moving.noun.capitalize()} pushes", moving.towards)
-    column.fact("Part turned by θ", f"{fixture.pose.written_deg:.3f}°")
+    column.fact("Part turned by θ", f"{fixture.pose.written_deg:z.3f}°")
     column.fact("Part origin x, y", f"{lengths.number(fixture.pose.x)}, {lengths.words(fixture.pose.y)}")
     column.fact("Closure margin", closure_margin(fixture))
     column.rule()

@@ -71,7 +71,7 @@ def draw_plan(
     center = view(bench.fixture.pose.apply(*workpiece.center))
     angle_mark(scene, center, bench.fixture.pose.written_deg, ANGLE_RADIUS, ANGLE_REACH)
     marks = [(view(point), name) for point, name in marks]
-    angle = f"θ = {bench.fixture.pose.written_deg:.3f}°" if angle is None else angle
+    angle = f"θ = {bench.fixture.pose.written_deg:z.3f}°" if angle is None else angle
     draw_labels(scene, bench, view, workpiece, bounds, names, marks, angle, supports, path, lengths)
 
 

@@ -216,7 +216,7 @@ def write_title(column: TextColumn, sheet: Sheet) -> None:
 def write_zero(column: TextColumn, sheet: Sheet) -> None:
     """Writes part zero, its place, the part's turn, and the lines to program a control with."""
     zero, lengths = sheet.zero, sheet.lengths
-    (x, y), turn = sheet.zero_place, f"{sheet.fixture.pose.written_deg:.4f}"
+    (x, y), turn = sheet.zero_place, f"{sheet.fixture.pose.written_deg:z.4f}"
     heading(column, "Part zero X0 Y0 and angle")
     column.fact("X0 Y0 is the", zero.words, BODY, bold=True)
     column.fact(f"x from {sheet.datum.x}", lengths.words(x), bold=True)
@@ -226,7 +226,7 @@ def write_zero(column: TextColumn, sheet: Sheet) -> None:
     place = "" if sheet.zero_shown else " It lies outside the plan."
     column.paragraph(f"In the part's drawing it is at x {drawn}.{place} x runs to the right, y upward.", NOTE)
     # Haas takes three places behind the point (Mill Operator's Manual, G68).
-    word = f"{sheet.fixture.pose.written_deg:.3f}"
+    word = f"{sheet.fixture.pose.written_deg:z.3f}"
     turning = f"G68 X0 Y0 R{word}" if float(word) else "no G68, as the part is not turned"
     machine = sheet.details.machine_position
     if machine is None:

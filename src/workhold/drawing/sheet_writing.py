@@ -346,7 +346,7 @@ def write_flats(column: TextColumn, sheet: Sheet) -> None:
 
 def lies_words(sheet: Sheet) -> str:
     """How the part lies beside its drawing."""
-    turn = f"{sheet.fixture.pose.written_deg:.1f}"
+    turn = f"{sheet.fixture.pose.written_deg:z.1f}"
     way = "clockwise" if turn.startswith("-") else "counter-clockwise"
     return f"turned {turn.removeprefix('-')}° {way} from its drawing" if float(turn) else "not turned"
 

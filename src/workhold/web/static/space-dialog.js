@@ -228,7 +228,9 @@ function tell(bodies) {
   byId("space-kinds").replaceChildren(
     ...kinds.map((kind) => {
       const names = bodies.filter((body) => body.kind === kind).map((body) => body.name);
-      return make(`li.${kind}`, { title: names.join(", ") }, `${kind}: ${names.length === 1 ? names[0] : names.length}`);
+      // A bolt belongs to its clamp.
+      const counted = names.filter((name) => !name.startsWith("bolt "));
+      return make(`li.${kind}`, { title: names.join(", ") }, `${kind}: ${counted.length === 1 ? counted[0] : counted.length}`);
     }),
   );
 }
