@@ -110,7 +110,9 @@ class InputError(WorkholdError, ValueError):
 
 def lacks_memory(error: BaseException | None) -> bool:
     """Whether an error is due to too little memory; libraries and threads report it in words of their own."""
-    while error is not None:
+    seen: list[BaseException] = []
+    while error is not None and error not in seen:
+        seen.append(error)
         if isinstance(error, MemoryError) or getattr(error, "errno", None) == errno.ENOMEM:
             return True
         if any(words in str(error) for words in NO_MEMORY):

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import re
-from math import atan2, degrees
+from math import atan2, degrees, hypot
 
 import pytest
+from attrs import evolve
+from held_any_way import HELD
 from svg_reading import by_class
 
+from workhold import Workpiece
+from workhold.drawing import draw_fixture
 from workhold.drawing.plan import angle_mark
 from workhold.drawing.scene import Scene
+from workhold.model.pose import Pose
 
 
 @pytest.mark.parametrize("theta", [25.0, 90.0, 179.0, 200.0, -20.0])
@@ -26,3 +31,27 @@ def test_the_arc_of_an_angle_ends_at_its_arrow_head(theta: float) -> None:
     assert angles[0] == pytest.approx(0.0, abs=1e-6)
     assert angles == sorted(angles)
     assert abs(theta) - 12.0 < angles[-1] < abs(theta) - 8.0
+
+
+@pytest.mark.parametrize(
+    ("theta", "words"),
+    [
+        (20.0, "θ = 20.000°"),
+        (340.0, "θ = −20.000°"),
+        (330.0, "θ = −30.000°"),
+        (320.0, "θ = −40.000°"),
+        (359.9999, "θ = 0.000°"),
+    ],
+)
+def test_an_angle_is_written_beside_its_arc(theta: float, words: str) -> None:
+    """In front of the arc, whichever way it goes, where nothing else stands near; and nothing is no turn clockwise."""
+    side, held = 300.0, HELD[0]
+    part = Workpiece.from_loops("wide", [[[0, 0, 0], [side, 0, 0], [side, side, 0], [0, side, 0]]])
+    pegs = tuple(evolve(peg, face=number, beside=None) for number, peg in enumerate(held.fixture.pegs))
+    svg = draw_fixture(evolve(held.fixture, pose=Pose(theta, 10.0, 10.0), pegs=pegs), part, held.toolkit)
+    (pose,), (labels,) = by_class(svg, "pose"), by_class(svg, "labels")
+    (dot,) = (element for element in pose if element.tag.endswith("circle"))
+    (label,) = (element for element in labels if element.text == words)
+    across = float(label.attrib["x"]) - float(dot.attrib["cx"])
+    up = float(dot.attrib["cy"]) - float(label.attrib["y"])
+    assert hypot(across, up) < 80.0 and abs(degrees(atan2(up, across))) < 45.0

@@ -32,9 +32,7 @@ PRINTABLE = 5.0
 @pytest.fixture(scope="module")
 def result() -> Result:
     """The best fixtures of a wedge by figures: seats of the first one read alike, those of the second do not."""
-    return workhold.design(
-        WEDGE, Vise(pitch=20, columns=2, peg_radius=3), best=4, rank_by=FIGURE_RANKING
-    )
+    return workhold.design(WEDGE, Vise(pitch=20, columns=2, peg_radius=3), best=4, rank_by=FIGURE_RANKING)
 
 
 @pytest.fixture(scope="module")

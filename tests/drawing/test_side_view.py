@@ -248,8 +248,8 @@ def test_view_is_taken_where_pegs_stand_apart() -> None:
 
 
 def test_pegs_other_than_those_of_the_outline_are_seen() -> None:
-    """The length of pegs follows from how far they stand out, which a sheet may say anew: that of a dowel that is sold, or of
-    a peg 1.5 diameters deep in its hole, or through the plate where it has no thickness."""
+    """The length of pegs follows from how far they stand out, which a sheet may say anew: that of a dowel that is sold, or
+    of a peg 1.5 diameters deep in its hole, or through the plate where it has no thickness."""
     result = result_of("plate")
     details = SheetDetails(1, 1, sheet_day(), "", "1", plate_thickness=12.0)
     for radius, length, is_sold in (

@@ -7,7 +7,7 @@ from contextlib import ExitStack
 import pytest
 
 from workhold.errors import InputError
-from workhold.files.budget import UNLIMITED, Budget, FileLimits
+from workhold.files.budget import UNLIMITED, Budget, FileLimits, OverBudgetError
 
 SMALL = FileLimits("a drawing", 100, 3, "elements", 2, 10.0, 2.0)
 
@@ -85,3 +85,13 @@ def test_what_has_no_limits_is_never_refused(clock: Clock) -> None:
     with ExitStack() as inside:
         for _ in range(1000):
             inside.enter_context(budget.nested("an element"))
+
+
+def test_an_error_that_is_its_own_cause_has_no_other_behind_it() -> None:
+    """As one that is raised again from itself, with a refusal behind it or none."""
+    error = InputError("open")
+    error.__cause__ = error
+    assert not OverBudgetError.is_behind(error)
+    other = InputError("too much")
+    other.__cause__ = OverBudgetError("of it")
+    assert OverBudgetError.is_behind(other)

@@ -1,4 +1,4 @@
-"""Supports, the clamp on top and limits of pins of a toolkit's file are the usual ones of what is asked, and kept in files."""
+"""Supports, the clamp on top and limits of pins of a toolkit's file are the usual ones of what is asked, and kept."""
 
 from __future__ import annotations
 

@@ -9,7 +9,18 @@ from collections.abc import Callable, Mapping, Sequence
 
 from workhold.drawing.bench import ARROW, PEG_FILL, TOUCHED
 from workhold.drawing.carriers import block_arrow, draw_sign, draw_wall
-from workhold.drawing.scene import BLACK, GREY, Box, LengthUnit, Scene, View, shortened, text_width, wrapped
+from workhold.drawing.scene import (
+    BLACK,
+    GREY,
+    Box,
+    LengthUnit,
+    Scene,
+    View,
+    degrees_text,
+    shortened,
+    text_width,
+    wrapped,
+)
 from workhold.fixels.carrier import Carrier, Measure
 from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, ROUND_PIN, WALL_END, Arrangement, ContactKind
 from workhold.fixels.toolkit import Toolkit
@@ -235,7 +246,7 @@ def draw_settings(column: TextColumn, fixture: Fixture, toolkit: Toolkit, length
         column.fact("Clamp freedom", f"{fixture.quality['clamp_freedom']:.1f}°")
     elif moving.towards:
         column.fact(f"{moving.noun.capitalize()} pushes", moving.towards)
-    column.fact("Part turned by θ", f"{fixture.pose.written_deg:z.3f}°")
+    column.fact("Part turned by θ", degrees_text(fixture.pose.written_deg, 3))
     column.fact("Part origin x, y", f"{lengths.number(fixture.pose.x)}, {lengths.words(fixture.pose.y)}")
     column.fact("Closure margin", closure_margin(fixture))
     column.rule()

@@ -13,7 +13,7 @@ from workhold.drawing.bench import Bench, draw_bench
 from workhold.drawing.carriers import block_arrow, labelled
 from workhold.drawing.path_drawn import PlannedPath
 from workhold.drawing.plan_labels import ANGLE_RADIUS, ANGLE_REACH, LONGEST_ARROW, draw_labels
-from workhold.drawing.scene import BLACK, GREY, Box, LengthUnit, Scene, View, number, text_width
+from workhold.drawing.scene import BLACK, GREY, Box, LengthUnit, Scene, View, degrees_text, number, text_width
 from workhold.drawing.supports_drawn import PlannedSupports, draw_supports
 from workhold.fixels.carrier import column_letters
 from workhold.geometry.segment import Point
@@ -71,7 +71,7 @@ def draw_plan(
     center = view(bench.fixture.pose.apply(*workpiece.center))
     angle_mark(scene, center, bench.fixture.pose.written_deg, ANGLE_RADIUS, ANGLE_REACH)
     marks = [(view(point), name) for point, name in marks]
-    angle = f"θ = {bench.fixture.pose.written_deg:z.3f}°" if angle is None else angle
+    angle = f"θ = {degrees_text(bench.fixture.pose.written_deg, 3)}" if angle is None else angle
     draw_labels(scene, bench, view, workpiece, bounds, names, marks, angle, supports, path, lengths)
 
 

@@ -60,7 +60,7 @@ def draw_labels(
         path.avoided(placer, view)
     pegs = bench.fixture.pegs
     numbers = list(dict.fromkeys(pegs[index].face for index in bench.touching))
-    direction, angle_size = -radians(bench.fixture.pose.theta_deg) / 2, (text_width(angle, 13) + 4, 16.0)
+    direction, angle_size = -radians(bench.fixture.pose.written_deg) / 2, (text_width(angle, 13) + 4, 16.0)
     placed = placer.place(
         [
             *(peg_label(bench, index, view) for index in bench.placed),
@@ -94,7 +94,7 @@ def avoid_drawing(placer: LabelPlacer, bench: Bench, view: View, center: Point) 
         (x, y), radius = view((peg.x, peg.y)), bench.radius(view, index)
         placer.avoid_box(Box(x - radius, y - radius, x + radius, y + radius))
         placer.avoid_line(*force_arrow(bench, index, view, LONGEST_ARROW), price=8.0)
-    turn = radians(bench.fixture.pose.theta_deg)
+    turn = radians(bench.fixture.pose.written_deg)
     x, y = center
     placer.avoid_line(center, (x + ANGLE_REACH * cos(turn), y - ANGLE_REACH * sin(turn)), 8.0)
     placer.avoid_line(center, (x + ANGLE_REACH, y), 8.0)

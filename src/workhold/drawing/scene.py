@@ -35,6 +35,7 @@ __all__ = [
     "LengthUnit",
     "Scene",
     "View",
+    "degrees_text",
     "font_files",
     "has_character",
     "number",
@@ -49,6 +50,15 @@ FOLDER = Path(__file__).resolve().parent.parent / "data" / "fonts"
 
 # Width in ems given to a character the bundled typeface does not have.
 UNKNOWN_WIDTH = 1.0
+
+
+def degrees_text(turn: float, decimals: int) -> str:
+    """A turn in degrees as it is drawn, with a real minus sign and no negative zero.
+
+    >>> degrees_text(-0.31, 1), degrees_text(-0.01, 1)
+    ('−0.3°', '0.0°')
+    """
+    return f"{turn:z.{decimals}f}°".replace("-", "−")
 
 
 def font_files() -> list[str]:

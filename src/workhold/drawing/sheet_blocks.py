@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from workhold.drawing.hardware_table import write_hardware
 from workhold.drawing.panel import TextColumn, draw_legend, fixture_words, pegs_words, value_words
 from workhold.drawing.program_picture import write_program
-from workhold.drawing.scene import BLACK, LengthUnit, shortened, text_width, wrapped
+from workhold.drawing.scene import BLACK, LengthUnit, degrees_text, shortened, text_width, wrapped
 from workhold.drawing.seats import write_seating, write_wrong_seats
 from workhold.drawing.sheet_setting import CLAMPS, OPENING, write_counting, write_pegs
 from workhold.drawing.sheet_writing import BODY, NOTE, Block, MovingBlocks, Sheet, Writer, heading
@@ -216,17 +216,17 @@ def write_title(column: TextColumn, sheet: Sheet) -> None:
 def write_zero(column: TextColumn, sheet: Sheet) -> None:
     """Writes part zero, its place, the part's turn, and the lines to program a control with."""
     zero, lengths = sheet.zero, sheet.lengths
-    (x, y), turn = sheet.zero_place, f"{sheet.fixture.pose.written_deg:z.4f}"
+    (x, y), turn = sheet.zero_place, sheet.fixture.pose.written_deg
     heading(column, "Part zero X0 Y0 and angle")
     column.fact("X0 Y0 is the", zero.words, BODY, bold=True)
     column.fact(f"x from {sheet.datum.x}", lengths.words(x), bold=True)
     column.fact(f"y from {sheet.datum.y}", lengths.words(y), bold=True)
-    column.fact("turned by θ, counter-clockwise", f"{turn}°", bold=True)
+    column.fact("turned by θ, counter-clockwise", degrees_text(turn, 4), bold=True)
     drawn = ", y ".join(map(lengths.words, zero.point))
     place = "" if sheet.zero_shown else " It lies outside the plan."
     column.paragraph(f"In the part's drawing it is at x {drawn}.{place} x runs to the right, y upward.", NOTE)
     # Haas takes three places behind the point (Mill Operator's Manual, G68).
-    word = f"{sheet.fixture.pose.written_deg:z.3f}"
+    word = f"{turn:z.3f}"
     turning = f"G68 X0 Y0 R{word}" if float(word) else "no G68, as the part is not turned"
     machine = sheet.details.machine_position
     if machine is None:

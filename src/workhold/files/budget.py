@@ -36,11 +36,12 @@ class OverBudgetError(InputError):
     @staticmethod
     def is_behind(error: BaseException | None) -> bool:
         """Whether such an error is what another was raised from, with its place."""
-        while error is not None:
-            if isinstance(error, OverBudgetError):
-                return True
+        behind: list[BaseException] = []
+        # An error that was raised from itself is its own cause.
+        while error is not None and error not in behind:
+            behind.append(error)
             error = error.__cause__
-        return False
+        return any(isinstance(one, OverBudgetError) for one in behind)
 
 
 @frozen
