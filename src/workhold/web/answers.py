@@ -154,7 +154,9 @@ def carriers_answer(seen: Shown, fixture: Fixture) -> list[dict[str, Any]]:
         return [number for number, name in enumerate(names) if name == carrier.name]
 
     # Two clamps that push the same way are one carrier.
-    tips = {name: iter([number for number, other in enumerate(names) if other == name]) for name in set(names)}
+    tips = {
+        name: iter([number for number, other in enumerate(names) if other == name]) for name in set(names)
+    }
 
     lattices: list[dict[str, Any]] = [
         {
