@@ -11,10 +11,11 @@ from typing import Any
 import pytest
 
 import workhold
+from workhold.model.quality import FIGURE_RANKING
 
 STATIC = resources.files("workhold.presenting").joinpath("static")
 WEDGE = workhold.Workpiece.from_loops("wedge", [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]])
-RESULT = workhold.design(WEDGE, workhold.Vise(pitch=15, columns=1, peg_radius=2))
+RESULT = workhold.design(WEDGE, workhold.Vise(pitch=15, columns=1, peg_radius=2), rank_by=FIGURE_RANKING)
 TRAITS = ("rank", "count", "jaw_force", "force", "picture", "answer", "closing", "dragged", "asked_closing")
 # A model as anywidget hands it over, whose changes go to Python and come back.
 PAGE = """<meta charset="utf-8"><div id="cell"></div><script type="module">
