@@ -81,13 +81,31 @@ def test_its_sheet_says_how_to_set_it_up() -> None:
         "The part lies flush on the fixed jaw with face 0.",
         "From the fixed jaw to the centres of row 1 of the jaw.",
         "Put pegs in A1 and C1 of the jaw.",
-        "from its drawing, flush on the fixed jaw.",
+        "lay the part in as drawn, not turned, flush on the fixed jaw.",
         "Close the jaw until both pegs touch.",
         "A1 is column A, row 1",
         "fixed jaw that the part lies flush on",
     ):
         assert told in words
     assert "clamp" not in words.replace("clamp amplification", "")
+
+
+@pytest.mark.parametrize(
+    ("theta", "told"),
+    [
+        (12.0, "turned 12.0° counter-clockwise from its drawing"),
+        (348.0, "turned 12.0° clockwise from its drawing"),
+        (270.0, "turned 270.0° counter-clockwise from its drawing"),
+        (0.04, "not turned"),
+        (359.96, "not turned"),
+    ],
+)
+def test_its_sheet_says_which_way_it_is_turned(theta: float, told: str) -> None:
+    """The shorter way where that is no eighth of a turn, and nothing of what nobody sees."""
+    held = evolve(HELD, pose=Pose(theta, 0.0, 0.0))
+    pages = draw_sheet(held, HOUSE, TOOLKIT, SheetDetails(1, 1, date(2026, 1, 1), "", "0"))
+    words = " ".join(word for page in pages for word in texts(page))
+    assert f"lay the part in as drawn, {told}, flush on the fixed jaw." in words
 
 
 def test_its_picture_shows_wall_opening_and_pegs() -> None:

@@ -202,7 +202,7 @@ def test_no_contact_is_on_a_face_that_is_cut_away(seed: int) -> None:
 def cuts_of(program: Program) -> Any:
     """The moves at a feed alone."""
     moves, cut = program.moves, program.moves.cutting
-    names = ("line", "tool", "cutting", "start", "end", "bulge", "feed", "spindle")
+    names = ("line", "tool", "cutting", "start", "end", "bulge", "feed", "spindle", "cycle")
     return evolve(moves, **{name: getattr(moves, name)[cut] for name in names})
 
 
@@ -293,7 +293,7 @@ def test_a_program_that_leaves_faces_that_hold_nothing_is_the_reason(low: float)
     if low > THICKNESS:
         assert len(result)
     else:
-        (reason,) = result.notes
+        reason = result.notes[0]
         assert reason.startswith(
             "Every face that the program's tools leave, of which line 5 takes the most, is an arc"
         )

@@ -17,7 +17,14 @@ from cad_parts import cad_part
 from strategies import random_outline
 from workhold import InputError, Load, Plate, Result, Workpiece, design
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.quality import CLAMP_FREEDOM, FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION, PREFERENCES
+from workhold.model.quality import (
+    CLAMP_FREEDOM,
+    FIGURES,
+    JAW_CONTACT,
+    JAW_FORCE_NEEDED,
+    LOAD_REACTION,
+    PREFERENCES,
+)
 from workhold.search import lattice_shares
 
 
@@ -42,7 +49,8 @@ def rankings(toolkit: Toolkit, loads: bool) -> Iterator[dict[str, Any]]:
     yield {}
     yield from ({"prefer": word} for word in PREFERENCES)
     two = isinstance(toolkit, Plate) and toolkit.clamps == 2
-    for number, figure in enumerate(FIGURES):
+    # Those of a jaw's ends and of pegs that bend need what no case here has.
+    for number, figure in enumerate(FIGURES[:JAW_CONTACT]):
         if (loads or number not in OF_LOADS) and (two or number != CLAMP_FREEDOM):
             yield {"rank_by": [figure.option]}
 

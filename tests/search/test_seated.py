@@ -20,7 +20,7 @@ from seating_examples import solved
 from workhold import InputError, OpeningVise, Plate, Query, Result, Vise, Workpiece
 from workhold.files.result.fixture_forms import seating_figures_of
 from workhold.kernels.seating.columns import PEG, PLACE_X, SEPARATION, THETA
-from workhold.model.quality import SEATING_FIGURES
+from workhold.model.quality import FIGURE_RANKING, SEATING_FIGURES
 from workhold.model.search_report import by_hand_note
 from workhold.model.seating import CLOSE_READING, SMALL_CAPTURE
 from workhold.seating import solver as solver_module
@@ -195,12 +195,13 @@ def test_rules_leave_out_what_is_not_as_asked_and_say_so(seated: Result) -> None
     assert first[:] == kept[:2]
 
 
-def test_seating_is_a_figure_to_rank_by(seated: Result) -> None:
+def test_seating_is_a_figure_to_rank_by() -> None:
     ranked = workhold.design(WEDGE, VISE, seating=LOOKED_AT, rank_by="capture-opening")
     openings = [round(told.capture_opening or inf, 9) for told in ranked.seating]
     assert openings == sorted(openings, reverse=True)
-    assert sorted(openings) == sorted(round(told.capture_opening or inf, 9) for told in seated.seating)
-    assert seated.query.without_seating.ranking == ranked.query.without_seating.ranking
+    same = workhold.design(WEDGE, VISE, seating=LOOKED_AT, rank_by=FIGURE_RANKING)
+    assert sorted(openings) == sorted(round(told.capture_opening or inf, 9) for told in same.seating)
+    assert same.query.without_seating.ranking == ranked.query.without_seating.ranking
 
 
 def test_the_best_are_those_of_the_looked_at(seated: Result) -> None:

@@ -24,7 +24,7 @@ from workhold.search.design import SEARCH
 from workhold.search.seated import SEARCHED
 from workhold.verification import verify, verify_file
 from workhold.web import jobs
-from workhold.web.tasks import Found
+from workhold.web.searching import Found
 
 MOST = 41
 SYMMETRIC = Query(workhold.load("small4Handle"), Vise(pitch=10, columns=2, peg_radius=3))

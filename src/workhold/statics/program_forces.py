@@ -73,7 +73,11 @@ class CutDone:
 
         upright = self.start[:2] == self.end[:2]
         if upright and self.kind != CUT_KINDS[MILLING]:
-            where = f"at {place('XY', self.start)} from {place('Z', self.start[2:])} to {place('Z', self.end[2:])}"
+            x_y, (low, high) = (
+                place("XY", self.start[:2]),
+                (place("Z", one[2:]) for one in (self.start, self.end)),
+            )
+            where = f"at {x_y} from {low} to {high}"
         else:
             where = f"from {place('XYZ', self.start)} to {place('XYZ', self.end)}"
         far = f"{short(self.length, unit)} of {short(self.whole, unit)} {unit.abbreviation}"
