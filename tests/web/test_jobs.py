@@ -18,7 +18,7 @@ from workhold.files.part.load import load
 from workhold.files.result.fixture_text import result_csv_text
 from workhold.files.result.writer import result_text
 from workhold.fixels.vise import Vise
-from workhold.model.quality import FIGURES
+from workhold.model.quality import FIGURES, PIN_KEYS
 from workhold.model.requirements import Load, Tolerance
 from workhold.model.result import Result
 from workhold.search.design import design
@@ -87,10 +87,21 @@ def test_pages_join_to_the_whole_list(server: RunningServer, job: str) -> None:
     assert pages == whole
 
 
-# Those of loads, of two clamps and of a jaw with ends are of other searches.
+# Those of loads, of two clamps, of a jaw with ends and of known heights are of other searches.
+ELSEWHERE = ("clamp_freedom", "jaw_contact")
+
+
+def test_what_is_not_known_leaves_the_order_of_ranks(server: RunningServer, job: str) -> None:
+    """Nobody says how high pegs press here, and there is one clamp."""
+    for key in (*ELSEWHERE, *PIN_KEYS):
+        assert [row["rank"] for row in rows(server, job, sort=key)] == [
+            row["rank"] for row in rows(server, job)
+        ]
+
+
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize(
-    "key", [one.key for one in FIGURES if one.unit != "N" and one.key not in ("clamp_freedom", "jaw_contact")]
+    "key", [one.key for one in FIGURES if one.unit != "N" and one.key not in (*ELSEWHERE, *PIN_KEYS)]
 )
 @pytest.mark.parametrize("descending", [False, True])
 def test_lists_are_sorted_by_any_figure(server: RunningServer, job: str, key: str, descending: bool) -> None:

@@ -125,6 +125,7 @@ class JobAnswer(AnswerShape):
     state: Literal["queued", "running", "listing", "done", "failed", "cancelled"]
     fraction: float = Field(ge=0, le=1, description="how much of it is done")
     found: int = Field(description="fixtures so far")
+    best: int = Field(default=0, description="of how many the best are on show while the rest is searched")
     seconds: float = Field(description="since it began")
     counts: dict[str, int] | None = Field(description="all fixtures by type, once it is over")
     distinct: dict[str, int] | None = Field(description="those that no symmetry makes the same")
@@ -236,13 +237,13 @@ EXAMPLES = {
     f"GET {JOB}/fixtures": ApiExample(
         OF_JOB,
         {"limit": 5, "sort": "location_error", "angle": "0..90"},
-        answer={"total": 679, "rows": [{"rank": 108, "holes": ["L-A4", "L-B1", "R-A2", "R-A6"]}]},
+        answer={"total": 679, "rows": [{"rank": 88, "holes": ["L-A4", "L-B1", "R-A2", "R-A6"]}]},
     ),
     f"GET {JOB}/explanation": ApiExample(
         {"name": NONE_NAME}, answer={"helps": [{"change": "with half the pitch", "fixtures": 2}]}
     ),
     f"POST {JOB}/resist": ApiExample(
-        OF_JOB, body={"loads": LOADS}, answer={"best": [{"rank": 1044, "load_reaction": 212.223148}]}
+        OF_JOB, body={"loads": LOADS}, answer={"best": [{"rank": 1109, "load_reaction": 212.223148}]}
     ),
     f"GET {JOB}/result.json": ApiExample(OF_JOB, answer={"format": "workhold-result/1"}),
     f"GET {JOB}/result.csv": ApiExample(OF_JOB, type="text/csv"),
@@ -257,25 +258,31 @@ EXAMPLES = {
         status=202,
         answer={"job": FAMILY_NAME, "url": f"/api/v1/jobs/{FAMILY_NAME}"},
     ),
-    f"GET {JOB}/family": ApiExample({"name": FAMILY_NAME}, answer={"points": [{"setups": 1, "loss": 1.0}]}),
+    f"GET {JOB}/family": ApiExample(
+        {"name": FAMILY_NAME}, answer={"points": [{"setups": 1, "loss": 1.033943759}]}
+    ),
     f"GET {JOB}/family/{{kind}}": ApiExample(
         {"name": FAMILY_NAME, "kind": "sheets.pdf"}, {"setups": 1}, type="application/pdf"
     ),
-    f"GET {FIRST}": ApiExample(OF_FIRST, answer={"rank": 1, "holes": ["L-A2", "L-A7", "L-B1", "R-A3"]}),
+    f"GET {FIRST}": ApiExample(OF_FIRST, answer={"rank": 1, "holes": ["L-A4", "L-B1", "R-A1", "R-B5"]}),
     f"POST {FIRST}/loads": ApiExample(
         OF_FIRST, body={"loads": LOADS, "jaw_force": 3000}, answer={"cases": [{"keeps_contact": True}]}
     ),
     f"POST {FIRST}/supports": ApiExample(
-        OF_FIRST, body={"thickness": 12, "best": 3}, answer={"sets": [{"holes": ["L-B2", "L-B7", "R-(0,4)"]}]}
+        OF_FIRST, body={"thickness": 12, "best": 3}, answer={"sets": [{"holes": ["L-B3", "R-A2", "R-A4"]}]}
     ),
     f"GET {FIRST}/warnings": ApiExample(
         OF_FIRST,
         {"jaw_force": 3000},
-        answer={"rank": 1, "warnings": [], "why_first": "First: no warning; ..."},
+        answer={
+            "rank": 1,
+            "warnings": [],
+            "why_first": "First: no warning; location error 0.0389 mm, the least of all; as drawn.",
+        },
     ),
-    f"GET {FIRST}/seating": ApiExample(OF_FIRST, answer={"rank": 1, "capture_opening": 0.391745576}),
+    f"GET {FIRST}/seating": ApiExample(OF_FIRST, answer={"rank": 1, "capture_opening": 1.97524498}),
     f"POST {FIRST}/closing": ApiExample(
-        OF_FIRST, body={"theta_deg": 269, "x": 3, "y": 66, "opening": 0.2}, answer={"ending": "right"}
+        OF_FIRST, body={"theta_deg": 269, "x": 3, "y": 66, "opening": 0.2}, answer={"ending": "wrong"}
     ),
     f"GET {FIRST}/{{kind}}": ApiExample(
         {**OF_FIRST, "kind": "sheet.pdf"}, {"jaw_force": 3000}, type="application/pdf"

@@ -11,7 +11,7 @@ from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.listing.identity import Entries, first_of_each, near_duplicates
 from workhold.model.fixture_table import FixtureTable
-from workhold.model.quality import FIGURES, figure_number
+from workhold.model.quality import FIGURES, figure_column, figure_number
 from workhold.model.result import Result
 from workhold.statics.judging import unfit
 
@@ -93,7 +93,7 @@ class Selection:
         found = np.flatnonzero(chosen)
         if column is None:
             return found[::-1] if self.descending else found
-        values = table.quality[found, column]
+        values = figure_column(table.quality, FIGURES[column])[found]
         keys = np.where(np.isnan(values), np.inf, -values if self.descending else values)
         return np.asarray(found[np.argsort(keys, kind="stable")])
 
