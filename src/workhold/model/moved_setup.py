@@ -133,7 +133,8 @@ def middle_move(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> Hol
             continue
         off = center - first - (count - 1) * pitch / 2
         steps = range(-back, ahead + 1)
-        found.append(min(steps, key=lambda step: (round(abs(off + step * pitch), 6), step)))
+        # The nearest miss of a part that finds no fixture may stand in holes that the plate does not have.
+        found.append(min(steps, key=lambda step: (round(abs(off + step * pitch), 6), step), default=0))
     return found[0], found[1]
 
 
