@@ -30,7 +30,7 @@ OPTIONS = (
     (r"; see workhold [\w -]+\.$", "."),
     (r" \(see workhold [\w -]+\)", ""),
     (r"--start X,Y,Z", "the place of the tip at its start"),
-    (r"(the |its )?--([a-z][a-z-]*)", lambda found: (found[1] or "the ") + found[2].replace("-", " ")),
+    (r"(?:the |its )?--([a-z][a-z-]*)", lambda found: "the " + found[1].replace("-", " ")),
 )
 # What is said of a child that the system or somebody else has ended.
 ENDED = "Workhold was ended before it had an answer: choose the command again."

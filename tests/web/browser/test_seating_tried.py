@@ -95,14 +95,15 @@ def test_a_part_that_is_dragged_and_let_go_is_closed_upon(walk: Walk) -> None:
     page.click("#try")
     page.wait_for_selector("#seating", state="hidden")
     assert page.locator("#drawing-fixture .part.put").count() == 0
-    # Pegs without a radius have no seating: it is said why, and the part cannot be taken hold of.
+    # Pegs without a radius have no seating: it is said why, and the part can be moved but nothing closes upon it.
     page.fill("#peg-radius", "0")
     page.press("#peg-radius", "Tab")
     walk.searched()
     page.click("#try")
     assert "radius 0" in walk.seen("#seating-trouble").inner_text()
     assert page.locator("#seating-answer").is_hidden()
-    assert page.locator("#drawing-fixture .part.put").count() == 0
+    assert page.locator("#drawing-fixture .part.put").count() == 1
+    assert page.locator("#try-close").is_disabled()
     # One start was refused, and these pegs.
     walk.troubles = [line for line in walk.troubles if "400" not in line]
 

@@ -74,7 +74,7 @@ def test_hardware_is_typed_and_used(walk: Walk, block: str) -> None:
 
     wanted = [
         {"pad_radius": 2.5, "height": 14},
-        {"tip_radius": 3, "reach": [[0, 0, 5, 400], [100, 0, 5, 400]]},
+        {"tip_margin": 1, "tip_radius": 3, "reach": [[0, 0, 5, 400], [100, 0, 5, 400]]},
     ]
     assert hardware() == wanted
     page.select_option("#unit", "inch")
@@ -100,5 +100,5 @@ def test_hardware_is_typed_and_used(walk: Walk, block: str) -> None:
     assert "Reaches about" in walk.seen("#toolkit-trouble").inner_text()
     fill(walk, top_clamp_reach="", top_clamp_tip_radius="")
     page.wait_for_selector("#toolkit-trouble", state="hidden")
-    walk.until("!state.toolkit.top_clamp")
-    assert hardware() == [wanted[0], None]
+    walk.until("!state.toolkit.top_clamp.reach")
+    assert hardware() == [wanted[0], {"tip_margin": 1}]

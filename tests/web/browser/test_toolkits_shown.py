@@ -44,6 +44,7 @@ def test_the_fields_are_those_of_the_kind(walk: Walk) -> None:
         "travel": [10, 44],
         "directions": ["-y"],
         "clamps": 1,
+        "top_clamp": {"tip_margin": 1},
     }
     assert held_in(walk) == wanted
     page.select_option("#unit", "inch")
@@ -128,7 +129,13 @@ def test_another_kind_keeps_what_both_have(walk: Walk) -> None:
     page.select_option("#toolkit", "gripper")
     page.wait_for_selector("#columns", state="detached")
     vise = page.evaluate(STATE)["toolkit"]
-    assert vise == {"kind": "gripper", "pitch": [50, 50], "peg_radius": 8, "columns": 1}
+    assert vise == {
+        "kind": "gripper",
+        "pitch": [50, 50],
+        "peg_radius": 8,
+        "columns": 1,
+        "top_clamp": {"tip_margin": 1},
+    }
     assert page.locator("#types input").count() == 2
     page.select_option("#preset", "plate-20mm")
     assert (page.input_value("#toolkit"), page.input_value("#columns")) == ("vise", "3")
