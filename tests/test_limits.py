@@ -19,7 +19,7 @@ import pytest
 
 from workhold import Vise, Workpiece, answer, limits, load
 from workhold.cli.values import optional_force
-from workhold.errors import InputError, lacks_memory
+from workhold.errors import InputError, causes_of, lacks_memory
 from workhold.files.part.load import read_workpiece
 from workhold.limits import thread_count
 from workhold.model.query import Query
@@ -163,6 +163,17 @@ def caused(cause: Exception) -> Exception:
     error = ValueError("nothing to say of memory")
     error.__cause__ = cause
     return error
+
+
+def test_the_causes_of_an_error_end_though_it_is_its_own() -> None:
+    """Each is told once; what was being handled counts where that is asked for and nothing else is said."""
+    first, second, third = ValueError("1"), ValueError("2"), ValueError("3")
+    first.__cause__, second.__context__, third.__cause__ = second, third, first
+    assert list(causes_of(None)) == []
+    assert list(causes_of(first)) == [first, second]
+    assert list(causes_of(first, or_context=True)) == [first, second, third]
+    second.__cause__ = second
+    assert list(causes_of(first, or_context=True)) == [first, second]
 
 
 @pytest.mark.parametrize(

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import errno
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 __all__ = [
     "NO_ROOM",
     "InputError",
     "WorkholdError",
+    "causes_of",
     "encodable",
     "lacks_memory",
     "listed",
@@ -108,17 +109,29 @@ class InputError(WorkholdError, ValueError):
         super().__init__(plain(shortened(message)))
 
 
+def causes_of(error: BaseException | None, *, or_context: bool = False) -> Iterator[BaseException]:
+    """An error, the one that it was raised from, that one's, and so on; each once.
+
+    Parameters
+    ----------
+    or_context : whether, where it was raised from none, the one that was being handled counts.
+    """
+    # An error that was raised from itself is its own cause.
+    passed: list[BaseException] = []
+    while error is not None and not any(error is one for one in passed):
+        yield error
+        passed.append(error)
+        error = error.__cause__ or (error.__context__ if or_context else None)
+
+
 def lacks_memory(error: BaseException | None) -> bool:
     """Whether an error is due to too little memory; libraries and threads report it in words of their own."""
-    seen: list[BaseException] = []
-    while error is not None and error not in seen:
-        seen.append(error)
-        if isinstance(error, MemoryError) or getattr(error, "errno", None) == errno.ENOMEM:
-            return True
-        if any(words in str(error) for words in NO_MEMORY):
-            return True
-        error = error.__cause__ or error.__context__
-    return False
+    return any(
+        isinstance(one, MemoryError)
+        or getattr(one, "errno", None) == errno.ENOMEM
+        or any(words in str(one) for words in NO_MEMORY)
+        for one in causes_of(error, or_context=True)
+    )
 
 
 def refuse_kind(value: object, kind: type, name: str, remedy: str) -> None:

@@ -11,7 +11,12 @@ import pytest
 
 import workhold
 from workhold.errors import InputError
-from workhold.files.replacing import is_own
+from workhold.files.replacing import (
+    is_own,
+    refuse_other_ending,
+    refuse_output,
+    refuse_output_folder,
+)
 from workhold.files.supports_file import write_supports
 from workhold.model.fixture import Fixture
 from workhold.model.result import Result
@@ -196,3 +201,44 @@ def test_the_hash_of_another_result_does_not_get_on_a_sheet(result: Result, tmp_
     with pytest.raises(InputError, match="has another fixture in place 1"):
         result[0].save_sheet(tmp_path / "b.svg", result_file=tmp_path / "last.json")
     assert not (tmp_path / "b.svg").exists()
+
+
+@pytest.mark.parametrize(
+    ("content", "own"),
+    [
+        ("", True),
+        ("toolkit,fixtures,type_I,reason\n", True),
+        ("part,file,toolkit,state\n", True),
+        ("PAR1 workhold-table/1 PAR1", True),
+        ("format workhold-benchmark/1\n", True),
+        ("toolkit,fixtures\n", False),
+        ("workhold\n", False),
+    ],
+)
+def test_files_are_known_by_their_marks(tmp_path: Path, content: str, own: bool) -> None:
+    """Those of comparisons, batches and benchmarks too; an empty file holds nothing that could be lost."""
+    path = tmp_path / "file"
+    path.write_text(content)
+    assert is_own(path) is own
+    assert not is_own(tmp_path / "no such file")
+
+
+def test_outputs_are_refused_before_any_work_is_done_for_them(tmp_path: Path) -> None:
+    """A folder that is not there, a file in a folder's place, and an input among several outputs."""
+    with pytest.raises(InputError, match="nowhere"):
+        refuse_output(tmp_path / "nowhere" / "a.json")
+    (tmp_path / "file").touch()
+    with pytest.raises(InputError, match="cannot be a folder"):
+        refuse_output_folder(tmp_path / "file", [], [], False)
+    (tmp_path / "b").write_text("read")
+    with pytest.raises(InputError, match="b is also what is read"):
+        (tmp_path / "a").touch()
+        refuse_output_folder(tmp_path, ["a", "b"], iter([tmp_path / "b"]), True)
+    # The name of something else than a file is no input that could be replaced.
+    refuse_output(tmp_path / "a", ["a\0b", None])
+
+
+def test_an_ending_is_known_in_capitals_too() -> None:
+    with pytest.raises(InputError, match="is not the name of a picture"):
+        refuse_other_ending("a.STL", [".svg"], "a picture")
+    refuse_other_ending("a.SVG", [".svg"], "a picture")

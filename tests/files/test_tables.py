@@ -111,6 +111,14 @@ def test_a_tool_says_in_words_that_something_is_not_given(tmp_path: Path, word: 
     assert (tools[1].diameter, tools[1].cutting.teeth, tools[1].name) == (10.5, None, word.strip())
 
 
+@pytest.mark.parametrize("mark", [";", "\t"])
+def test_a_comma_in_a_number_is_its_point_where_commas_separate_nothing(tmp_path: Path, mark: str) -> None:
+    """As spreadsheets of much of Europe write it."""
+    path = tmp_path / "tools.csv"
+    path.write_text(f"tool{mark}diameter\n1{mark}10,5\n", encoding="utf-8")
+    assert read_tools(path, MILLIMETRE)[0][1].diameter == 10.5
+
+
 def test_the_tables_that_came_in_are_read() -> None:
     """Flutes that are not given, and lines that end in CR alone."""
     tools, said = read_tools(HOSTILE / "flutes.csv", MILLIMETRE)

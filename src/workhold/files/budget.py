@@ -19,7 +19,7 @@ from contextlib import contextmanager
 
 from attrs import frozen
 
-from workhold.errors import InputError
+from workhold.errors import InputError, causes_of
 
 __all__ = ["LIMITS", "PART_BYTES", "UNLIMITED", "Budget", "FileLimits", "OverBudgetError"]
 
@@ -36,12 +36,7 @@ class OverBudgetError(InputError):
     @staticmethod
     def is_behind(error: BaseException | None) -> bool:
         """Whether such an error is what another was raised from, with its place."""
-        behind: list[BaseException] = []
-        # An error that was raised from itself is its own cause.
-        while error is not None and error not in behind:
-            behind.append(error)
-            error = error.__cause__
-        return any(isinstance(one, OverBudgetError) for one in behind)
+        return any(isinstance(one, OverBudgetError) for one in causes_of(error))
 
 
 @frozen

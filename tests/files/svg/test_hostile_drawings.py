@@ -10,7 +10,7 @@ import pytest
 from attrs import evolve
 
 from workhold.errors import InputError
-from workhold.files.budget import LIMITS, Budget
+from workhold.files.budget import LIMITS, Budget, OverBudgetError
 from workhold.files.outline.chain import Drawing
 from workhold.files.part.load import read_workpiece
 from workhold.files.svg import document, shapes
@@ -38,8 +38,11 @@ def nested(count: int, inner: str) -> str:
             "<style>" + "rect{x:" + "1" * 5000 + "}</style>",
             "the style sheet on line 1 has a number that cannot",
         ),
-        ("<style>rect{x:" + "(" * 11 + "}</style>", "brackets nested 11 levels deep"),
-        ("<style>" + "@media all{" * 300 + "</style>", "brackets nested 11 levels deep"),
+        (
+            "<style>rect{x:" + "(" * 10 + "a" + ")" * 10 + "}</style>",
+            "a bracket of the style sheet on line 1 is nested more than 10 levels deep",
+        ),
+        ("<style>" + "@media all{" * 300 + "</style>", "is nested more than 10 levels deep"),
         ("<style>" + "rect{}" * 100_000 + "</style>", "more than the 500,000 letters"),
         ("<style>" + "rect," * 20_000 + "g{fill:red}</style>", "more than the 20,000 selectors"),
         ("<style>:not(g rect){fill:red}</style>", r"the selector ':not\(g rect\)', which is not read"),
@@ -74,6 +77,20 @@ def test_absurd_values_are_refused_with_their_place(body: str, words: str) -> No
     with pytest.raises(InputError, match=words) as caught:
         drawing(body)
     assert "\n" not in str(caught.value)
+
+
+def test_brackets_of_styles_are_as_deep_as_the_table_of_limits_lets_them_be(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """In style sheets and in attributes; one more is refused, and no reader goes on after it."""
+    for deepest in (10, 3):
+        monkeypatch.setitem(LIMITS, "style", evolve(LIMITS["style"], deepest=deepest))
+        for head, outer in (("<style>rect{font:", 1), ('<rect width="1" height="1" style="font:', 0)):
+            end = "}</style>" if outer else '"/>'
+            most = deepest - outer
+            drawing(RECT + head + "(" * most + "a" + ")" * most + end)
+            with pytest.raises(OverBudgetError, match=f"a bracket of the .* more than {deepest} levels deep"):
+                drawing(RECT + head + "(" * (most + 1) + "a" + ")" * (most + 1) + end)
 
 
 @pytest.mark.parametrize(

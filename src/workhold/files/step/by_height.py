@@ -258,7 +258,9 @@ def height_drawing(solids: tuple[Solid, ...], view: HeightView) -> HeightDrawing
 
 def turned_up(chosen: Solid, view: HeightView) -> StandingSolid:
     """A solid as it is looked at; raises InputError for an axis that there is not."""
-    return standing(along(chosen.shape, axis_named(view.axis)))
+    axis = axis_named(view.axis)
+    # Along z it is not turned, and its box is known.
+    return standing(along(chosen.shape, axis), chosen.low[2] if axis == "z" else None)
 
 
 def drawn(
@@ -304,7 +306,7 @@ def drawn(
     found = evolve(found, runs=outline.runs)
     own = tuple(own_drawings(solid, view.heights, found))
     if usual is None and has_table and not plain_prism:
-        rows = height_table(solid, room, least, outline)
+        rows = height_table(solid, room, least)
     remarks = [] if plain_prism else height_remarks(outline, found, rows)
     remarks += [] if usual is None else usual.remarks
     if any(band is None for band in outline.bands):

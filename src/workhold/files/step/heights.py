@@ -136,6 +136,8 @@ class StandingSolid:
     fold_squares: dict[tuple[int, float], set[tuple[int, int]]] = field(init=False, factory=dict)
     # What outlines of all heights have in common.
     known_walls: KnownWalls = field(init=False, factory=KnownWalls)
+    # Outlines by their heights and shortest band: the table and whoever looks for a height ask for the same.
+    known_outlines: dict[tuple[float, ...], HeightOutline] = field(init=False, factory=dict)
     # The face that was last found to refuse an outline: it is likely to refuse that of a height nearby.
     suspect: SolidFace | None = field(init=False, default=None)
 
@@ -183,10 +185,16 @@ class StandingSolid:
             For heights that leave nothing, and where the outline has a curve that is neither line nor arc.
         """
         top = self.height if peg_height is None else peg_height
+        key = top, head_room, least_band, low
+        if not silhouette and key in self.known_outlines:
+            return self.known_outlines[key]
         walls = self.walls(top, low)
         loops = self.border(low if low > 0.0 else -inf, top + head_room, walls, silhouette)
         strips = tuple(tuple(strips_of_loop(loop, walls, least_band)) for loop in loops)
-        return HeightOutline(strips, top, head_room, least_band)
+        outline = HeightOutline(strips, top, head_room, least_band)
+        if not silhouette:
+            self.known_outlines[key] = outline
+        return outline
 
     def walls(self, top: float, low: float = 0.0) -> Walls:
         """The upright faces as pegs between two heights in mm meet them."""
@@ -260,16 +268,26 @@ class StandingSolid:
             raise
 
 
-def standing(shape: Any) -> StandingSolid:
-    """A solid moved so that its lowest point is at height 0, and turned right side out."""
+def standing(shape: Any, low: float | None = None) -> StandingSolid:
+    """A solid moved so that its lowest point is at height 0, and turned right side out.
+
+    Parameters
+    ----------
+    low : z in mm of its bounding box, where that is known.
+    """
     shape = sub_shapes(shape, "SOLID")[0]
     occ.BRepLib.OrientClosedSolid_s(shape)
-    return StandingSolid(raised(shape, -foot_height(shape)))
+    return StandingSolid(raised(shape, -foot_height(shape, low)))
 
 
-def foot_height(shape: Any) -> float:
-    """The height of a shape's lowest point in mm, with the very number of a level face that lies there."""
-    low = bounding_box(shape)[0][2]
+def foot_height(shape: Any, low: float | None = None) -> float:
+    """The height of a shape's lowest point in mm, with the very number of a level face that lies there.
+
+    Parameters
+    ----------
+    low : see :func:`standing`.
+    """
+    low = bounding_box(shape)[0][2] if low is None else low
     level = [plane_height(occ.BRepAdaptor_Surface(face)) for face in sub_shapes(shape, "FACE")]
     return min((z for z in level if z is not None and z - low <= SAME_HEIGHT), default=low)
 
@@ -300,17 +318,11 @@ def measures(outline: HeightOutline) -> tuple[float, float, float, float]:
     return area, border, touchable, min(bands, default=0.0)
 
 
-def height_table(
-    solid: StandingSolid, room: float, least: float, known: HeightOutline | None = None
-) -> list[HeightRow]:
+def height_table(solid: StandingSolid, room: float, least: float) -> list[HeightRow]:
     """Ranges of peg heights with what their outlines offer, without those whose outline is refused.
 
     A range ends where a face begins or ends, or meets what is kept free above the pegs, and where a wall has
     come to be high enough to be touched.
-
-    Parameters
-    ----------
-    known : an outline that was made with the same room and shortest band.
     """
     levels = {round(z, 6) for face in solid.faces for z in (face.low, face.high)}
     starts = {face.low if face.lie == "upright" else face.high for face in solid.faces}
@@ -320,7 +332,7 @@ def height_table(
     if len(heights) > most:
         heights = [heights[round(k)] for k in np.linspace(0, len(heights) - 1, most)]
     rows: list[HeightRow] = []
-    whole = WholeOutline.of(solid, heights[-1], room, least, known) if heights else None
+    whole = WholeOutline.of(solid, heights[-1], room, least) if heights else None
     # What is less than the shortest band above the plane touches nothing.
     for low, high in pairwise([least, *heights]):
         is_whole = bool(whole and rows and rows[-1].high == low and whole.has_area(rows[-1].area))
@@ -362,18 +374,12 @@ class WholeOutline:
     border: tuple[Segment, ...]
 
     @classmethod
-    def of(
-        cls,
-        solid: StandingSolid,
-        height: float,
-        room: float,
-        least: float,
-        known: HeightOutline | None,
-    ) -> WholeOutline | None:
-        """The outline of pegs of a height in mm, if it is not the known one; None where it is refused."""
+    def of(cls, solid: StandingSolid, height: float, room: float, least: float) -> WholeOutline | None:
+        """The outline of pegs of a height in mm; None where it is refused."""
+        # Heights of the table are rounded, and that of the solid was most likely asked for before.
+        asked = None if abs(height - solid.height) <= SAME_HEIGHT else height
         try:
-            is_known = known is not None and known.peg_height == height
-            outline = known if known and is_known else solid.outline(height, room, least)
+            outline = solid.outline(asked, room, least)
         except InputError:
             return None
         pieces = [one for loop in outline.loops for strip in loop for one in strip.covered]

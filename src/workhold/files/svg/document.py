@@ -467,11 +467,9 @@ def tokens_of(text: str, place: str, budget: Budget) -> list[Any]:
         tokens: list[Any] = tinycss2.parse_component_value_list(text)
     except ValueError as error:  # whole numbers of thousands of digits
         raise InputError(f"{place} has a number that cannot be read: correct it.") from error
-    level, depth = tokens, 0
+    level, nesting = tokens, Budget(LIMITS["style"])
     while level := [inner for token in level for inner in inner_tokens(token)]:
-        depth += 1
-        if depth > (LIMITS["style"].deepest or 0):
-            raise InputError(f"{place} has brackets nested {depth} levels deep: write plain rules.")
+        nesting.enter(lambda: f"a bracket of {place}")
     return tokens
 
 
