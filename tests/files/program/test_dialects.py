@@ -131,7 +131,7 @@ def test_questions_to_grbl_move_nothing(tmp_path: Path) -> None:
     assert read.skipped == (1,) and len(read.moves) == 4
     # After the machine's own ends nobody knows where the tip is.
     path.write_text(plain + "$H\nG1 X40\n")
-    with pytest.raises(InputError, match="line 7: .*line 6 goes to a place of the machine's own"):
+    with pytest.raises(InputError, match=r"line 7: .*line 6 goes to a place of the machine's own"):
         Program.read(path, {0: 6.0}, z_zero=0)
 
 
