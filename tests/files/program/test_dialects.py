@@ -115,3 +115,37 @@ def test_a_lead_in_along_an_upright_arc_is_refused_with_what_helps(
         InputError, match=rf"line {at}: an arc stands in the plane G{plane}: .*vertical lead-in"
     ):
         Program.read(path, {1: 6.0}, z_zero=0)
+
+
+def test_questions_to_grbl_move_nothing(tmp_path: Path) -> None:
+    """grbl's own lines, v1.1 "Commands": $I, $G, $$, $# and ? report, $X unlocks, $H goes to the machine's ends."""
+    plain = "G21 G90\nG0 X0 Y0 Z5\nG1 Z-1 F100\nX20\nG0 Z5\n"
+    path = tmp_path / "program.nc"
+    path.write_text("$I ; build\n$g\n$$\n$#\n$N\n$X\n?\n" + plain)
+    read = Program.read(path, {0: 6.0}, z_zero=0)
+    assert len(read.moves) == 4 and any(
+        "Lines 1, 2, 3, 4, 5 and 2 more: a question" in one for one in read.notes
+    )
+    path.write_text("$H\n" + plain)
+    read = Program.read(path, {0: 6.0}, z_zero=0)
+    assert read.skipped == (1,) and len(read.moves) == 4
+    # After the machine's own ends nobody knows where the tip is.
+    path.write_text(plain + "$H\nG1 X40\n")
+    with pytest.raises(InputError, match=r"line 7: .*line 6 goes to a place of the machine's own"):
+        Program.read(path, {0: 6.0}, z_zero=0)
+
+
+@pytest.mark.parametrize("peck", ["G83 X9 Y9 Z-5 R1", "G83 X9 Y9 Z-5 R1 Q0.", "G73 X9 Y9 Z-5 R1 Q0."])
+def test_pecks_of_no_depth_drill_the_same_hole(tmp_path: Path, peck: str) -> None:
+    """Fusion's post for Mach3 writes Q0. for full depth; what a drill sweeps is the same with every Q."""
+    start = "G21 G90\nG0 X0 Y0 Z5\n"
+    path = tmp_path / "program.nc"
+    moves = []
+    for cycle in (peck, "G81 X9 Y9 Z-5 R1"):
+        path.write_text(f"{start}{cycle} F100\nX20\nG80\nG0 Z9\n")
+        read = Program.read(path, {0: 6.0}, z_zero=0)
+        moves.append(np.hstack([read.moves.start, read.moves.end, np.c_[read.moves.cutting]]))
+        assert any("Lines 3 and 4: peck drilling has no depth" in one for one in read.notes) == (
+            cycle == peck
+        )
+    np.testing.assert_array_equal(*moves)

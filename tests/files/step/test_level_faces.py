@@ -10,26 +10,31 @@ from typing import Any
 
 import numpy as np
 import pytest
+from attrs import evolve
 
 pytest.importorskip("OCP", reason="the extra 'step' is not installed")
 
 from OCP.BRepAdaptor import BRepAdaptor_Curve
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeTorus
 from OCP.BRepTools import BRepTools_WireExplorer
 from OCP.collections import Array1_gp_Pnt
 from OCP.GC import GC_MakeSegment
 from OCP.GeomAPI import GeomAPI_PointsToBSpline
-from OCP.gp import gp_Pnt
+from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
 from OCP.TopAbs import TopAbs_Orientation
 from step_shapes import box, cut, cylinder, fused, prism
 
 import workhold
 from workhold import Plate, load
+from workhold.files.budget import LIMITS
 from workhold.files.step.heights import standing
 from workhold.files.step.level_faces import bottom_loops, level_tops
 from workhold.files.step.library import along, sub_shapes
 from workhold.files.supports_file import read_supports, write_supports
 from workhold.geometry.loop import loop_segments, signed_area
+from workhold.geometry.segment import segment_rows
+from workhold.kernels.base.distance import is_inside
 from workhold.supports.faces import TouchableFace
 from workhold.supports.words import flat_faces_notes, why_no_set
 from workhold.units import unit_named
@@ -200,3 +205,38 @@ def test_line_within_a_face_bounds_nothing() -> None:
     touching = fused(box(70, 50, 12), cylinder(6, 50, (35, 25, 6), (1, 0, 0)))
     (top,) = [one for one in level_tops(standing(touching)) if one.height == 12.0]
     assert area(top.open) == pytest.approx(3500.0)
+
+
+def tilted_rings(count: int) -> Any:
+    """A plate of 100 x 60 x 20 mm that some tilted rings of 3 mm stick out of."""
+    rings = [
+        BRepPrimAPI_MakeTorus(
+            gp_Ax2(gp_Pnt(20.0 + 30.0 * k, 30.0, 24.0), gp_Dir(sin(0.3 + 0.2 * k), 0.2, cos(0.3 + 0.2 * k))),
+            10.0,
+            3.0,
+        ).Shape()
+        for k in range(count)
+    ]
+    return fused(box(100, 60, 20), *rings)
+
+
+def test_what_rises_over_a_plate_is_no_part_of_its_top_however_it_is_shaped() -> None:
+    """By the library's own measure: over no place of the open part is there anything, with rings in many pieces."""
+    shape = tilted_rings(2)
+    (top,) = (one for one in level_tops(standing(shape)) if one.height == pytest.approx(20.0))
+    assert 0.5 * 100 * 60 < area(top.open) < 100 * 60
+    rows = segment_rows([segment for loop in top.open for segment in loop_segments(loop)])
+    taken = 0
+    for x, y in np.random.default_rng(3).uniform((0, 0), (100, 60), (60, 2)).tolist():
+        if is_inside(x, y, rows):
+            common = BRepAlgoAPI_Common(box(0.002, 0.002, 20, at=(x, y, 20.001)), shape)
+            taken += sub_shapes(common.Shape(), "SOLID") != []
+    assert taken == 0
+
+
+def test_places_asked_are_bounded_and_nothing_is_open_beyond(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A count and no clock, so that every machine finds the same; what is not decided is no place for a clamp."""
+    solid = standing(tilted_rings(1))
+    assert level_tops(solid)
+    monkeypatch.setitem(LIMITS, "tops", evolve(LIMITS["tops"], most_elements=50))
+    assert level_tops(solid) == []

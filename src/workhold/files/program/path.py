@@ -58,6 +58,7 @@ class PathWriter:
     unplaced : lines of rapid moves in increments that begin at a place that is not known.
     adrift : lines of rapid moves that end where something is not known.
     nose : lines of rapid moves to a height of the spindle's nose.
+    unpecked : lines of peck drilling without the depth of a peck, which sweeps the same.
     has_heights : whether the program gives any height.
     offset_used : code of the zero in which the moves are.
     budget : what the moves may still take.
@@ -70,6 +71,7 @@ class PathWriter:
     unplaced: list[int] = field(factory=list)
     adrift: list[int] = field(factory=list)
     nose: list[int] = field(factory=list)
+    unpecked: list[int] = field(factory=list)
     has_heights: bool = True
     offset_used: str | None = None
     budget: Budget = field(factory=lambda: Budget(LIMITS["program"]))
@@ -394,8 +396,10 @@ def depths(path: PathWriter, values: dict[str, float]) -> tuple[float, float]:
             raise InputError(f"a drill cycle has no {key}, {what}: write it.")
     if "Q" in values:
         sticky["Q"] = values["Q"]
-    if modes.cycle in PECKING and not sticky.get("Q", 0.0) > 0.0:
-        raise InputError(f"G{modes.cycle} has no Q, the depth of a peck: write one above 0.")
+    if modes.cycle in PECKING and sticky.get("Q", 0.0) < 0.0:
+        raise InputError(f"Q of G{modes.cycle}, the depth of a peck, is below 0: write one above 0.")
+    if modes.cycle in PECKING and not sticky.get("Q", 0.0):
+        path.unpecked.append(path.line)
     bottom, plane = round(sticky["Z"], DIGITS), round(sticky["R"], DIGITS)
     if bottom > plane:
         raise InputError("the bottom Z of a hole is above the plane R of its cycle: correct them.")

@@ -355,7 +355,7 @@ def notes_on(control: Interpreter, listing: ProgramText) -> list[str]:
         )
     if control.skipped:
         notes.append(
-            f"{lines_named(control.skipped)}: a move to a place of the machine's own (G28, G30, G53) is left "
+            f"{lines_named(control.skipped)}: a move to a place of the machine's own (G28, G30, G53, $H) is left "
             "out."
         )
     if control.path.unplaced:
@@ -382,6 +382,15 @@ def notes_on(control: Interpreter, listing: ProgramText) -> list[str]:
         notes.append("The program has no M6; T alone is read as the change to that tool.")
     if control.other_lengths:
         notes.append(f"{lines_named(control.other_lengths)}: G43 takes the length of another tool.")
+    if path.unpecked:
+        notes.append(
+            f"{lines_named(path.unpecked)}: peck drilling has no depth of a peck (Q); the hole is the same, and "
+            "some controls refuse it."
+        )
+    if listing.asked:
+        notes.append(
+            f"{lines_named(listing.asked)}: a question to the control ($ or ?) is passed over, as it moves nothing."
+        )
     if listing.optional:
         notes.append(f"{lines_named(listing.optional)}: a line that a switch can leave out (/) is read.")
     unfed = [row[0] for row in control.path.rows if row[2] and row[6] <= 0.0]

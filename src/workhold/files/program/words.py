@@ -155,6 +155,10 @@ MACRO = re.compile(
 )
 HEIDENHAIN = re.compile(r"[ \t]*(?:[0-9]+[ \t]+)?(?:BEGIN PGM|TOOL CALL|BLK FORM|L [XYZ][+-]|CYCL DEF|CC X)")
 SIEMENS = re.compile(r"[ \t]*(?:N[0-9]+[ \t]*)?(?:CYCLE[0-9]+|MCALL|WORKPIECE|TRANS|ROT|POCKET[0-9]+|MSG)\b")
+# grbl's own lines. Questions to it, and the word that unlocks it, move nothing; $H sends all axes to the
+# machine's own ends, as G28 to its zero. What writes its settings ($100=250) is refused.
+QUESTION = re.compile(r"\?|\$(?:\$|#|G|I|N|X)?")
+HOMING = "$H"
 # The number of the switch may stand behind the slash.
 SWITCH = re.compile(r"[ \t]*/[0-9]?")
 CAPITALS = str.maketrans(ascii_lowercase, ascii_uppercase)
@@ -297,12 +301,14 @@ class ProgramText:
     blocks : those that have words; also those behind the end where a subprogram is called.
     comments : (line, text) of each.
     optional : lines that begin with a slash, which a switch of the machine can leave out.
+    asked : lines with questions to the control, which move nothing.
     behind : lines behind the end of the program, which are not read.
     """
 
     blocks: list[ProgramBlock] = field(repr=False)
     comments: list[tuple[int, str]] = field(repr=False)
     optional: list[int] = field(repr=False)
+    asked: list[int] = field(repr=False)
     behind: list[int] = field(repr=False)
 
 
@@ -316,7 +322,7 @@ def program_text(text: str) -> ProgramText:
     InputError
         Beginning with the number of the line that is none.
     """
-    found = ProgramText([], [], [], [])
+    found = ProgramText([], [], [], [], [])
     began = ended = is_closed = calls = False
     program: int | None = None
     program_line: int | None = None
@@ -334,6 +340,11 @@ def program_text(text: str) -> ProgramText:
         is_closed = ended
         if bare == "%":
             continue
+        if QUESTION.fullmatch(bare):
+            found.asked.append(line)
+            continue
+        if bare == HOMING:
+            code = "G28"
         if bare.startswith("/"):
             found.optional.append(line)
             code = SWITCH.sub("", code)
@@ -400,6 +411,11 @@ def refusal(code: str, written: str) -> str:
     ----------
     code, written : the line in capitals, and as it stands in the file.
     """
+    if code.lstrip().startswith("$"):
+        return (
+            f"'{excerpt(written)}' speaks to the control itself, and may set how far it moves: take it out, and "
+            "send it before the program."
+        )
     if HEIDENHAIN.match(code):
         return (
             "this is Heidenhain's plain language, not RS-274: post the program for an ISO control, such as "

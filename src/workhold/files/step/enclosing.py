@@ -37,6 +37,8 @@ __all__ = ["Enclosure", "enclosed_curves", "near_pieces"]
 Array = NDArray[np.float64]
 # How far in mm control points may be from the chord of a piece that is enclosed, and how many pieces, at most.
 SAFE, MOST_PIECES = 0.02, 4_000
+# More polygons than these are made anew, each time as many times coarser, at most so often.
+MANY, COARSER, AGAIN = 300, 8.0, 3
 # mm. A piece nearer to its chord is taken for that.
 FLAT = 2e-6
 # Cells along both directions of a free-form face where its folds are looked for, by what share boxes around
@@ -69,10 +71,10 @@ class Enclosure:
         self.polygons += other.polygons
         self.boxes = None
 
-    def add_points(self, points: Iterable[Point]) -> None:
-        """Adds the hull of some points; a line where it is as thin as one."""
+    def add_points(self, points: Iterable[Point], safe: float = SAFE) -> None:
+        """Adds the hull of some points, see :func:`few_corners`; a line where it is as thin as one."""
         every = list(points)
-        corners = few_corners(np.array(convex_hull(every)).reshape(-1, 2), every[0], every[-1])
+        corners = few_corners(np.array(convex_hull(every)).reshape(-1, 2), every[0], every[-1], safe)
         if len(corners) < 2 or float(np.hypot(*np.ptp(corners, axis=0))) <= SHORTEST:
             return
         start, end = np.array(every[0]), np.array(every[-1])
@@ -113,8 +115,13 @@ def is_within(point: Point, polygon: Array) -> bool:
     return bool((ahead[:, 0] * away[:, 1] - ahead[:, 1] * away[:, 0] >= 0.0).all())
 
 
-def few_corners(hull: Array, start: Point, end: Point) -> Array:
-    """A convex polygon (N, 2) around a hull with one corner, where that is near, on each side of a chord."""
+def few_corners(hull: Array, start: Point, end: Point, safe: float = SAFE) -> Array:
+    """A convex polygon (N, 2) around a hull with one corner, where that is near, on each side of a chord.
+
+    Parameters
+    ----------
+    safe : half of how far in mm the corner may be from the chord.
+    """
     ends = [k for k, corner in enumerate(hull.tolist()) if tuple(corner) in (start, end)]
     if len(ends) != 2 or len(hull) < 4:
         return hull
@@ -124,7 +131,7 @@ def few_corners(hull: Array, start: Point, end: Point) -> Array:
         apex = crossing_of(run[0], run[1], run[-1], run[-2]) if len(run) > 3 else None
         chord = run[-1] - run[0]
         size = float(np.hypot(*chord))
-        if apex is not None and abs(across(chord, apex - run[0])) <= 2 * SAFE * size:
+        if apex is not None and abs(across(chord, apex - run[0])) <= 2 * safe * size:
             along = float(chord @ (apex - run[0]))
             run = np.array([run[0], apex, run[-1]]) if 0.0 < along < size * size else run
         kept.append(run[:-1])
@@ -145,8 +152,12 @@ def crossing_of(a: Array, b: Array, c: Array, d: Array) -> Array | None:
     return np.asarray(a + one * across(c - a, other) / turn)
 
 
-def near_pieces(pieces: Pieces) -> Iterator[Array]:
+def near_pieces(pieces: Pieces, safe: float = SAFE) -> Iterator[Array]:
     """Control points (N, 2) of runs of a curve in running order, each near to its chord and ahead along it.
+
+    Parameters
+    ----------
+    safe : how far in mm they may be from it.
 
     Raises
     ------
@@ -154,9 +165,9 @@ def near_pieces(pieces: Pieces) -> Iterator[Array]:
         For a curve that takes too many.
     """
     run: Array | None = None
-    for control in small_pieces(pieces):
+    for control in small_pieces(pieces, safe):
         longer = control if run is None else np.concatenate([run, control[1:]])
-        if run is not None and not is_near_chord(longer):
+        if run is not None and not is_near_chord(longer, safe):
             yield run
             longer = control
         run = longer
@@ -164,7 +175,7 @@ def near_pieces(pieces: Pieces) -> Iterator[Array]:
         yield run
 
 
-def is_near_chord(control: Array) -> bool:
+def is_near_chord(control: Array, safe: float) -> bool:
     """Whether points (N, 2) are near to the chord of the first and the last, and run ahead along it."""
     chord = control[-1] - control[0]
     size = hypot(*chord)
@@ -172,16 +183,16 @@ def is_near_chord(control: Array) -> bool:
         return False
     away = control - control[0]
     along, off = away @ chord / size, np.abs(away @ np.array([-chord[1], chord[0]])) / size
-    return bool(off.max() <= SAFE and (np.diff(along) >= 0.0).all())
+    return bool(off.max() <= safe and (np.diff(along) >= 0.0).all())
 
 
-def small_pieces(pieces: Pieces) -> Iterator[Array]:
+def small_pieces(pieces: Pieces, safe: float) -> Iterator[Array]:
     """As :func:`near_pieces`, of each of a curve's pieces by itself."""
     waiting, found = [pieces[k : k + 1] for k in reversed(range(len(pieces)))], 0
     while waiting:
         piece = waiting.pop()
         control = piece[0, :, :2] / piece[0, :, 2:]
-        if is_near_chord(control):
+        if is_near_chord(control, safe):
             found += 1
             yield control
             continue
@@ -215,15 +226,15 @@ def enclosed_curves(
     InputError
         For curves that take too many pieces.
     """
-    found, known, boxes = Enclosure(), set[int](), list[Array]()
+    boxes = list[Array]()
     leaning = [*leaning_between(faces, low, high)]
     free = [k for k in leaning if any(isinstance(one, np.ndarray) for one in folds_of(k))]
     size = BOX * max(1.0, len(free) / FEW)
-    for edge in bounding_edges(faces, edges, low, high):
-        # Two faces have an edge, and it is enclosed once.
-        if edge.is_other and id(edge.curve) not in known:
-            known.add(id(edge.curve))
-            enclose_edge(found, edge.curve.Edge(), edge.points[:, :2])
+    # Two faces have an edge, and it is enclosed once.
+    others = {id(one.curve): one for one in bounding_edges(faces, edges, low, high) if one.is_other}
+    curves: list[tuple[Any, Array | None]] = [
+        (one.curve.Edge(), one.points[:, :2]) for one in others.values()
+    ]
     for index in leaning:
         face = faces[index]
         if index in free:
@@ -234,8 +245,15 @@ def enclosed_curves(
             if face.low < z < face.high and any(isinstance(one, np.ndarray) for one in level_cuts(face, z)):
                 plane = occ.gp_Pln(occ.gp_Pnt(0.0, 0.0, z), occ.gp_Dir(0.0, 0.0, 1.0))
                 section = occ.BRepAlgoAPI_Section(face.shape, plane)
-                for edge in sub_shapes(section.Shape(), "EDGE"):
-                    enclose_edge(found, edge, None)
+                curves += [(edge, None) for edge in sub_shapes(section.Shape(), "EDGE")]
+    safe = SAFE
+    for _ in range(AGAIN):
+        found = Enclosure()
+        for curve, points in curves:
+            enclose_edge(found, curve, points, safe)
+        if len(found.polygons) <= MANY:
+            break
+        safe *= COARSER
     # Of an edge that is in the slab in part the rest bounds nothing of it.
     found.polygons = [one for one in found.polygons if is_beside_some(one, is_there)] + boxes
     found.boxes = None
@@ -248,15 +266,17 @@ def is_beside_some(polygon: Array, is_there: Callable[[Point], bool]) -> bool:
     away = corners - polygon.mean(axis=0)
     size = np.hypot(*away.T)[:, None]
     places = corners + away / size * (SAFE + 0.1 * size)
-    return len({is_there((float(x), float(y))) for x, y in places}) == 2
+    first = is_there((float(places[0, 0]), float(places[0, 1])))
+    return any(is_there((float(x), float(y))) != first for x, y in places[1:])
 
 
-def enclose_edge(found: Enclosure, edge: Any, points: Array | None) -> None:
+def enclose_edge(found: Enclosure, edge: Any, points: Array | None, safe: float) -> None:
     """Adds what holds an edge.
 
     Parameters
     ----------
     points : (N, 2) along it, of which boxes are made where the library knows no curve of the edge.
+    safe : see :func:`near_pieces`.
     """
     try:
         pieces = edge_curve(edge)
@@ -268,8 +288,8 @@ def enclose_edge(found: Enclosure, edge: Any, points: Array | None) -> None:
             low, high = np.minimum(start, end) - wide, np.maximum(start, end) + wide
             found.polygons.append(np.array(corners_of(low, high)))
         return
-    for control in near_pieces(pieces):
-        found.add_points((float(x), float(y)) for x, y in control)
+    for control in near_pieces(pieces, safe):
+        found.add_points(((float(x), float(y)) for x, y in control), safe)
 
 
 def corners_of(low: Array, high: Array) -> list[Point]:

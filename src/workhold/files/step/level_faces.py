@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 
 from workhold.conventions import ALIGNED, SAME_HEIGHT, SHORTEST
 from workhold.errors import InputError
+from workhold.files.budget import LIMITS, Budget
 from workhold.files.outline.chain import Chain
 from workhold.files.outline.joining import closed_loop
 from workhold.files.step.enclosing import Enclosure, enclosed_curves, near_pieces
@@ -125,19 +126,22 @@ def level_tops(solid: StandingSolid) -> list[LevelTop]:
                 groups.append([face])
             else:
                 group.append(face)
-    lying = on_faces(lying_borders(solid))
-    found = (level_top(solid, group, lying) for group in groups)
+    lying, places = on_faces(lying_borders(solid)), Budget(LIMITS["tops"])
+    found = (level_top(solid, group, lying, places) for group in groups)
     return [top for top in found if top.open]
 
 
-def level_top(solid: StandingSolid, faces: Sequence[SolidFace], lies_on: Callable[[Point], bool]) -> LevelTop:
+def level_top(
+    solid: StandingSolid, faces: Sequence[SolidFace], lies_on: Callable[[Point], bool], places: Budget
+) -> LevelTop:
     """What is open of some upper faces of one height, with what rises beside them, and what of them hangs.
 
-    Nothing is open where what rises cannot be told.
+    Nothing is open where what rises cannot be told, or takes more than may be asked.
 
     Parameters
     ----------
     lies_on : whether a point is surely on a face on which the solid lies.
+    places : at how many it may still be asked what lies above and below.
     """
     height, box = faces[0].low, box_around(faces)
     face_borders = read_borders(faces)
@@ -149,7 +153,7 @@ def level_top(solid: StandingSolid, faces: Sequence[SolidFace], lies_on: Callabl
             open_ = region_of_faces(face_borders)
         else:
             is_on = on_faces(face_borders)
-            is_above = rises_above(solid, height, is_on)
+            is_above = rises_above(solid, height, is_on, places)
             bounds, cuts = bounds_between(solid, height, solid.height + 1.0, is_above)
             rising = region(bounds.lines, lambda point: bounds.holds(point) or is_above(point), cuts)
 
@@ -162,13 +166,13 @@ def level_top(solid: StandingSolid, faces: Sequence[SolidFace], lies_on: Callabl
                 open_ = region_of_faces(face_borders)
         if not open_:
             return nothing
-        return LevelTop(height, open_, rising, hanging_of(solid, open_, height, lies_on))
+        return LevelTop(height, open_, rising, hanging_of(solid, open_, height, lies_on, places))
     except InputError:
         return nothing
 
 
 def rises_above(
-    solid: StandingSolid, height: float, is_on: Callable[[Point], bool]
+    solid: StandingSolid, height: float, is_on: Callable[[Point], bool], places: Budget
 ) -> Callable[[Point], bool]:
     """Whether a solid has something above a height over a point, as a function.
 
@@ -177,10 +181,12 @@ def rises_above(
     Parameters
     ----------
     is_on : whether a point is surely on a level face of that height.
+    places : see :func:`level_top`.
     """
     are_above = solid.inside(height, solid.height + 1.0)
 
     def rises(point: Point) -> bool:
+        places.spend()
         if are_above([point])[0]:
             return True
         intervals = solid.material.intervals(point)
@@ -208,13 +214,17 @@ def bounds_between(
 
 
 def hanging_of(
-    solid: StandingSolid, open_: Sequence[Array], height: float, lies_on: Callable[[Point], bool]
+    solid: StandingSolid,
+    open_: Sequence[Array],
+    height: float,
+    lies_on: Callable[[Point], bool],
+    places: Budget,
 ) -> list[Array]:
     """The loops of what hangs of the open parts of upper faces of one height.
 
     Parameters
     ----------
-    lies_on : see :func:`level_top`.
+    lies_on, places : see :func:`level_top`.
 
     Raises
     ------
@@ -236,6 +246,7 @@ def hanging_of(
     rows = segment_rows(segments)
 
     def reaches_down(point: Point) -> bool:
+        places.spend()
         intervals = solid.material.intervals(point)
         if not intervals or intervals[0][1] < height - SAME_HEIGHT:
             return False
