@@ -57,7 +57,7 @@ def test_everything_of_the_sheet_can_be_given(walk: Walk) -> None:
         "30.000 mm",
         "8.000 mm",
         "6 mm m6 in H7",
-        "no G68",
+        "G21 G10 L2 P1 X-267.500 Y-66.000",
         "end up there?",
     ):
         assert words in sheet
