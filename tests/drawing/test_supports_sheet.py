@@ -258,4 +258,7 @@ def test_the_drawer_names_the_dowel_that_would_do() -> None:
         diameter, max(one for one in standouts(diameter) if one <= min(2 * diameter, HEIGHT))
     )
     assert would_do is not None
-    assert would_do.name in printed(sheet(result, thickness=HEIGHT))
+    words = [word for page in sheet(result, thickness=HEIGHT) for word in texts(page)]
+    row = words.index("3 locators")
+    assert words[row + 2] == would_do.name
+    assert words.count(would_do.name) == 1
