@@ -38,3 +38,22 @@ def test_names():
     assert unit_named("Inch") == unit_named(" in ") == INCH
     with pytest.raises(InputError, match="Unit 'ell' is not known: use mm, cm, m or inch"):
         unit_named("ell")
+
+
+def test_stresses_are_in_ksi_beside_pounds():
+    """1000 lbf on a square inch is 6.894757 MPa (NIST SP 811); MPa stand beside it, not in columns."""
+    assert INCH.stress_words(6.894757) == "1.0 ksi (7 MPa)"
+    assert INCH.stress_number(896.0) == "130.0"
+    assert MILLIMETRE.stress_words(896.0) == "896 MPa"
+
+
+def test_the_figure_of_stress_takes_the_unit_of_its_heading():
+    """A column headed ksi has no MPa under it."""
+    from workhold.model.quality import FIGURES, PIN_STRESS
+    from workhold.presenting.figure_words import figure_text, heading
+
+    stress = FIGURES[PIN_STRESS]
+    assert heading(stress, INCH).endswith("ksi") and figure_text(stress, 896.0, INCH) == "130.0"
+    assert (
+        heading(stress, MILLIMETRE).endswith("MPa") and float(figure_text(stress, 896.0, MILLIMETRE)) == 896
+    )

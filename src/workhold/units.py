@@ -13,6 +13,8 @@ __all__ = ["INCH", "MILLIMETRE", "PIXELS", "POUND", "Unit", "drawing_unit", "pix
 
 # N in a pound-force: 0.453 592 37 kg under 9.806 65 m/s2, both exact by definition (1959 and 1901).
 POUND = 0.45359237 * 9.80665
+# MPa in a thousand pound-force to the square inch (25.4 mm).
+KSI = 1000 * POUND / 25.4**2
 ROUNDING = 1e-9
 
 
@@ -111,6 +113,28 @@ class Unit:
         if self.newtons != 1:
             words = f"{moment / (12 * self.newtons * self.millimetres):.3g} ft {self.force} ({words})"
         return words.replace("-", "−")
+
+    @property
+    def pressure(self) -> str:
+        """The unit of stress that goes with the unit of force."""
+        return "MPa" if self.newtons == 1 else "ksi"
+
+    def stress_number(self, stress: float) -> str:
+        """A stress in MPa as a number of the unit of stress, for columns of a table.
+
+        >>> MILLIMETRE.stress_number(896.2), INCH.stress_number(896.2)
+        ('896', '130.0')
+        """
+        return f"{stress:.0f}" if self.newtons == 1 else f"{stress / KSI:.1f}"
+
+    def stress_words(self, stress: float) -> str:
+        """A stress in MPa in the unit of stress; where that is not the MPa, it stands beside.
+
+        >>> MILLIMETRE.stress_words(896.2), INCH.stress_words(896.2)
+        ('896 MPa', '130.0 ksi (896 MPa)')
+        """
+        beside = "" if self.newtons == 1 else f" ({MILLIMETRE.stress_words(stress)})"
+        return f"{self.stress_number(stress)} {self.pressure}{beside}"
 
     def force_above(self, force: float) -> str:
         """A force in N as a whole number of the unit of force, rounded up to stay on the safe side.

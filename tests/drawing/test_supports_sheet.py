@@ -15,7 +15,7 @@ from workhold.drawing.hardware_table import hardware_of
 from workhold.drawing.scene import LengthUnit
 from workhold.drawing.supports_drawn import counting_words
 from workhold.drawing.upper_side import side_up_words
-from workhold.model.dowel_lengths import dowel_for
+from workhold.model.dowel_lengths import dowel_for, standouts
 from workhold.model.first_side import FirstSide
 from workhold.model.setup import part_zero
 from workhold.model.solid import SolidOutline
@@ -248,3 +248,17 @@ def test_signs_are_explained_where_they_stand() -> None:
     ]
     for sign in ("support below the part", "clamp on top, presses down"):
         assert sign not in bare and sign in full
+
+
+def test_the_drawer_names_the_dowel_that_would_do() -> None:
+    """Of a part whose thickness is known and pegs' height is not: what stands beside the pegs stands there, too."""
+    result = result_of("plate", False)
+    diameter = result.toolkit.peg_diameter
+    would_do = dowel_for(
+        diameter, max(one for one in standouts(diameter) if one <= min(2 * diameter, HEIGHT))
+    )
+    assert would_do is not None
+    words = [word for page in sheet(result, thickness=HEIGHT) for word in texts(page)]
+    row = words.index("3 locators")
+    assert words[row + 2] == would_do.name
+    assert words.count(would_do.name) == 1

@@ -71,7 +71,7 @@ def test_sheets_tell_every_part_of_every_set_up(
         for one in setup.holdings:
             # In its cell and in its table.
             assert words.count(one.member.name) == 2
-            assert f"{one.fixture.pose.theta_deg:.4f}°" in words
+            assert f"{one.fixture.pose.written_deg:z.4f}°" in words
             assert loss_text(one.loss) in words
     assert next(shown, None) is None
     assert svg_to_pdf(pages, DAY)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from workhold import Workpiece
+from workhold.model.pose import Pose
 
 
 @pytest.mark.parametrize("turned", [0.0, 0.01, 1.0, 5.0])
@@ -23,3 +24,13 @@ def test_the_hull_edge_nearest_to_the_wall_is_told_of_any_orientation(turned: fl
     told = part.flush.number(some)
     assert (off[np.arange(500), told] <= off.min(axis=1) + 1e-12).all()
     assert set(told.tolist()) == set(range(6))
+
+
+def test_a_turn_is_written_clockwise_below_an_eighth() -> None:
+    """An eighth itself and more is counted on; next to a whole turn people write what is left of it."""
+    assert [Pose(turn, 0.0, 0.0).written_deg for turn in (314.0, 315.0, 316.0, 359.75)] == [
+        314.0,
+        315.0,
+        -44.0,
+        -0.25,
+    ]

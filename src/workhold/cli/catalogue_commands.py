@@ -178,7 +178,7 @@ def words_of_value(form: Form, value: Any, unit: Unit) -> str:
     if form == "count":
         return str(value)
     if form == "stress":
-        return f"{value:g} MPa"
+        return unit.stress_words(value)
     if form == "holes":
         return " ".join(holes.name for holes in value)
     if form == "directions":

@@ -172,7 +172,7 @@ def bending_words(result: Result, rank: int, unit: Unit, jaw_force: float | None
     if bent is None:
         return []
     of, mover = unit.abbreviation, result.toolkit.moving.noun
-    force, pressure = unit.force, "MPa"
+    force, pressure = unit.force, unit.pressure
     table = Table(
         (
             "peg",
@@ -193,8 +193,8 @@ def bending_words(result: Result, rank: int, unit: Unit, jaw_force: float | None
             f"{peg.force / unit.newtons:.0f}",
             unit.number(peg.deflection),
             unit.number(peg.worst_deflection),
-            f"{peg.stress:.0f}",
-            f"{peg.worst_stress:.0f}",
+            unit.stress_number(peg.stress),
+            unit.stress_number(peg.worst_stress),
         )
     error = result[rank - 1].figures.get("location_error")
     return [

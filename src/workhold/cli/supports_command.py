@@ -138,6 +138,7 @@ def supports(
     models = asked_models(glb, step, (result_file, part), force, support_height=support_height, part=part)
     raised = optional_length("--support-height", support_height, shown)
     result = result_with(result_file, rank)
+    printed = printed_unit(unit, result.toolkit)
     from workhold.supports.asking import requests_by_size, supported_by_size
 
     high = asked_thickness(True, thickness, result.workpiece, shown)
@@ -174,7 +175,6 @@ def supports(
             progress=lambda fraction: show(fraction, 0),
         )
     if found.triples and found.request.pad_radius < request.pad_radius:
-        printed = printed_unit(unit, result.toolkit)
         pad, tip = printed.text(found.request.pad_radius), printed.text(found.request.tip_radius)
         print_remark(f"the usual sizes find no place: the pads have a radius of {pad}, the tip one of {tip}.")
     helped = with_friction(found, count, coefficient)
@@ -189,13 +189,13 @@ def supports(
         if not found.triples:
             from workhold.supports.words import why_no_set
 
-            why = why_no_set(found, printed_unit(unit, result.toolkit))
+            why = why_no_set(found, printed)
             raise InputError(f"{why[:1].lower()}{why[1:]}")
         best, shape = ChosenSupports.of(found), shape_in(part, result.workpiece)
         assembly = Assembly.of(result[rank - 1], result, {"support_height": raised}, best, shape)
         write_bodies(assembly, models, shown)
     written = [path for path in (out, glb, step) if path is not None]
-    report(found, count, rank, written, printed_unit(unit, result.toolkit), json_, coefficient, helped)
+    report(found, count, rank, written, printed, json_, coefficient, helped)
     if found.stopped:
         raise typer.Exit(INTERRUPTED)
 

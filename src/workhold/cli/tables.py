@@ -17,6 +17,7 @@ from workhold.presenting.figure_words import (
     place_of,
     rounded,
     short_heading,
+    unit_of,
 )
 from workhold.units import MILLIMETRE, Unit
 
@@ -192,7 +193,7 @@ def quality_table(
     table = Table(("figure", ">value", "unit", "better", "meaning"))
     for figure in (*FIGURES, PROGRAM_FIGURE):
         if figure.key in fixture.quality:
-            of = unit.abbreviation if figure.unit == "mm" else figure.unit
+            of = unit_of(figure, unit)
             better = "more" if figure.more_is_better else "less"
             value = figure_text(figure, fixture.quality[figure.key], unit)
             words, meaning = figure.named_for(mover)

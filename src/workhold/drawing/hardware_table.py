@@ -7,7 +7,7 @@ from collections import Counter
 from attrs import frozen
 
 from workhold.drawing.panel import TextColumn
-from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, SheetHeights, heading
+from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, SheetHeights, heading, usual_dowel
 from workhold.fixels.contacts import CLAMP_TIP, WALL_END
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.dowel_lengths import dowel_for
@@ -43,7 +43,7 @@ def write_hardware(column: TextColumn, sheet: Sheet) -> None:
         [
             f"{item.count} {item.name}",
             "–" if item.diameter is None else lengths.short_number(item.diameter),
-            "–" if item.length is None else lengths.number(item.length),
+            length_words(item, sheet),
         ]
         for item in items
     ]
@@ -78,6 +78,15 @@ def write_hardware(column: TextColumn, sheet: Sheet) -> None:
         )
 
 
+def length_words(item: HardwareItem, sheet: Sheet) -> str:
+    """How long a thing is, or the dowel that would do for pegs of whose length nothing was said."""
+    if item.length is not None:
+        return sheet.lengths.number(item.length)
+    heights = sheet.heights
+    usual = usual_dowel(sheet, heights) if item.of_pegs and heights is not None else None
+    return "–" if usual is None else usual.name
+
+
 def pressed_up_to(sheet: Sheet, heights: SheetHeights) -> float | None:
     """The height in mm above which no peg presses, where pegs are as high as the part and need not be.
 
@@ -105,6 +114,7 @@ class HardwareItem:
     diameter : in mm; None of what is not round.
     length : of pegs, height of supports, in mm; None where nobody knows or where there is none.
     note : what else to know, in a few words.
+    of_pegs : whether they stand in holes of a plate, as dowels do.
     """
 
     count: int
@@ -112,6 +122,7 @@ class HardwareItem:
     diameter: float | None = None
     length: float | None = None
     note: str = ""
+    of_pegs: bool = False
 
 
 def hardware_of(
@@ -143,7 +154,7 @@ def hardware_of(
     kinds = Counter((c.peg, c.peg_radius, c.flat is not None) for c in pegs)
     for (name, radius, flat), count in kinds.items():
         note = "with a flat" if flat else ""
-        items.append(HardwareItem(count, plural(name, count), 2 * radius or None, peg_length, note))
+        items.append(HardwareItem(count, plural(name, count), 2 * radius or None, peg_length, note, True))
     if supports is not None:
         items.append(HardwareItem(3, "supports", *supports))
     clamps = [carrier for carrier, _ in placed if carrier.contact is CLAMP_TIP]

@@ -143,9 +143,19 @@ def write_bending(column: TextColumn, sheet: Sheet) -> None:
     assert bent is not None
     heading(column, f"{sheet.toolkit.plates[0].peg.capitalize()}s bend")
     at = bent.at_force(mover, lengths.unit)
-    header = ["", f"pressed at {lengths.sign}", f"gives way {lengths.sign}", "stress MPa"]
+    header = [
+        "",
+        f"pressed at {lengths.sign}",
+        f"gives way {lengths.sign}",
+        f"stress {lengths.unit.pressure}",
+    ]
     rows = [
-        [peg.hole, lengths.number(peg.height), lengths.number(peg.deflection), f"{peg.stress:.0f}"]
+        [
+            peg.hole,
+            lengths.number(peg.height),
+            lengths.number(peg.deflection),
+            lengths.unit.stress_number(peg.stress),
+        ]
         for peg in bent.pegs
     ]
     column.table(header, rows, BODY)

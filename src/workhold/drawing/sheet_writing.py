@@ -52,6 +52,7 @@ __all__ = [
     "inside_words",
     "lies_words",
     "peg_rows",
+    "usual_dowel",
     "write_dowel",
     "write_flats",
 ]

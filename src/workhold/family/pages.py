@@ -328,7 +328,7 @@ def table_row(one: Holding, titles: Titles) -> list[str]:
         *(number(setting.length) for setting in settings_of(fixture, one.member.query.toolkit)),
         number(x),
         number(y),
-        f"{fixture.pose.theta_deg:.4f}°",
+        f"{fixture.pose.written_deg:z.4f}°",
         number(one.figure) if titles.figure.unit == "mm" else f"{one.figure:.{titles.figure.decimals}f}",
         loss_text(one.loss),
         f"{one.number:,}{'′' if one.turned else ''}{'' if one.in_place else '*'}",

@@ -46,10 +46,10 @@ class Pose:
 
     @property
     def written_deg(self) -> float:
-        """The turn in degrees as people write it: up to an eighth of a turn clockwise is a negative angle.
+        """The turn in degrees as people write it: less than an eighth of a turn clockwise is a negative angle.
 
-        >>> Pose(359.75, 0.0, 0.0).written_deg, Pose(270.0, 0.0, 0.0).written_deg
-        (-0.25, 270.0)
+        >>> Pose(359.75, 0.0, 0.0).written_deg, Pose(315.0, 0.0, 0.0).written_deg
+        (-0.25, 315.0)
         """
         return self.theta_deg - 360.0 if self.theta_deg > 315.0 else self.theta_deg
 

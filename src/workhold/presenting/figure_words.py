@@ -105,6 +105,8 @@ def heading(figure: Figure, unit: Unit) -> str:
 
 def unit_of(figure: Figure, unit: Unit) -> str:
     """The unit in which a figure is shown."""
+    if figure.unit == "MPa":
+        return unit.pressure
     return unit.abbreviation if figure.unit == "mm" else figure.unit
 
 
@@ -122,6 +124,8 @@ def figure_text(figure: Figure, value: float, unit: Unit) -> str:
     """Formats a figure's value as a number of its unit; in words where it is infinite or not known."""
     if not isfinite(value):
         return "-" if isnan(value) else "none" if figure.key == "reading" else "any"
+    if figure.unit == "MPa":
+        return unit.stress_number(value)
     # A caliper reads hundredths of a millimetre.
     decimals = unit.decimals - 1 if figure.key in SHORT else unit.decimals + 1
     return unit.number(value, decimals) if figure.unit == "mm" else rounded(value, figure.decimals)

@@ -151,7 +151,10 @@ def refuse_unseated(toolkit: Toolkit) -> None:
     if not toolkit.closes_at_once:
         raise InputError(f"{words} of one clamp: with two the part is put against its locators by hand.")
     if all(plate.travel is not None for plate in toolkit.plates):
-        raise InputError(f"{words} where some pegs stand still, and no peg of this result stands still.")
+        still = (
+            "the flat jaw stands still, and both pegs move" if WALL_END in toolkit.contacts else "all move"
+        )
+        raise InputError(f"{words} where some pegs stand still; here {still}.")
     if toolkit.has_flats:
         raise InputError(f"{words} of round pegs: those of this result have flats.")
     if min(carrier.peg_radius for carrier in toolkit.carriers if carrier.contact.is_placed) <= 0.0:

@@ -108,7 +108,7 @@ class BentPegs:
         return (
             f"{at[0].upper()}{at[1:]} {most.hole} gives way most, by "
             f"{unit.text(most.deflection)} (at worst {unit.text(self.worst.worst_deflection)}), and {hardest.hole} "
-            f"is bent hardest, to {hardest.stress:.0f} MPa; that moves the part by up to "
+            f"is bent hardest, to {unit.stress_words(hardest.stress)}; that moves the part by up to "
             f"{unit.text(self.movement)}{beside}."
         )
 
@@ -123,9 +123,9 @@ class BentPegs:
         if self.is_overbent:
             peg = self.hardest
             found.append(
-                f"{peg.hole} is bent to {peg.stress:.0f} MPa by {unit.force_words(peg.force)} "
+                f"{peg.hole} is bent to {unit.stress_words(peg.stress)} by {unit.force_words(peg.force)} "
                 f"{unit.text(peg.height, 1 if unit.millimetres == 1 else 2)} above its plate, more than the "
-                f"{self.stress_limit:.0f} MPa that a pin should take: use thicker or shorter pegs, or a smaller "
+                f"{unit.stress_words(self.stress_limit)} that a pin should take: use thicker or shorter pegs, or a smaller "
                 f"{mover} force."
             )
         if self.gives_way:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from math import hypot
 from typing import Any
@@ -148,15 +149,9 @@ def carriers_answer(seen: Shown, fixture: Fixture) -> list[dict[str, Any]]:
     ends = [(one.setting, [list(high) for _, high in one.axes]) for one in seen.measured]
     measured = {setting.carrier.name: axes for setting, axes in ends if setting.tip is None}
     of_clamps = [axes for setting, axes in ends if setting.tip is not None]
-    names = [peg.carrier for peg in fixture.pegs]
-
-    def numbers_on(carrier: Carrier) -> list[int]:
-        return [number for number, name in enumerate(names) if name == carrier.name]
-
-    # Two clamps that push the same way are one carrier.
-    tips = {
-        name: iter([number for number, other in enumerate(names) if other == name]) for name in set(names)
-    }
+    numbers = defaultdict[str, list[int]](list)
+    for number, peg in enumerate(fixture.pegs):
+        numbers[peg.carrier].append(number)
 
     lattices: list[dict[str, Any]] = [
         {
@@ -168,7 +163,7 @@ def carriers_answer(seen: Shown, fixture: Fixture) -> list[dict[str, Any]]:
             **body_answer(each.plate),
             "hole_radius": each.hole_radius,
             "names_at": each.names_at,
-            "pegs": numbers_on(each.carrier),
+            "pegs": numbers[each.carrier.name],
             "peg_radius": each.carrier.peg_radius,
             "flat": None if each.carrier.flat is None else each.carrier.flat.distance,
             "flats": [peg.flat_deg for peg in each.pegs],
@@ -185,7 +180,7 @@ def carriers_answer(seen: Shown, fixture: Fixture) -> list[dict[str, Any]]:
         {
             **lattice_of_none(each.carrier),
             **body_answer(each.bar),
-            "pegs": numbers_on(each.carrier),
+            "pegs": numbers[each.carrier.name],
             "peg_radius": 0.0,
             "clamping": None,
             "measured": None,
@@ -197,7 +192,8 @@ def carriers_answer(seen: Shown, fixture: Fixture) -> list[dict[str, Any]]:
         {
             **lattice_of_none(each.carrier),
             **body_answer(each.room),
-            "pegs": [next(tips[each.carrier.name])],
+            # Two clamps that push the same way are one carrier: each takes the next of its tips.
+            "pegs": [numbers[each.carrier.name].pop(0)],
             "peg_radius": each.carrier.peg_radius,
             "clamping": each.clamping,
             "measured": axes if is_reached(each) else None,
