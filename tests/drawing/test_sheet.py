@@ -13,6 +13,7 @@ from sheet_reading import collisions, distance, page_of, words_of
 from svg_reading import by_class, scale_bar_of, texts, to_model
 
 from fakes import fake_result
+from workhold import design
 from workhold.conventions import NEAR_EDGE, STRONG_PEG, WEAK_CLOSURE
 from workhold.drawing.scene import UNITS_PER_MM, Box, LengthUnit
 from workhold.drawing.sheet import draw_sheet, standard_scale
@@ -276,6 +277,28 @@ def test_tangent_joints_are_no_edges() -> None:
     """With the left corner rounded, the left contacts are as far from an edge as the far corners of their sides."""
     near = 20 - (23 * sqrt(2) - 20) / sqrt(2)
     assert edge_distances(*diamond(rounded=True)) == pytest.approx([40 - near, 40 - near, near, near])
+
+
+def test_a_part_without_edges_has_no_distance_from_one() -> None:
+    """The figure is then a length that only stands for none; a part with corners keeps its own."""
+    turn = sqrt(2) - 1
+    rounded = [
+        (5.0, 0.0),
+        (35.0, 0.0, turn),
+        (40.0, 5.0),
+        (40.0, 25.0, turn),
+        (35.0, 30.0),
+        (5.0, 30.0, turn),
+        (0.0, 25.0),
+        (0.0, 5.0, turn),
+    ]
+    square = [(0.0, 0.0), (40.0, 0.0), (40.0, 30.0), (0.0, 30.0)]
+    for loop, has_none in ((rounded, True), (square, False)):
+        part = Workpiece.from_loops("part", [[(*point, 0.0)[:3] for point in loop]])
+        result = design(part, Vise(pitch=(10.0, 10.0), columns=2, peg_radius=3.0))
+        pages = draw_sheet(result[0], part, result.toolkit, DETAILS)
+        written = {words for page in pages for words, _ in words_of(page)}
+        assert ("no edge there" in written) == has_none
 
 
 def test_cautions_name_what_is_close_weak_or_strong() -> None:
