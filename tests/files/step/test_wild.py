@@ -32,7 +32,7 @@ from workhold import load
 from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece
 from workhold.files.step.heights import measures, standing
-from workhold.files.step.level_faces import bottom_loops, top_loops
+from workhold.files.step.level_faces import bottom_loops, level_tops
 from workhold.files.step.library import sub_shapes
 from workhold.geometry.loop import loop_segments, signed_area
 
@@ -74,7 +74,7 @@ def figures(shape: Any, high: float, scale: float = 1.0) -> list[float]:
     area, border, touchable, band = measures(outline)
     level = [
         sum(signed_area(loop_segments(loop)) for loop in loops)
-        for loops in (bottom_loops(solid), [loop for loop, _ in top_loops(solid)])
+        for loops in (bottom_loops(solid), [loop for top in level_tops(solid) for loop in top.open])
     ]
     lengths = [border / scale, touchable / scale, band / scale, len(outline.loops)]
     return [area / scale**2, *lengths, *(one / scale**2 for one in level)]
