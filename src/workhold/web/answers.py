@@ -152,6 +152,8 @@ def carriers_answer(seen: Shown, fixture: Fixture) -> list[dict[str, Any]]:
     numbers = defaultdict[str, list[int]](list)
     for number, peg in enumerate(fixture.pegs):
         numbers[peg.carrier].append(number)
+    # Two clamps that push the same way are one carrier: each takes the next of its tips.
+    tips = {name: iter(of) for name, of in numbers.items()}
 
     lattices: list[dict[str, Any]] = [
         {
@@ -192,8 +194,7 @@ def carriers_answer(seen: Shown, fixture: Fixture) -> list[dict[str, Any]]:
         {
             **lattice_of_none(each.carrier),
             **body_answer(each.room),
-            # Two clamps that push the same way are one carrier: each takes the next of its tips.
-            "pegs": [numbers[each.carrier.name].pop(0)],
+            "pegs": [next(tips[each.carrier.name])],
             "peg_radius": each.carrier.peg_radius,
             "clamping": each.clamping,
             "measured": axes if is_reached(each) else None,
