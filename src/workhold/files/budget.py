@@ -31,7 +31,7 @@ STEP_SECONDS, STEP_SECONDS_PER_MILLION = 12.0, 2.0
 
 
 class OverBudgetError(InputError):
-    """A file asks for more than its reader may take; no reader goes on after it."""
+    """A file asks for more than its reader may take; only level faces of solids go on, without the rest."""
 
     @staticmethod
     def is_behind(error: BaseException | None) -> bool:
