@@ -66,9 +66,10 @@ def draw_sheet(
     bench = bench_of(fixture, workpiece, toolkit)
     details = details if details.zero else evolve(details, zero=part_zero(workpiece))
     lengths = LengthUnit.suiting(details.unit, bench.shown.pitch)
-    cautions = cautions_of(fixture, toolkit, edge_distances(fixture, workpiece, toolkit), details, lengths)
+    distances = edge_distances(fixture, workpiece, toolkit)
+    cautions = cautions_of(fixture, toolkit, distances, details, lengths)
     heights = heights_of(fixture, workpiece, toolkit, details)
-    sheet = Sheet(fixture, workpiece, toolkit, details, lengths, tuple(cautions), heights)
+    sheet = Sheet(fixture, workpiece, toolkit, details, lengths, tuple(cautions), tuple(distances), heights)
     figure = figure_of(sheet, bench)
     zero = sheet.zero_place
     near = bench.extent.grown(NEAR * bench.shown.pitch)

@@ -10,7 +10,6 @@ from workhold.drawing.panel import TextColumn, draw_legend, fixture_words, pegs_
 from workhold.drawing.program_picture import write_program
 from workhold.drawing.scene import BLACK, LengthUnit, degrees_text, shortened, text_width, wrapped
 from workhold.drawing.seats import write_seating, write_wrong_seats
-from workhold.drawing.sheet_facts import edge_distances
 from workhold.drawing.sheet_setting import CLAMPS, OPENING, write_counting, write_pegs
 from workhold.drawing.sheet_writing import BODY, NOTE, Block, MovingBlocks, Sheet, Writer, heading
 from workhold.drawing.supports_drawn import draw_pad, draw_tip, support_steps, write_heights, write_supports
@@ -55,7 +54,9 @@ def write_quality(column: TextColumn, sheet: Sheet) -> None:
             continue
         match figure.unit:
             # The figure is then the length that stands for no edge, which nobody can measure on the part.
-            case "mm" if figure.key == FIGURES[EDGE_DISTANCE].key and not has_edges(sheet):
+            case "mm" if figure.key == FIGURES[EDGE_DISTANCE].key and not any(
+                map(isfinite, sheet.edge_distances)
+            ):
                 words = "no edge there"
             case "mm":
                 words = sheet.lengths.words(value)
@@ -73,11 +74,6 @@ def write_quality(column: TextColumn, sheet: Sheet) -> None:
         column.paragraph(f"Location error: {allowed}.", NOTE)
     if sheet.details.why_first:
         column.paragraph(sheet.details.why_first, NOTE)
-
-
-def has_edges(sheet: Sheet) -> bool:
-    """Whether a face that is touched ends at an edge or another face; a whole circle does not."""
-    return any(map(isfinite, edge_distances(sheet.fixture, sheet.workpiece, sheet.toolkit)))
 
 
 def load_words(load: Load, lengths: LengthUnit) -> str:

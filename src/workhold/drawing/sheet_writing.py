@@ -204,6 +204,7 @@ class Sheet:
     fixture, workpiece, toolkit, details : what it is of, and what does not follow from these.
     lengths : how lengths are written.
     cautions : what to beware of.
+    edge_distances : of the contacts from edges, in mm; infinite where there are none.
     heights : those that are known; None where nobody knows how thick the part is.
     zero_shown, origin_shown : whether these are on the plan.
     """
@@ -214,6 +215,7 @@ class Sheet:
     details: SheetDetails
     lengths: LengthUnit
     cautions: tuple[Caution, ...]
+    edge_distances: tuple[float, ...]
     heights: SheetHeights | None = None
     zero_shown: bool = True
     origin_shown: bool = True
