@@ -177,6 +177,7 @@ class Budget:
         # Only this thread's time counts: the machine may be busy, and other threads may read other files.
         self.started = time.thread_time()
         self.elements = 0
+        self.letters = 0
         self.steps = 0
         self.depth = 0
 
@@ -196,6 +197,26 @@ class Budget:
                 f"have: {self.limits.remedy}."
             )
         self.work(elements)
+
+    def count_letters(self, letters: int, label: str) -> None:
+        """Counts letters of a text that is part of a file.
+
+        Parameters
+        ----------
+        label : the text, in words that begin a sentence.
+
+        Raises
+        ------
+        InputError
+            Where there are more than such a file may have bytes.
+        """
+        self.letters += letters
+        most = self.limits.most_bytes
+        if most is not None and self.letters > most:
+            raise OverBudgetError(
+                f"{label} has more than the {most:,} letters that {self.limits.what} may have: "
+                f"{self.limits.remedy}."
+            )
 
     def work(self, steps: int = 1) -> None:
         """Counts steps of work that are no elements, such as comparisons; only time limits them.

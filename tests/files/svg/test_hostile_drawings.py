@@ -44,6 +44,10 @@ def nested(count: int, inner: str) -> str:
         ),
         ("<style>" + "@media all{" * 300 + "</style>", "is nested more than 10 levels deep"),
         ("<style>" + "rect{}" * 100_000 + "</style>", "more than the 500,000 letters"),
+        (
+            ("<style>" + "rect{}" * 45_000 + "</style>\n") * 2,
+            "style sheet on line 2 has more than the 500,000 letters that the style sheets",
+        ),
         ("<style>" + "rect," * 20_000 + "g{fill:red}</style>", "more than the 20,000 selectors"),
         ("<style>:not(g rect){fill:red}</style>", r"the selector ':not\(g rect\)', which is not read"),
         ("<style>[*|a]{fill:red}</style>", r"the selector '\[\*\|a\]', which is not read"),

@@ -377,9 +377,9 @@ class Sheets:
 
     def __init__(self, budget: Budget) -> None:
         self.budget = budget
-        self.selectors = SelectorMatcher(Budget(LIMITS["style"]))
+        self.style = Budget(LIMITS["style"])
+        self.selectors = SelectorMatcher(self.style)
         self.rules: list[tuple[Block, Block]] = []
-        self.letters = 0
 
     def read(self, text: str, place: str) -> None:
         """Adds the rules of a style sheet.
@@ -389,8 +389,7 @@ class Sheets:
         InputError
             For rules that are not read and could change an outline, and for very many.
         """
-        self.letters += css_letters(text)
-        refuse_long_style(self.letters, place)
+        self.style.count_letters(css_letters(text), place)
         self.add(tokens_of(text, place, self.budget), place)
 
     def add(self, tokens: list[Any], place: str, counts: bool = True) -> bool:
@@ -444,16 +443,6 @@ def css_letters(text: str) -> int:
     return len(text) if len(text) <= LONGEST else len(EMBEDDED.sub("", text))
 
 
-def refuse_long_style(letters: int, place: str) -> None:
-    """Refuses more CSS than a drawing has, which takes seconds to read; raises InputError."""
-    limits = LIMITS["style"]
-    if letters > (limits.most_bytes or 0):
-        raise InputError(
-            f"{place} has more than the {limits.most_bytes:,} letters that {limits.what} may have: "
-            f"{limits.remedy}."
-        )
-
-
 def tokens_of(text: str, place: str, budget: Budget) -> list[Any]:
     """The tokens of CSS.
 
@@ -461,15 +450,16 @@ def tokens_of(text: str, place: str, budget: Budget) -> list[Any]:
     """
     import tinycss2
 
-    refuse_long_style(css_letters(text), place)
+    style = Budget(LIMITS["style"])
+    style.count_letters(css_letters(text), place)
     budget.work(1 + len(text) // 16)
     try:
         tokens: list[Any] = tinycss2.parse_component_value_list(text)
     except ValueError as error:  # whole numbers of thousands of digits
         raise InputError(f"{place} has a number that cannot be read: correct it.") from error
-    level, nesting = tokens, Budget(LIMITS["style"])
+    level = tokens
     while level := [inner for token in level for inner in inner_tokens(token)]:
-        nesting.enter(lambda: f"a bracket of {place}")
+        style.enter(lambda: f"a bracket of {place}")
     return tokens
 
 
