@@ -3,31 +3,40 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from itertools import pairwise
 from math import cos, hypot, pi, radians, sin, sqrt
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 pytest.importorskip("OCP", reason="the extra 'step' is not installed")
 
+from OCP.BRep import BRep_Builder
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder, BRepPrimAPI_MakeSphere, BRepPrimAPI_MakeTorus
+from OCP.GC import GC_MakeArcOfCircle, GC_MakeSegment
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
-from step_shapes import box, cut, cylinder, fused, write_step
+from OCP.TopoDS import TopoDS_Solid
+from step_shapes import box, cut, cylinder, fused, prism, write_step
 from typer.testing import CliRunner
 
 from band_truth import band_faults, mirrored, placed, runs_beside, unlike
-from solid_examples import cone, tilted
+from solid_examples import cone, cross_drilled, polygon, tilted
 from workhold import Vise, design, load
 from workhold.cli.main import app
 from workhold.errors import InputError
+from workhold.files.step.bands import branches_of
 from workhold.files.step.by_height import HeightView, shapes_by_height
-from workhold.files.step.heights import HeightOutline, height_table, standing
-from workhold.files.step.library import along
+from workhold.files.step.heights import HeightOutline, height_table, longest, standing
+from workhold.files.step.library import along, occ, sub_shapes
+from workhold.files.step.projected import OtherCurveError, ProjectedCurves
 from workhold.geometry.loop import loop_segments
-from workhold.model.solid import run_at
+from workhold.geometry.segment import Arc, Line, segment_from_bulge
+from workhold.geometry.subdivision import BorderPiece, CutCarrier
+from workhold.model.solid import HeightRow, run_at
 
 
 def sloped(body: Any, z: float, rise: float, across: float = 0.0) -> Any:
@@ -62,6 +71,19 @@ def ramp() -> Any:
         sloped(box(60, 40, 60), 12, 0.5),
         cut(box(200, 60, 90, (-10, -5, -60)), tilted((0, 0, 2), (-0.5, 0, 1), (1, 0, 0.5))),
     )
+
+
+def profile(*points: tuple[float, float]) -> Any:
+    """A body 40 mm wide over a polygon of places along it and heights; it runs along y."""
+    return along(polygon(points, 40), "y")
+
+
+def pad(corners: Sequence[tuple[float, float]], arc: Arc) -> Any:
+    """A body 42 mm wide over places along it and heights, whose last corner an arc joins to the one before."""
+    ends = [gp_Pnt(x, z, 0) for x, z in corners]
+    sides = [GC_MakeSegment(a, b).Value() for a, b in pairwise([ends[-1], *ends[:-1]])]
+    round_side = GC_MakeArcOfCircle(ends[-2], gp_Pnt(*arc.middle, 0), ends[-1]).Value()
+    return along(prism([*sides, round_side], 42), "y")
 
 
 SOLIDS: dict[str, Callable[[], Any]] = {
@@ -151,6 +173,111 @@ def test_a_rim_that_rises_far_is_halved_alike_from_its_lowest_point() -> None:
     assert any(strip.start == pytest.approx((20.0, 20.0), abs=1e-6) for strip in strips)
 
 
+def test_what_is_steep_all_along_is_a_jump() -> None:
+    """A step of 20 mm that leans by 0.02 mm: walls end where it begins, and are not halved on towards it."""
+    solid = standing(profile((0, 0), (60, 0), (60, 10), (17.02, 10), (17, 30), (0, 30)))
+    sides = [strip for strip in solid.outline().loops[0] if strip.start[0] == strip.end[0]]
+    found = sorted((*sorted((strip.start[1], strip.end[1])), *(strip.band or ())) for strip in sides)
+    expected = [(0, 17, 0, 30)] * 2 + [(17, 17.02, 0, 10)] * 2 + [(17.02, 60, 0, 10)] * 2
+    assert found == [pytest.approx(one, abs=1e-6) for one in expected]
+
+
+def test_a_bore_above_the_pegs_cuts_nothing() -> None:
+    """Its upright tangents are jumps where pegs reach them, and none below."""
+    bored = standing(cut(box(60, 40, 50), across(30, 30, 10)))
+    assert [strip.band for strip in bored.outline(15.0, 25.0).loops[0]] == [(0.0, 15.0)] * 4
+    assert len(bored.outline(31.0).loops[0]) > 4
+
+
+def test_a_wall_over_a_sloping_underside_is_touched_as_far_as_pegs_reach_up_to_it() -> None:
+    """Its edge passes the height of the pegs well before that of what is kept free above them."""
+    lid = cut(box(60, 40, 40), tilted((0, 0, 5), (1 / 3, 0, -1), (1, 0, 1 / 3)))
+    solid = standing(fused(box(60, 30, 40, (0, 10, 0)), lid))
+    touched = [
+        (*sorted((strip.start[0], strip.end[0])), strip.band)
+        for strip in solid.outline(12.0, 30.0).loops[0]
+        if strip.band and max(abs(strip.start[1]), abs(strip.end[1])) < 1e-6
+    ]
+    assert min(low for low, _, _ in touched) == pytest.approx(0.0, abs=1e-6)
+    # Wherever at least 1 mm of the wall is lower than 12 mm: where its edge is below 11.
+    assert max(high for _, high, _ in touched) == pytest.approx(18.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_wall_that_is_just_long_enough_between_the_points_of_its_edge(sign: float) -> None:
+    """Between a rising line and an arc over it, farthest or nearest at no point of the arc that is looked at."""
+    arc = segment_from_bulge((40.0, 12.0), (10.0, 12.0), 0.15 * sign)
+    assert isinstance(arc, Arc)
+    body = fused(box(40, 60, 30), pad([(10, 5), (40, 5.3), (40, 12), (10, 12)], arc))
+    # The arc runs along the line where it has its slope.
+    across, up = 0.01 / hypot(1.0, 0.01), 1.0 / hypot(1.0, 0.01)
+    x, z = arc.center[0] - sign * arc.radius * across, arc.center[1] + sign * arc.radius * up
+    apart = z - (5 + 0.01 * (x - 10))
+    outline = standing(body).outline(least_band=apart - 5e-4 * sign)
+    for place, is_touched in ((x, sign > 0), (x - 3, sign < 0), (x + 3, sign < 0)):
+        (band,) = (
+            strip.band
+            for strip in outline.loops[0]
+            if strip.start[0] == strip.end[0] == 42.0
+            and min(strip.start[1], strip.end[1]) < place < max(strip.start[1], strip.end[1])
+        )
+        assert (band is not None) == is_touched, place
+
+
+def test_a_step_back_that_is_rounding_ends_no_branch() -> None:
+    """Points beside a turn of an edge may come in the other order."""
+    assert list(branches_of(np.array([0.0, 1.0, 1.0 - 1e-12, 2.0]), ())) == [(0, 3)]
+    assert list(branches_of(np.array([0.0, 1.0, 0.9, 2.0]), ())) == [(0, 1), (1, 2), (2, 3)]
+
+
+@pytest.mark.parametrize(("gap", "band"), [(8e-7, (0.0, 30.0)), (2e-6, (10.000002, 30.0))])
+def test_a_gap_of_a_wall_counts_from_a_millionth_on(gap: float, band: tuple[float, float]) -> None:
+    """A slot that is narrower than 1e-6 mm leaves one run."""
+    solid = standing(cut(box(60, 40, 30), box(20, 6, gap, (20, -1, 10))))
+    (found,) = {
+        strip.band
+        for strip in solid.outline().loops[0]
+        if strip.start[1] == strip.end[1] == 0.0 and strip.start[0] < 30 < strip.end[0]
+    }
+    assert found == pytest.approx(band, abs=1e-9)
+
+
+def test_a_face_that_lies_on_a_wall_takes_nothing_off_its_run() -> None:
+    """As in files with a shell too many: it reaches from 5 to 15, the wall under it up to 30."""
+    builder, solid = BRep_Builder(), TopoDS_Solid()
+    builder.MakeSolid(solid)
+    for body in (box(60, 40, 30), box(20, 10, 10, (20, 0, 5))):
+        shells = occ.TopExp_Explorer(body, occ.TopAbs_SHELL)
+        builder.Add(solid, shells.Current())
+    assert set(standing(solid).outline().bands) == {(0.0, 30.0)}
+
+
+@pytest.mark.parametrize(
+    ("block", "touching"),
+    [
+        (box(60, 40, 30), cylinder(5, 20, (20, 35, 12), (1, 0, 0))),
+        (box(70, 50, 12), cylinder(6, 50, (35, 25, 6), (1, 0, 0))),
+    ],
+)
+def test_a_line_within_a_face_ends_no_run(block: Any, touching: Any) -> None:
+    """Of a body that touches a face from within, an edge is left on that which bounds nothing."""
+    marked = fused(block, touching)
+    assert any(edge.Orientation() == occ.TopAbs_INTERNAL for edge in sub_shapes(marked, "EDGE"))
+    solid = standing(marked)
+    walls = {strip.band for strip in solid.outline().loops[0] if not strip.bulge and strip.band}
+    assert (0.0, solid.height) in walls and list(band_faults(marked, solid.outline())) == []
+
+
+def test_of_neighbours_with_the_same_band_but_for_rounding_both_are_covered() -> None:
+    """A ridge that is off the middle by 5e-6 mm: the halves beside it are one segment, as high as the lower."""
+    solid = standing(profile((0, 0), (64, 0), (64, 10), (32.000005, 30), (0, 10)))
+    lower = 10 + 16 * 20 / 32.000005
+    found = [strip.band for strip in solid.outline().loops[0] if strip.start[0] == strip.end[0]]
+    assert [band for band in found if band and abs(band[1] - lower) < 1e-4] == [
+        (0.0, pytest.approx(lower, abs=1e-8))
+    ] * 2
+
+
 def test_no_band_bridges_a_bore() -> None:
     """Over a bore a peg touches below it and above, and the band is one of both, covered throughout."""
     solid = standing(eye())
@@ -196,9 +323,10 @@ def sub(strip: Any) -> tuple[float, float]:
     return strip.end[0] - strip.start[0], strip.end[1] - strip.start[1]
 
 
-def test_the_run_at_a_contact_is_the_walls_own() -> None:
-    """What a file keeps along a segment is the run that an upright line finds there."""
-    solid = standing(eye())
+@pytest.mark.parametrize("name", ["eye", "bores of all heights"])
+def test_the_run_at_a_contact_is_the_walls_own(name: str) -> None:
+    """What a file keeps along a segment is the run that an upright line finds there, below a bore or above it."""
+    solid = standing(SOLIDS[name]())
     outline = solid.outline()
     segments = [segment for loop in outline.vertices for segment in loop_segments(loop)]
     looked = 0
@@ -210,7 +338,7 @@ def test_the_run_at_a_contact_is_the_walls_own() -> None:
             (x, y), (nx, ny) = (
                 function(segment.half_extent * (2 * share - 1)) for function in (segment.at, segment.normal)
             )
-            runs = runs_beside(solid.shape, (x - 1e-5 * nx, y - 1e-5 * ny), 0.0, 50.0)
+            runs = runs_beside(solid.shape, (x - 1e-5 * nx, y - 1e-5 * ny), 0.0, 60.0)
             (run,) = (one for one in runs if one[0] <= band[0] + 1e-4 and band[1] <= one[1] + 1e-4)
             assert run_at(rows, share) == pytest.approx(run, abs=1e-4)
             looked += 1
@@ -301,6 +429,41 @@ def test_a_row_begins_where_a_growing_band_is_long_enough() -> None:
         (19.5, 21.0, 0.0),
         (21.0, 25.0, pytest.approx(280.0)),
     ]
+
+
+def test_a_row_begins_where_walls_over_an_arch_are_long_enough() -> None:
+    """An arch of 18 mm: from 19 on the wall over it is touched all along."""
+    rows = height_table(standing(SOLIDS["tunnel"]()), 0.5, 1.0)
+    assert (rows[-1].low, rows[-1].high, rows[-1].touchable) == (19.0, 30.0, pytest.approx(220.0))
+    assert rows[-2].high == 19.0 and rows[-2].touchable < 219.9
+
+
+def test_of_rows_that_touch_as_much_the_highest_pegs_are_named() -> None:
+    rows = [
+        HeightRow(low, low + 5.0, 10.0, 20.0, touch, 1.0) for low, touch in ((0, 7), (5, 9), (10, 9), (15, 8))
+    ]
+    assert longest(rows) == rows[2] == longest(rows[::-1])
+
+
+def test_a_part_is_as_high_as_its_level_face() -> None:
+    """The library's boxes of other faces are higher by 1e-7 mm."""
+    solid = standing(cross_drilled())
+    assert solid.height == 20.0 < max(face.high for face in solid.faces)
+
+
+def test_an_outline_that_does_not_close_is_laid_to_the_face_that_leans() -> None:
+    """And not to the flat one that it cuts."""
+    solid = standing(SOLIDS["cone into a side"]())
+    kinds = [face.kind for face in solid.faces]
+    carrier = CutCarrier(Line((0.0, 0.0), (9.0, 0.0)), [(-4.5, 4.5)])
+    pieces = [BorderPiece(carrier, -4.5, 4.5, True)]
+    points = np.zeros((3, 2))
+    flat, leaning = next(k for k, kind in enumerate(kinds) if kind == "wall"), kinds.index("cone")
+    others = ((flat, points), (leaning, points))
+    with pytest.raises(OtherCurveError, match="neither line nor arc: a cone at heights"):
+        solid.closed(pieces, ProjectedCurves((), (), others))
+    with pytest.raises(InputError, match="does not close at"):
+        solid.closed(pieces, ProjectedCurves((), (), ()))
 
 
 @pytest.mark.parametrize("aside", [2e-5, 1e-6, 3e-4, -2e-5, 0.0])

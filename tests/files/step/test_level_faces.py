@@ -23,7 +23,7 @@ from OCP.GC import GC_MakeSegment
 from OCP.GeomAPI import GeomAPI_PointsToBSpline
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
 from OCP.TopAbs import TopAbs_Orientation
-from step_shapes import box, cut, cylinder, fused, prism
+from step_shapes import box, cut, cylinder, filleted, fused, prism
 
 import workhold
 from workhold import Plate, load
@@ -205,6 +205,28 @@ def test_line_within_a_face_bounds_nothing() -> None:
     touching = fused(box(70, 50, 12), cylinder(6, 50, (35, 25, 6), (1, 0, 0)))
     (top,) = [one for one in level_tops(standing(touching)) if one.height == 12.0]
     assert area(top.open) == pytest.approx(3500.0)
+
+
+def test_faces_that_are_level_with_each_other_but_for_rounding_hide_nothing_of_each_other() -> None:
+    """Beside a boss one half of a plate is higher by 4e-6 mm: both are open, and neither rises above the other."""
+    plate = fused(box(30, 40, 20 + 4e-6), box(60, 40, 20), box(10, 10, 30, (5, 5, 0)))
+    tops = level_tops(standing(plate))
+    assert [(round(top.height, 4), area(top.open), area(top.rising)) for top in tops] == [
+        (20.0, pytest.approx(2300.0), pytest.approx(100.0)),
+        (30.0, pytest.approx(100.0), 0.0),
+    ]
+
+
+def test_what_lies_but_for_rounding_hangs_not_and_what_only_runs_into_the_plane_does() -> None:
+    """One half of a foot is 4e-6 mm up and lies; over a bore across, and a fillet that ends in the foot, it hangs."""
+    uneven = cut(
+        box(60, 40, 20), box(30, 40, 10, (0, 0, 4e-6 - 10)), cylinder(4, 100, (45, -20, 10), (0, 1, 0))
+    )
+    (top,) = level_tops(standing(uneven))
+    assert (area(top.open), area(top.hanging)) == (pytest.approx(2400.0), pytest.approx(8 * 40.0))
+    rounded = filleted(box(60, 40, 20), 5, lambda low, high: max(high[0], high[2]) < 1e-6)
+    (top,) = level_tops(standing(rounded))
+    assert (area(top.open), area(top.hanging)) == (pytest.approx(2400.0), pytest.approx(5 * 40.0))
 
 
 def tilted_rings(count: int) -> Any:

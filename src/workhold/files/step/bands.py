@@ -95,21 +95,19 @@ class WallEdge:
         if edge.high - edge.low <= ONE_HEIGHT:
             return cls(edge, segment, tuple(branches_of(along(segment, edge.points), ())), frozenset())
         edge, upright = turned_at(edge, segment)
-        steep = frozenset(
-            k
-            for k, parameter in enumerate(edge.parameters.tolist())
-            if k in (0, last) or parameter in upright
-            if abs(slopes(edge, segment, parameter)[0]) <= STEEP
-        )
+        steep = frozenset(k for k, one in enumerate(edge.parameters.tolist()) if one in upright)
         return cls(edge, segment, tuple(branches_of(along(segment, edge.points), steep)), steep)
 
-    def cuts(self, low: float, high: float) -> Iterator[Point]:
-        """Points at which an outline is to be cut: ends of branches, and where the edge passes two heights."""
+    def cuts(self, high: float) -> Iterator[Point]:
+        """Points at which an outline is to be cut: ends of branches, and where the edge passes a height.
+
+        Where it passes the lower end of the heights of pegs the outline is cut in any case.
+        """
         points = self.edge.points
         if self.is_level:
             return
         yield from ((float(points[k, 0]), float(points[k, 1])) for one in self.branches for k in one)
-        yield from (*self.edge.crossings(low), *self.edge.crossings(high))
+        yield from self.edge.crossings(high)
 
 
 def along(segment: Segment, points: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -156,7 +154,7 @@ def slopes(edge: EdgeCurve, segment: Segment, parameter: float) -> tuple[float, 
 
 
 def turned_at(edge: EdgeCurve, segment: Segment) -> tuple[EdgeCurve, frozenset[float]]:
-    """An edge with points wherever it turns, and the parameters at which it may be steep.
+    """An edge with points wherever it turns, and the parameters at which it is steep or turns back.
 
     Its direction is looked at rather than its points: one that turns between its last two points, as a closed
     edge does that begins near its lowest point, shows nothing of that by its points.
@@ -277,19 +275,21 @@ class Branch:
 
     def refined(self, k: int, place: float) -> float:
         """The z in mm at which a curved edge passes a place between its points k and k + 1."""
-        at, carrier, near = self.edge.curve.Value, self.carrier, float(self.places[k])
+        # One point of the library for all: making one takes longer than finding it.
+        point, carrier, near = occ.gp_Pnt(), self.carrier, float(self.places[k])
+        find, x_of, y_of = self.edge.curve.D0, point.X, point.Y
         if isinstance(carrier, Line):
             (px, py), (tx, ty) = carrier.middle, carrier.tangent
 
             def value(parameter: float) -> float:
-                point = at(parameter)
-                return float((point.X() - px) * tx + (point.Y() - py) * ty - place)
+                find(parameter, point)
+                return float((x_of() - px) * tx + (y_of() - py) * ty - place)
 
         else:
 
             def value(parameter: float) -> float:
-                point = at(parameter)
-                found = carrier.parameter((point.X(), point.Y()))
+                find(parameter, point)
+                found = carrier.parameter((x_of(), y_of()))
                 return near + (found - near + pi) % tau - pi - place
 
         ends = [(float(self.parameters[j]), float(self.places[j]) - place) for j in (k, k + 1)]
@@ -344,7 +344,7 @@ class End:
             is_steep and abs(float(place) - position) <= slack
             for place, is_steep in zip(places, self.branch.steep, strict=True)
         )
-        return steep and self.low + ONE_HEIGHT < self.branch.at(beside + self.turn) < self.high - ONE_HEIGHT
+        return steep and self.low < self.branch.at(beside + self.turn) < self.high
 
 
 @frozen(eq=False)
@@ -521,7 +521,7 @@ class Walls:
 
     def cuts(self) -> list[tuple[Segment, Point]]:
         """Points at which an outline is to be cut, because the runs there may change."""
-        return [(one.segment, point) for one in self.upright for point in one.cuts(self.low, self.high)]
+        return [(one.segment, point) for one in self.upright for point in one.cuts(self.high)]
 
     def ends(self) -> Iterator[tuple[Segment, Point]]:
         """Where level edges end: a subdivision that has the edges themselves is cut there."""

@@ -155,11 +155,13 @@ def edge_curves(faces: Sequence[SolidFace]) -> list[EdgeCurve]:
         same.append((edge, next(fresh)))
         return same[-1][1]
 
+    # Where another body touched a face from within the library leaves an edge on it that bounds nothing.
+    borders = occ.TopAbs_FORWARD, occ.TopAbs_REVERSED
     edges = [
         (index, edge, number_of(edge))
         for index, face in enumerate(faces)
         for edge in sub_shapes(face.shape, "EDGE")
-        if not occ.BRep_Tool.Degenerated_s(edge)
+        if not occ.BRep_Tool.Degenerated_s(edge) and edge.Orientation() in borders
     ]
     carriers = {index: wall_carrier(face) for index, face in enumerate(faces) if face.lie == "upright"}
     walls = {number: carriers[index] for index, _, number in edges if carriers.get(index) is not None}

@@ -358,7 +358,7 @@ def smoothed(loop: Sequence[BorderPiece]) -> Array:
 
 def continues(before: BorderPiece, after: BorderPiece) -> bool:
     """Whether a piece goes on along the same line or circle."""
-    return before.carrier is after.carrier and before.forward == after.forward
+    return before.carrier is after.carrier
 
 
 def sweep(run: Sequence[BorderPiece]) -> float:

@@ -238,6 +238,10 @@ class Material:
     # none was.
     reached: dict[tuple[Point, float], tuple[float, float]] = field(init=False, factory=dict)
     classifier: Any = field(init=False, default=None)
+    # The library's upright line and a point of it, moved from place to place: making others takes as long as
+    # asking a face.
+    foot: Any = field(init=False)
+    upward: Any = field(init=False)
 
     def __attrs_post_init__(self) -> None:
         self.flat, others = PlaneFaces.of(self.faces, self.edges)
@@ -246,6 +250,8 @@ class Material:
         self.meeting = [occ.IntCurvesFace_Intersector(face.shape, ON_FACE) for face in met]
         self.boxes = np.array([(*face.box, face.low, face.high) for face in met]).reshape(-1, 6)
         self.below = min(face.low for face in self.faces) - 1.0
+        self.foot = occ.gp_Pnt()
+        self.upward = occ.gp_Lin(self.foot, occ.gp_Dir(0.0, 0.0, 1.0))
 
     def intervals(self, point: Point, near: Sequence[int] | None = None) -> list[tuple[float, float]]:
         """The intervals of the upright line through a point (x, y), from the lowest up.
@@ -294,7 +300,9 @@ class Material:
         key = point, index
         if key not in self.hits:
             face = self.meeting[index]
-            face.Perform(occ.gp_Lin(occ.gp_Pnt(*point, self.below), occ.gp_Dir(0.0, 0.0, 1.0)), -1.0, 1e7)
+            self.foot.SetCoord(*point, self.below)
+            self.upward.SetLocation(self.foot)
+            face.Perform(self.upward, -1.0, 1e7)
             met = range(1, face.NbPnt() + 1) if face.IsDone() else ()
             self.hits[key] = [self.below + face.WParameter(k) for k in met]
         return self.hits[key]
