@@ -30,11 +30,11 @@ from workhold.cli.main import app
 from workhold.errors import InputError
 from workhold.files.step.bands import branches_of
 from workhold.files.step.by_height import HeightView, shapes_by_height
-from workhold.files.step.heights import HeightOutline, height_table, longest, standing
+from workhold.files.step.heights import HeightOutline, height_table, longest, measures, standing
 from workhold.files.step.library import along, occ, sub_shapes
 from workhold.files.step.projected import OtherCurveError, ProjectedCurves
 from workhold.geometry.loop import loop_segments
-from workhold.geometry.segment import Arc, Line, segment_from_bulge
+from workhold.geometry.segment import Arc, Line, line_circle, segment_from_bulge
 from workhold.geometry.subdivision import BorderPiece, CutCarrier
 from workhold.model.solid import HeightRow, run_at
 
@@ -213,15 +213,22 @@ def test_a_wall_that_is_just_long_enough_between_the_points_of_its_edge(sign: fl
     across, up = 0.01 / hypot(1.0, 0.01), 1.0 / hypot(1.0, 0.01)
     x, z = arc.center[0] - sign * arc.radius * across, arc.center[1] + sign * arc.radius * up
     apart = z - (5 + 0.01 * (x - 10))
-    outline = standing(body).outline(least_band=apart - 5e-4 * sign)
+    least = apart - 5e-4 * sign
+    outline = standing(body).outline(least_band=least)
     for place, is_touched in ((x, sign > 0), (x - 3, sign < 0), (x + 3, sign < 0)):
-        (band,) = (
-            strip.band
+        (strip,) = (
+            strip
             for strip in outline.loops[0]
             if strip.start[0] == strip.end[0] == 42.0
             and min(strip.start[1], strip.end[1]) < place < max(strip.start[1], strip.end[1])
         )
-        assert (band is not None) == is_touched, place
+        assert (strip.band is not None) == is_touched, place
+    if sign < 0:
+        # What is long enough up to there is halved at its middle.
+        line = Line((10.0, 5.0 + least), (40.0, 5.3 + least))
+        end = min(y for y, _ in line_circle(line, arc.center, arc.radius))
+        middles = [strip.start[1] for strip in outline.loops[0] if strip.start[0] == 42.0]
+        assert min(y for y in middles if y > 10.0) == pytest.approx((10.0 + end) / 2, abs=1e-6)
 
 
 def test_a_step_back_that_is_rounding_ends_no_branch() -> None:
@@ -449,6 +456,28 @@ def test_a_part_is_as_high_as_its_level_face() -> None:
     """The library's boxes of other faces are higher by 1e-7 mm."""
     solid = standing(cross_drilled())
     assert solid.height == 20.0 < max(face.high for face in solid.faces)
+
+
+def test_outlines_that_are_kept_are_those_of_all_that_was_asked() -> None:
+    """Other heights, head rooms and lower ends make others, and so does what is told of the silhouette."""
+    body = fused(box(60, 40, 8), box(84, 60, 2, (-12, -10, 8)), box(44, 26, 12, (6, 8, 10)))
+    solid = standing(body)
+    foot, flange, stem = 60 * 40, 84 * 60, 44 * 26
+    for _ in range(2):
+        for expected, asked in (
+            (foot, (5.0, 0.5, 1.0)),
+            (flange, (18.0, 0.5, 1.0)),
+            (stem, (18.0, 0.5, 1.0, 11.0)),
+            (flange, (7.75, 0.5, 1.0)),
+            (foot, (7.75, 0.0, 1.0)),
+        ):
+            assert measures(solid.outline(*asked))[0] == pytest.approx(expected), asked
+    assert any(solid.outline(5.0, 0.5, 1.0).bands) and not any(solid.outline(5.0, 0.5, 6.0).bands)
+    feet = standing(cut(box(60, 40, 20), box(20, 60, 10, (20, -5, 0))))
+    first = [strip.covered[0].piece.carrier.segment for strip in feet.outline(6.0).loops[0]]
+    for _ in range(2):
+        assert len(feet.outline(5.0, silhouette=first).loops) == 1
+        assert len(feet.outline(5.0).loops) == 2
 
 
 def test_an_outline_that_does_not_close_is_laid_to_the_face_that_leans() -> None:

@@ -209,7 +209,8 @@ def test_line_within_a_face_bounds_nothing() -> None:
 
 def test_faces_that_are_level_with_each_other_but_for_rounding_hide_nothing_of_each_other() -> None:
     """Beside a boss one half of a plate is higher by 4e-6 mm: both are open, and neither rises above the other."""
-    plate = fused(box(30, 40, 20 + 4e-6), box(60, 40, 20), box(10, 10, 30, (5, 5, 0)))
+    stepped = cut(box(60, 40, 20 + 4e-6), box(40, 60, 5, (-10, -5, 20)))
+    plate = fused(stepped, box(10, 10, 30, (5, 5, 0)))
     tops = level_tops(standing(plate))
     assert [(round(top.height, 4), area(top.open), area(top.rising)) for top in tops] == [
         (20.0, pytest.approx(2300.0), pytest.approx(100.0)),
