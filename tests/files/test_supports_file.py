@@ -132,12 +132,18 @@ def thin(entry: dict[str, Any]) -> None:
     entry["toolkit"]["peg_radius"] = -3.0
 
 
+def foreign(entry: dict[str, Any]) -> None:
+    """A part in other units."""
+    entry["workpiece"]["units"] = "inch"
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [
         (negative, "tip radius -4 cannot be used: give a length above 0"),
         (elsewhere, "a support stands on 'table': give plate"),
-        (thin, "peg"),
+        (thin, "peg radius -3"),
+        (foreign, "workpiece.units cannot be used"),
     ],
 )
 def test_what_is_wrong_is_named_with_the_file_once(

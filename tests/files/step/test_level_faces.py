@@ -29,7 +29,7 @@ import workhold
 from workhold import Plate, load
 from workhold.files.budget import LIMITS
 from workhold.files.step.heights import standing
-from workhold.files.step.level_faces import bottom_loops, level_tops
+from workhold.files.step.level_faces import bottom_loops, level_tops, region
 from workhold.files.step.library import along, sub_shapes
 from workhold.files.supports_file import read_supports, write_supports
 from workhold.geometry.loop import loop_segments, signed_area
@@ -228,6 +228,23 @@ def test_what_lies_but_for_rounding_hangs_not_and_what_only_runs_into_the_plane_
     rounded = filleted(box(60, 40, 20), 5, lambda low, high: max(high[0], high[2]) < 1e-6)
     (top,) = level_tops(standing(rounded))
     assert (area(top.open), area(top.hanging)) == (pytest.approx(2400.0), pytest.approx(5 * 40.0))
+
+
+def test_a_loop_around_nearly_nothing_is_no_part_of_a_region() -> None:
+    """As polygons beside each other may leave it: less than anything stands on, a millionth of a square millimetre."""
+    square = [
+        loop_segments(np.array([(x, y, 0.0) for x, y in corners]))
+        for corners in (
+            [(0, 0), (10, 0), (10, 10), (0, 10)],
+            [(20, 0), (20 + 5e-4, 0), (20 + 5e-4, 5e-4), (20, 5e-4)],
+            [(30, 0), (30.01, 0), (30.01, 0.01), (30, 0.01)],
+        )
+    ]
+    rows = segment_rows([segment for one in square for segment in one])
+    loops = region(
+        [segment for one in square for segment in one], lambda point: bool(is_inside(*point, rows))
+    )
+    assert [area([loop]) for loop in loops] == pytest.approx([100.0, 1e-4])
 
 
 def tilted_rings(count: int) -> Any:
