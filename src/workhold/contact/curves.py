@@ -18,18 +18,22 @@ from workhold.kernels.base.tables import (
     CENTER,
     END_STRETCH,
     FIRST_STRETCH,
-    FROM,
     HEAD,
+    NEAR_FROM,
+    NEAR_TO,
     SHIFT,
     TAIL,
-    TO,
     Curves,
+    NearSpots,
     SlidingPairs,
 )
 from workhold.kernels.chord.coincidences import are_concentric
 from workhold.kernels.curves.table import tail_curves
 
 __all__ = ["CurveTable", "LatticeSteps", "center_numbers", "curve_table", "joined", "loosened"]
+
+# Rules nothing out.
+EVERYWHERE = NearSpots(np.zeros(1, np.int64), np.zeros((0, 0), np.int8), np.zeros((0, 0, 0), np.int8))
 
 
 @define(frozen=True, eq=False)
@@ -67,10 +71,11 @@ class CurveTable:
 
     @cached_property
     def spans(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """The orientations (N,) in radians from and to which curves exist, the former in [0, 2 pi)."""
+        """The orientations (N,) in radians from and to which curves are of interest, the former in
+        [0, 2 pi)."""
         reals = self.curves.reals
-        first = (reals[:, FROM] - reals[:, SHIFT]) % tau
-        return first, first + (reals[:, TO] - reals[:, FROM])
+        first = (reals[:, NEAR_FROM] - reals[:, SHIFT]) % tau
+        return first, first + (reals[:, NEAR_TO] - reals[:, NEAR_FROM])
 
     @cached_property
     def sorted_spans(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -104,6 +109,7 @@ def curve_table(
     threads: int = 1,
     cancel: Event | None = None,
     centers: NDArray[np.int64] | None = None,
+    near: NearSpots = EVERYWHERE,
 ) -> CurveTable:
     """Chord curves between (F, 10) loosened feature rows, or those with their tails on some features.
 
@@ -112,12 +118,13 @@ def curve_table(
     threads : how many threads share the work; the outcome does not depend on it.
     cancel : when set, curves whose turn has not come are left out.
     centers : as of ``center_numbers``, for who asks again and again.
+    near : leaves out what no locators of interest touch.
     """
     centers = center_numbers(rows) if centers is None else centers
 
     def curves_from(tail: int) -> tuple[NDArray[Any], ...]:
         few = steps if cancel is None or not cancel.is_set() else steps.none
-        return tail_curves(tail, rows, centers, few.lengths, few.starts, few.steps, few.angles)
+        return tail_curves(tail, rows, centers, few.lengths, few.starts, few.steps, few.angles, near)
 
     parts = made_by_threads(curves_from, range(len(rows)) if tails is None else tails, threads)
     before = 0

@@ -17,9 +17,18 @@ import numpy as np
 
 from workhold.kernels.base import distance
 from workhold.kernels.base.feature import SEGMENT_LENGTH
-from workhold.kernels.base.tables import Curves, Features, Lattice, Limits, Setting, SlidingPairs
+from workhold.kernels.base.tables import (
+    Curves,
+    Features,
+    Lattice,
+    Limits,
+    NearSpots,
+    Precision,
+    Setting,
+    SlidingPairs,
+)
 from workhold.kernels.chord.coincidences import are_concentric
-from workhold.kernels.contact import clamp_pairs, contact_matrix, quality, seats
+from workhold.kernels.contact import clamp_pairs, contact_matrix, location_bounds, quality, seats
 from workhold.kernels.contact.record import WORK_LENGTH
 from workhold.kernels.curves import block_work, sliding_pairs, table, three_and_one, two_and_two
 from workhold.kernels.proof import canonical_form, interval_newton, merging, newton_kantorovich
@@ -60,6 +69,7 @@ OUTLINE.setflags(write=False)
 # Arrays of which kernels ask something before they know that there is nothing to do.
 ONE, FOUR, SQUARE = np.zeros(1, np.int64), np.zeros(4), np.zeros((4, 4))
 LATTICE, LIMITS = Lattice(1.0, 1.0, 0.0), Limits(1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0)
+PRECISION, NEAR = Precision(NUMBERS, LINE, LINE, ROWS, 0.0, 0.0, 1.0, 1.0), NearSpots(ONE, FLAGGED, np.zeros((0, 0, 0), np.int8))
 PEGS, SIDES, PIECES = np.zeros((4, 2)), np.zeros(4, np.int64), np.zeros((2, 2), np.int64)
 GIVEN = Given(ROWS, WHOLE, ROWS, ROWS, PEGS, SIDES, PIECES)
 AROUND = Obstacles(ROWS, ROWS, ROWS, PEGS, SIDES, PIECES, 1.0, 0.0, ROWS, np.zeros(3))
@@ -69,7 +79,7 @@ Calls = Iterator[tuple[Callable[..., Any], tuple[Any, ...]]]
 
 def crossings_and_pairs() -> Calls:
     """The kernels of crossings and sliding pairs, which take longest."""
-    features, curves = Features(ROWS, ROWS, (0, 0), (0, 0)), Curves(WHOLE, ROWS, ROWS)
+    features, curves = Features(ROWS, ROWS, (0, 0), (0, 0), PRECISION, NEAR), Curves(WHOLE, ROWS, ROWS)
     given = (features, curves, LATTICE, LIMITS, False, np.zeros(block_work.STATISTICS, np.int64))
     for cells in (two_and_two.two_and_two_cells, three_and_one.three_and_one_cells):
         yield cells, (np.zeros(1), NUMBERS, *given)
@@ -87,7 +97,9 @@ def matrices_and_figures() -> Calls:
 
 def table_and_proof() -> Calls:
     """Most of the kernels that come before and after the search."""
-    yield table.tail_curves, (0, np.zeros((1, SEGMENT_LENGTH)), ONE, LINE, NUMBERS, WHOLE, LINE)
+    yield table.tail_curves, (0, np.zeros((1, SEGMENT_LENGTH)), ONE, LINE, NUMBERS, WHOLE, LINE, NEAR)
+    yield location_bounds.join_near_spots, (ROWS, 0, 1.0, PRECISION, NEAR, NUMBERS)
+    yield location_bounds.least_middle_error, (ROWS, 0, PRECISION)
     setting, work = Setting(LATTICE, LIMITS, 0.0, 0.0, 0.0), (np.zeros((WORK_LENGTH, 4)), np.zeros((2, 4, 2)))
     yield newton_kantorovich.certified, (ROWS, ROWS, OUTLINE, ROWS, setting, ROWS, FLAGS, *work)
     yield merging.merge_boxes, (ROWS, ROWS, NUMBERS, NUMBERS)

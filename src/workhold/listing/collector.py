@@ -181,6 +181,14 @@ class BestFixtures:
             self.margin = max(float(table.quality[chosen, CLOSURE_MARGIN].min()) - MARGIN_SLACK, 0.0)
         return everything.take(chosen)
 
+    @property
+    def found_keys(self) -> OrderKeys:
+        """The keys of those kept."""
+        self.decide()
+        assert self.kept is not None
+        table = measured(placed(self.kept, self.problem), self.problem)
+        return order_keys(table, self.problem.query, self.effective)
+
     def rules_out(self, bound: OrderKeys) -> bool:
         """Whether nothing that has no less than one bound is among the best: so many were decided already
         that some of them are dropped."""

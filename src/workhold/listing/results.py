@@ -148,12 +148,15 @@ def with_table(result: Result, collector: ResultCollector, progress: Progress | 
     return result if len(table) == sum(result.found.values()) else result.cut_short(len(table))
 
 
-def best_result(kept: BestFixtures, work: Work, is_part: bool = False) -> Result:
+def best_result(
+    kept: BestFixtures, work: Work, is_part: bool = False, is_limited: bool = False
+) -> Result:
     """The result of a search for the best fixtures only; of a part of one, all that may be among the best.
 
-    How many fixtures there are in all is not known: those that could not be among the best were not examined.
+    Where the search ``is_limited``, some were not even looked for. How many fixtures there are in all is not known: those that could not be among the best were not examined.
     """
     candidates, account = kept.finished()
+    kept.has_dropped |= is_limited
     result = result_of(kept.problem, candidates, account, work, is_part)
     if kept.has_dropped and not is_part:
         # Only those that are listed are counted.
@@ -242,6 +245,10 @@ class RankedTable:
             keys = order_keys(together, query, self.effective)
             chosen = keys.kept(most)
             self.tables, self.known = [together.take(chosen)], keys.take(chosen)
+
+    def keys_of(self, table: FixtureTable) -> OrderKeys:
+        """The keys of some fixtures that are not measured yet."""
+        return order_keys(measured_as(table, self.query, self.touched), self.query, self.effective)
 
     @property
     def keys(self) -> OrderKeys:

@@ -190,12 +190,14 @@ class ClampedSeats:
     ----------
     query : what is asked, in a toolkit with two clamps.
     problem : the search of one of its directions, for what all have in common.
+    is_limited : whether only fixtures without a warning are of interest.
     looked_at, seats, pairs : how many seats there were; how many, by pair of directions, two clamps close; in
         how many ways.
     """
 
     query: Query
     problem: Problem
+    is_limited: bool = False
     toolkit: Toolkit = field(init=False)
     hardware: Hardware = field(init=False)
     ranked: RankedTable = field(init=False)
@@ -232,6 +234,11 @@ class ClampedSeats:
         every = self.query.listing == "all"
         rows = pairs_of(seats.spans, half, seats.clamps, self.hardware, every)
         if self.turns_half and (rows[:, OPEN] != 0.0).any():
+            if self.query.best is not None and not every:
+                rows = self.of_interest(rows, seats)
+                kept = np.zeros(len(seats), np.bool_)
+                kept[rows[:, SEAT].astype(np.int64)] = True
+                half[~kept] = -1
             seats = self.sharpened(seats, rows[rows[:, OPEN] != 0.0])
             rows = pairs_of(seats.spans, half, seats.clamps, self.hardware, every)
         is_open = rows[:, OPEN] != 0.0
@@ -240,6 +247,19 @@ class ClampedSeats:
         self.pairs += int(rows[:, COUNT].sum())
         self.seats += len(np.unique(rows[:, SEAT] * len(self.toolkit.arrangements) + rows[:, KIND]))
         self.ranked.add(self.table_of(rows, seats))
+
+    def of_interest(self, rows: Array, seats: Seats) -> Array:
+        """The pairs (N, 10) of seats that may be among the best.
+
+        A pair that is open hardly closes. So it is not the best of a seat that has another, and has a warning.
+        """
+        seat, is_open = rows[:, SEAT].astype(np.int64), rows[:, OPEN] != 0.0
+        known, has_one = rows[~is_open], np.zeros(len(seats), np.bool_)
+        has_one[seat[~is_open]] = True
+        wanted = ~has_one & (not self.is_limited)
+        wanted[seat[~is_open][~self.ranked.beaten(self.ranked.keys_of(self.table_of(known, seats)), 0)]] = True
+        self.ranked.has_dropped |= not wanted[seat].all()
+        return rows[wanted[seat]]
 
     def sharpened(self, seats: Seats, rows: Array) -> Seats:
         """Seats whose clamps of some pairs (N, 10) have their reactions to the last digit."""

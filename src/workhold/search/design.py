@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from functools import partial
+from functools import partial, reduce
+from math import inf
 from threading import Event
 
 import numpy as np
@@ -22,9 +23,10 @@ from workhold.kernels.base.feature import IS_ARC
 from workhold.kernels.curves.block_work import CONTACTS
 from workhold.limits import counting_number, thread_count
 from workhold.listing.collector import BestFixtures, ResultCollector
-from workhold.listing.ranking import figure_keys
+from workhold.listing.ranking import OrderKeys, figure_keys
 from workhold.listing.results import (
     MEASURED,
+    Work,
     best_result,
     collected_result,
     joined_ways,
@@ -40,10 +42,27 @@ from workhold.model.search_report import left_notes, no_fixture_notes, no_place_
 from workhold.model.workpiece import Workpiece
 from workhold.search.broken_rules import line_in_the_way
 from workhold.search.cells import run_blocks
-from workhold.search.lattice_shares import LatticeShares
+from workhold.search.lattice_shares import LatticeShares, problems_of
+from workhold.search.error_limits import (
+    ErrorLimit,
+    LocatorSpots,
+    can_limit_errors,
+    is_enough,
+    next_limit,
+)
 from workhold.search.seated import Sink, seated_answer
-from workhold.search.shares import Preview, Previews, answer_in_shares, best_first, has_body_to_pass, work_of
-from workhold.search.toolkit_search import ToolkitSearch, contacts_of
+from workhold.search.shares import (
+    LIMITED_FROM,
+    Preview,
+    Previews,
+    answer_in_shares,
+    best_first,
+    has_body_to_pass,
+    limited_work,
+    one_clamp,
+    work_of,
+)
+from workhold.search.toolkit_search import ToolkitSearch, contacts_of, lattice_steps
 from workhold.statics.judging import unfit
 
 __all__ = ["Explored", "Sink", "answer", "design", "explore", "first_choice"]
@@ -176,6 +195,10 @@ def answer(
         from workhold.search.wall_shares import WallShares
 
         return deliver(answer_in_shares(WallShares.of(query, cancel), progress, cancel), sink)
+    if can_limit_errors(query) and is_large(query):
+        result = best_answer(query, workers, progress, cancel, preview)
+        if result is not None:
+            return deliver(result, sink)
     if query.toolkit.travels > 1:
         with LatticeShares.of(query, workers, cancel) as shares:
             return deliver(answer_in_shares(shares, progress, cancel, preview), sink)
@@ -188,6 +211,86 @@ def answer(
         part = evolve(query, toolkit=way)
         results.append(answer_of_a_way(part, workers, share, cancel, preview, is_part=True))
     return deliver(joined_ways(results, query), sink)
+
+
+def is_large(query: Query) -> bool:
+    """Whether so much is to be searched that limits of the location error are worth their while."""
+    problem = Problem.of(one_clamp(query, query.toolkit.ways[0]))
+    first, end = problem.standing
+    steps = lattice_steps((problem.frame.standing,), problem.diameter).steps
+    return len(steps) * (end - first) ** 2 > LIMITED_FROM
+
+
+def best_answer(
+    query: Query, threads: int, progress: Progress | None, cancel: Event | None, preview: Preview | None
+) -> Result | None:
+    """The best fixtures, found by limits of the location error; None where every one has to be looked at."""
+    is_paired = query.toolkit.travels > 1
+    problems = (
+        problems_of(query)
+        if is_paired
+        else [Problem.of(evolve(query, toolkit=way)) for way in query.toolkit.ways]
+    )
+    spots = [LocatorSpots.of(problem) for problem in problems[: 1 if is_paired else None]]
+    most, number = min(one.first for one in spots), 0
+    search_up_to = paired_up_to if is_paired else ways_up_to
+    while most < inf:
+        share, number = stage(progress, 1.0 - 0.5**number, 1.0 - 0.5 ** (number + 1)), number + 1
+        limits = [one.limit(most) for one in spots]
+        keys, finish = search_up_to(limits, problems, query, threads, share, cancel, preview)
+        if is_enough(most, keys, query) or (cancel is not None and cancel.is_set()):
+            return finish()
+        most = next_limit(most, keys, query, number)
+    return None
+
+
+# The keys of what a search up to a limit found, and what makes a result of it.
+FoundUpTo = tuple[OrderKeys, Callable[[], Result]]
+
+
+def ways_up_to(
+    limits: Sequence[ErrorLimit],
+    problems: Sequence[Problem],
+    query: Query,
+    threads: int,
+    progress: Progress | None,
+    cancel: Event | None,
+    preview: Preview | None,
+) -> FoundUpTo:
+    """What one carrier that moves holds up to limits, one for each way of the toolkit."""
+    kepts, works = list[BestFixtures](), list[Work]()
+    for place, (problem, limit) in enumerate(zip(problems, limits, strict=True)):
+        kept = BestFixtures(problem, cancel)
+        part = stage(progress, place / len(problems), (place + 1) / len(problems))
+        look = None if preview is None else Previews(problem, preview).add
+        works.append(limited_work(limit, problem, kept, threads, part, cancel, look))
+        kepts.append(kept)
+    keys = reduce(OrderKeys.followed_by, [kept.found_keys for kept in kepts])
+
+    def finish() -> Result:
+        results = [
+            best_result(kept, work, len(kepts) > 1, is_limited=True)
+            for kept, work in zip(kepts, works, strict=True)
+        ]
+        return joined_ways(results, query) if len(results) > 1 else results[0]
+
+    return keys, finish
+
+
+def paired_up_to(
+    limits: Sequence[ErrorLimit],
+    problems: Sequence[Problem],
+    query: Query,
+    threads: int,
+    progress: Progress | None,
+    cancel: Event | None,
+    preview: Preview | None,
+) -> FoundUpTo:
+    """What two clamps hold up to a limit."""
+    with LatticeShares.of(query, threads, cancel, limits[0]) as shares:
+        result = answer_in_shares(shares, progress, cancel, preview)
+    statistics = {**result.statistics, **limits[0].statistics}
+    return shares.collector.ranked.keys, lambda: evolve(result, statistics=statistics)
 
 
 def answer_of_a_way(

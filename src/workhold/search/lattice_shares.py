@@ -19,9 +19,11 @@ import numpy as np
 from attrs import define, evolve, field
 from numpy.typing import NDArray
 
+from workhold.contact.curves import EVERYWHERE
 from workhold.contact.problem import Problem, Progress
 from workhold.conventions import SAME_POSE
 from workhold.fixels.fields import PITCH
+from workhold.kernels.base.tables import NearSpots
 from workhold.kernels.curves.block_work import CANDIDATES
 from workhold.limits import refuse_much_work
 from workhold.listing.bounds import preferred_angles
@@ -38,10 +40,11 @@ from workhold.model.query import Query
 from workhold.model.search_report import no_pair_note
 from workhold.proof.deciding import Account, Course, decided
 from workhold.search.cells import Block, cost_of, run_blocks
+from workhold.search.error_limits import ErrorLimit
 from workhold.search.shares import one_clamp, tilted_bound
-from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch
+from workhold.search.toolkit_search import ANY_ERROR, LEAST_BLOCKS, ToolkitSearch
 
-__all__ = ["LatticeShares"]
+__all__ = ["LatticeShares", "problems_of"]
 
 Array = NDArray[np.float64]
 # Ranges of orientation in radians, from and up to but without the second.
@@ -74,6 +77,7 @@ class LatticeShares:
     bound : the least keys of fixtures at other than preferred angles; None where these do not come first.
     pool : of so many threads.
     cancel : when set, the search stops soon.
+    square : the searches of the first share, where that is of square orientations with a limit of their own.
     """
 
     searches: Sequence[ToolkitSearch]
@@ -84,13 +88,28 @@ class LatticeShares:
     pool: Executor
     threads: int
     cancel: Event | None
+    square: Sequence[ToolkitSearch] = ()
     accounts: list[Account] = field(factory=list, init=False)
     cells: int = field(default=0, init=False)
 
     @classmethod
     @contextmanager
-    def of(cls, query: Query, threads: int, cancel: Event | None) -> Iterator[LatticeShares]:
-        """The shares of a query with two clamps, with threads for as long as the context lasts."""
+    def of(
+        cls, query: Query, threads: int, cancel: Event | None, limit: ErrorLimit | None = None
+    ) -> Iterator[LatticeShares]:
+        """The shares of a query with two clamps, with threads for as long as the context lasts.
+
+        With a limit those of seats with no larger location error, the square ones first.
+        """
+        if limit is not None:
+            square, aslant = (searches_of(query, threads, cancel, limit, near) for near in (limit.square, limit.aslant))
+            blocks = [blocks_of_search(search) for search in aslant]
+            ranges = square_first(ranges_of(blocks), preferred_angles(query))
+            seats = ClampedSeats(query, square[0].problem, is_limited=True)
+            seats.ranked.has_dropped = True
+            with ThreadPoolExecutor(max_workers=threads) as pool:
+                yield cls(aslant, seats, blocks, ranges, None, pool, threads, cancel, square)
+            return
         searches = searches_of(query, threads, cancel)
         blocks = [blocks_of_search(search) for search in searches]
         x0, y0, x1, y1 = query.workpiece.bounds
@@ -121,7 +140,7 @@ class LatticeShares:
         if share > 0 and self.bound is not None and self.collector.ranked.rules_out(self.bound):
             return iter(()), True
         found, is_whole = list[PackedContacts](), True
-        for place, search in enumerate(self.searches):
+        for place, search in enumerate(self.square if self.square and share == 0 else self.searches):
             part = stage(progress, place / len(self.searches), (place + 1) / len(self.searches))
             blocks = self.blocks_of(share, search, self.whole_turn[place])
             records, done = run_blocks(
@@ -141,6 +160,10 @@ class LatticeShares:
         """The blocks of a search in which the seats of a share are, given those of a whole turn."""
         if self.shares == 1:
             return whole_turn
+        if self.square:
+            first = preferred_angles(self.collector.query)
+            if share == 0:
+                return search.blocks(search.problem.toolkit.types, BLOCKS_PER_HALF_TURN, first=first)
         blocks_in = partial(search.blocks, search.problem.toolkit.types, BLOCKS_PER_HALF_TURN)
         if share == 0 and self.bound is not None:
             return blocks_in(first=preferred_angles(self.collector.query))
@@ -202,8 +225,9 @@ class LatticeShares:
 
     def work(self, done: int, complete: bool) -> Work:
         """How the search went."""
-        examined = int(sum(search.totals[CANDIDATES] for search in self.searches))
-        statistics = summed(search.statistics for search in self.searches)
+        searches = [*self.square, *self.searches]
+        examined = int(sum(search.totals[CANDIDATES] for search in searches))
+        statistics = summed(search.statistics for search in searches)
         return Work(complete and self.account().left == 0, statistics, self.cells, examined)
 
     def why_none(self) -> str:
@@ -211,10 +235,25 @@ class LatticeShares:
         return no_pair_note(self.collector.looked_at, self.account().verified)
 
 
-def searches_of(query: Query, threads: int, cancel: Event | None) -> list[ToolkitSearch]:
-    """The search of each direction of the clamp, for contacts that need not close."""
-    problems = [Problem.of(one_clamp(query, way), pairing=True) for way in query.toolkit.ways]
-    return [ToolkitSearch.of(problem, threads=threads, cancel=cancel) for problem in problems]
+def searches_of(
+    query: Query,
+    threads: int,
+    cancel: Event | None,
+    limit: ErrorLimit | None = None,
+    near: NearSpots = EVERYWHERE,
+) -> list[ToolkitSearch]:
+    """The search of each direction of the clamp, for contacts that need not close; with a limit for those
+    near some spots."""
+    precision = ANY_ERROR if limit is None else limit.precision
+    return [
+        ToolkitSearch.of(problem, threads=threads, cancel=cancel, near=near, precision=precision)
+        for problem in problems_of(query)
+    ]
+
+
+def problems_of(query: Query) -> list[Problem]:
+    """The problem of each direction of the clamp, for contacts that need not close."""
+    return [Problem.of(one_clamp(query, way), pairing=True) for way in query.toolkit.ways]
 
 
 def blocks_of_search(search: ToolkitSearch) -> list[Block]:

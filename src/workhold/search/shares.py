@@ -23,6 +23,7 @@ import numpy as np
 from attrs import define, evolve, field
 from numpy.typing import NDArray
 
+from workhold.contact.curves import EVERYWHERE
 from workhold.contact.problem import Problem, Progress
 from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.curves.block_work import CANDIDATES
@@ -30,11 +31,12 @@ from workhold.listing.bounds import preferred_angles, tilted_keys
 from workhold.listing.canonical_form import Candidates, listed_once
 from workhold.listing.collector import BestFixtures, finish
 from workhold.listing.ranking import OrderKeys
-from workhold.listing.results import Work, result_of, stage
+from workhold.listing.results import Work, result_of, stage, summed
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.proof.deciding import Account
 from workhold.search.cells import Block, cost_of, run_blocks
+from workhold.search.error_limits import ErrorLimit
 from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch
 
 __all__ = [
@@ -45,6 +47,7 @@ __all__ = [
     "answer_in_shares",
     "best_first",
     "has_body_to_pass",
+    "limited_work",
     "one_clamp",
     "tilted_bound",
     "work_of",
@@ -187,6 +190,8 @@ Array = NDArray[np.float64]
 
 # Searches that cost more begin with what lies square, see ``cells.Block``: those of a tenth of a second.
 SQUARE_FIRST = 1e6
+# Ways to join two features by a step of the lattice: with more, errors are limited.
+LIMITED_FROM = 1e4
 
 
 def best_first(
@@ -214,6 +219,43 @@ def best_first(
         share = stage(progress, before, 1.0 if part is parts[-1] else cost_of(begun) / total)
         done += run_blocks(part, threads, share, cancel, kept.add, look, search.stop)[1]
     return work_of(search, begun, done)
+
+
+def limited_work(
+    limit: ErrorLimit,
+    problem: Problem,
+    kept: BestFixtures,
+    threads: int,
+    progress: Progress | None,
+    cancel: Event | None,
+    look: Callable[[Array], None] | None,
+) -> Work:
+    """Hands all fixtures up to a limit of the location error to those kept, and perhaps some beyond."""
+    query, angles, works = problem.query, preferred_angles(problem.query), list[Work]()
+    names = {one.name: one.pegs[0] for one in problem.frame.toolkit.arrangements}
+    # Of three standing pegs the limit says where they may touch; of two it is asked when they are placed.
+    asked = [name for name in query.arrangements if name in names]
+    threes, others = (
+        [name for name in asked if (names[name] == 3) == is_three] for is_three in (True, False)
+    )
+    kinds = [(threes, limit.square, False), (threes, limit.aslant, True), (others, EVERYWHERE, None)]
+    kinds = [kind for kind in kinds if kind[0]]
+    for number, (types, near, rest) in enumerate(kinds):
+        share = stage(progress, number / len(kinds), (number + 1) / len(kinds))
+        search = ToolkitSearch.of(
+            problem, threads=threads, cancel=cancel, near=near, precision=limit.precision
+        )
+        first = () if rest is None else angles
+        blocks = search.blocks(types, 4 * LEAST_BLOCKS, first=first, rest=bool(rest))
+        done = run_blocks(blocks, threads, share, cancel, kept.add, look, search.stop)[1]
+        works.append(work_of(search, blocks, done))
+    statistics = summed([work.statistics for work in works])
+    return Work(
+        all(work.complete for work in works),
+        {**statistics, "features": len(problem.rows), **limit.statistics},
+        sum(work.cells for work in works),
+        sum(work.examined or 0 for work in works),
+    )
 
 
 def tilted_bound(query: Query, problem: Problem, cost: float) -> OrderKeys | None:

@@ -11,28 +11,35 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterator, Sequence
 from functools import partial
 from itertools import pairwise
-from math import hypot, pi, tau
+from math import hypot, inf, pi, tau
 from threading import Event
 
 import numpy as np
 from attrs import define, evolve, field
 from numpy.typing import NDArray
 
-from workhold.contact.curves import CurveTable, LatticeSteps, curve_table, joined, loosened
+from workhold.contact.curves import (
+    EVERYWHERE,
+    CurveTable,
+    LatticeSteps,
+    curve_table,
+    joined,
+    loosened,
+)
 from workhold.contact.problem import Frame, Problem
-from workhold.conventions import ANGLE_HAIR, GAP_SLACK, PARALLEL
+from workhold.conventions import ANGLE_HAIR, GAP_SLACK, MARGIN_SLACK, PARALLEL, WEAK_CLOSURE
 from workhold.fixels.toolkit import Arrangement, Carrier, Toolkit
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, SEGMENT_LENGTH
 from workhold.kernels.base.tables import (
     DIRECTION,
-    FROM,
     HEAD,
     ORIENTATION,
     STEP_LENGTH,
     TAIL,
-    TO,
     Features,
     Limits,
+    NearSpots,
+    Precision,
 )
 from workhold.kernels.curves.block_work import CONTACTS, CROSSED, PAIRS, STATISTICS, STOPPED
 from workhold.kernels.curves.sliding_pairs import sliding_fixtures
@@ -68,6 +75,8 @@ PAIRS_PER_BLOCK = 2e6
 LEAST_BLOCKS = 8
 # Radians: sliding pairs that may be off by more are vague. Lengths that make one are off by less, in mm.
 VAGUE, APART = 1e-5, 1e-8
+# Location errors of any size are of interest.
+ANY_ERROR = Precision(np.zeros(0, np.int64), np.zeros(0), np.zeros(0), np.zeros((0, 3)), 0.0, 0.0, inf, inf)
 
 
 def lattice_steps(carriers: Sequence[Carrier], longest: float) -> LatticeSteps:
@@ -122,10 +131,12 @@ def is_between_free_holes(carrier: Carrier, steps: NDArray[np.int64]) -> NDArray
     return np.asarray(there & (pairs[column % shape[0], row % shape[1]] > 0.5))
 
 
-def tables_of(problem: Problem, loose: Array, threads: int, cancel: Event | None) -> CurveTable:
+def tables_of(
+    problem: Problem, loose: Array, threads: int, cancel: Event | None, near: NearSpots = EVERYWHERE
+) -> CurveTable:
     """The chord curves of a problem's loose features, those of each carrier apart unless its pegs touch the
     same."""
-    share = partial(curve_table, threads=threads, cancel=cancel)
+    share = partial(curve_table, threads=threads, cancel=cancel, near=near)
     longest, (standing, moving) = problem.diameter + 1e-6, problem.frame.carriers
     if all(arrangement.pegs[-1] == 1 for arrangement in problem.toolkit.arrangements):
         # No two pegs move.
@@ -180,6 +191,7 @@ class ToolkitSearch:
     problem : what is searched.
     loose : (F, 10) rows of the features with their ends moved out by a hair.
     table : chord curves and sliding pairs between the loose features.
+    precision, near : bound location errors, and places of locators, of what is of interest.
     counting : count all simultaneous contacts instead of looking for fixtures only.
     most_listed : of these so many are listed by each block, whatever the rules say of them.
     stats : (blocks, 5) statistics the kernels add to, one row for each block so that threads never share one.
@@ -188,6 +200,8 @@ class ToolkitSearch:
     problem: Problem
     loose: Array
     table: CurveTable
+    precision: Precision = ANY_ERROR
+    near: NearSpots = EVERYWHERE
     counting: bool = False
     most_listed: int = 0
     stats: list[NDArray[np.int64]] = field(factory=list, init=False)
@@ -200,13 +214,18 @@ class ToolkitSearch:
         most_listed: int = 0,
         threads: int = 1,
         cancel: Event | None = None,
+        near: NearSpots = EVERYWHERE,
+        precision: Precision = ANY_ERROR,
     ) -> ToolkitSearch:
-        """The search of a problem, with its chord curves, or some of them once ``cancel`` is set;
-        ``counting`` leaves the contact margin out."""
+        """The search of a problem, with its chord curves, or some of them once ``cancel`` is set.
+
+        ``counting`` leaves the contact margin out. What ``near`` and ``precision`` rule out is not searched.
+        """
         if counting:
             problem = Problem.of(evolve(problem.query, contact_margin=0.0), problem.pairing)
         loose = loosened(problem.rows[:, :SEGMENT_LENGTH])
-        return cls(problem, loose, tables_of(problem, loose, threads, cancel), counting, most_listed)
+        table = tables_of(problem, loose, threads, cancel, near)
+        return cls(problem, loose, table, precision, near, counting, most_listed)
 
     @property
     def frame(self) -> Frame:
@@ -216,7 +235,8 @@ class ToolkitSearch:
     @property
     def features(self) -> Features:
         """The features as the kernels take them."""
-        return Features(self.loose, self.problem.rows, self.problem.standing, self.problem.moving)
+        problem = self.problem
+        return Features(self.loose, problem.rows, problem.standing, problem.moving, self.precision, self.near)
 
     @property
     def totals(self) -> NDArray[np.int64]:
@@ -239,7 +259,8 @@ class ToolkitSearch:
     @property
     def alive(self) -> float:
         """How many chord curves exist at an orientation, on average."""
-        return float((self.table.curves.reals[:, TO] - self.table.curves.reals[:, FROM]).sum()) / tau
+        first, last = self.table.spans
+        return float((last - first).sum()) / tau
 
     def blocks(
         self,
@@ -363,7 +384,12 @@ class ToolkitSearch:
         )
 
     def limits_from(self, margin: float) -> Limits:
-        """The limits with a closure margin to reach."""
+        """The limits with a closure margin to reach.
+
+        Where errors are limited nothing with a warning is of interest, and a weak closure is one.
+        """
+        if self.precision.most < inf:
+            margin = max(margin, WEAK_CLOSURE - MARGIN_SLACK)
         return self.problem.limits._replace(least_margin=margin, most_listed=float(self.most_listed))
 
 

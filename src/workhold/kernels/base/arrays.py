@@ -7,7 +7,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from workhold.kernels.base.compiling import Array, inner, inner_making_arrays
+from workhold.kernels.base.compiling import Array, IntArray, inner, inner_making_arrays
 
 Number = TypeVar("Number", np.float64, np.int64)
 
@@ -27,6 +27,31 @@ def with_room(array: NDArray[Number], count: int) -> NDArray[Number]:
     """A (N, M) array with room for another row after ``count``: the array itself, or a grown copy when it is
     full."""
     return grown(array) if count == array.shape[0] else array
+
+
+@inner
+def sort_rows(rows: Array, column: int, sign: float, keys: Array, order: IntArray, out: Array) -> None:
+    """Writes (N, M) rows to ``out`` in the order of a column times ``sign``, the least first (Shell's sort).
+
+    ``keys`` and ``order`` are (N,) work space.
+    """
+    count = rows.shape[0]
+    for k in range(count):
+        keys[k], order[k] = sign * rows[k, column], k
+    step = 1
+    while step < count // 3:
+        step = 3 * step + 1
+    while step > 0:
+        for k in range(step, count):
+            key, item, at = keys[k], order[k], k
+            while at >= step and keys[at - step] > key:
+                keys[at], order[at] = keys[at - step], order[at - step]
+                at -= step
+            keys[at], order[at] = key, item
+        step //= 3
+    for j in range(count):
+        for k in range(rows.shape[1]):
+            out[j, k] = rows[order[j], k]
 
 
 @inner

@@ -9,7 +9,7 @@ Whole numbers of a curve (C, 7), the same for a sliding pair:
 - CENTER (number of the common centre of concentric arcs, -1 for others);
 - FIRST_STRETCH and END_STRETCH (the curve's stretches, none of a sliding pair).
 
-Reals of a curve (C, 14):
+Reals of a curve (C, 16):
 
 - FROM and TO (alpha in radians), BRANCH;
 - TANGENT_FROM and TANGENT_TO (bound of the error in radians of that end where the chord is a tangency there,
@@ -17,7 +17,8 @@ Reals of a curve (C, 14):
 - LENGTH, SHIFT (arg Delta: psi = alpha - shift) and its COSINE and SINE;
 - BACKWARD_ERROR (see ``chord.evaluation``);
 - COINCIDENCE (its kind, see ``chord.coincidences``), MIDDLE (alpha) and SIDE of the coincidence;
-- KAPPA (sum of the features' curvatures in 1 / mm).
+- KAPPA (sum of the features' curvatures in 1 / mm);
+- NEAR_FROM and NEAR_TO (alpha): the part of the range in which its pegs may be of interest.
 
 Reals of a sliding pair (P, 5): SLIDE_FROM and SLIDE_TO (parameter of the tail on its feature), DIRECTION
 (alpha), STEP_LENGTH, ORIENTATION (psi in radians).
@@ -47,7 +48,47 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from workhold.kernels.base.compiling import Array, IntArray
+from workhold.kernels.base.compiling import Array, ByteArray, IntArray
+
+
+class Precision(NamedTuple):
+    """What bounds location errors, and the errors that are of interest (``contact.location_bounds``).
+
+    Parameters
+    ----------
+    faces : (F,) number of each feature's face.
+    doubts : (F,) by how many times a contact there counts more, at least.
+    gives : (F,) what a contact may be off by for a location error of 1, for each mm it is moved on a line, or
+        each radian on an arc.
+    probes : (P, 3) points of the silhouette and directions: along x, along y, and of a turn times L.
+    peg, face : tolerances in mm.
+    most, most_aslant : largest effective error of interest in mm square to the part as drawn, and location
+        error of interest at other orientations; infinite where all are.
+    """
+
+    faces: IntArray
+    doubts: Array
+    gives: Array
+    probes: Array
+    peg: float
+    face: float
+    most: float
+    most_aslant: float
+
+
+class NearSpots(NamedTuple):
+    """Stretches of features, and which two of three locators may touch (``contact.location_bounds``).
+
+    Parameters
+    ----------
+    starts : (F + 1,) the first stretch of each feature; those of one feature are equally long.
+    joined : (M, M) 1 for two that may; no rows where nothing is ruled out.
+    triples : (M, M, M) 1 for three that may, in any order; nothing where that is not kept.
+    """
+
+    starts: IntArray
+    joined: ByteArray
+    triples: ByteArray
 
 
 class Features(NamedTuple):
@@ -59,12 +100,16 @@ class Features(NamedTuple):
     rows : (F, 12) rows with the slack of their ends, to check.
     standing, moving : first and past-the-last number of those that pegs of each carrier touch; ranges are the
         same or apart.
+    precision : what bounds location errors.
+    near : where three standing pegs may touch.
     """
 
     loose: Array
     rows: Array
     standing: tuple[int, int]
     moving: tuple[int, int]
+    precision: Precision
+    near: NearSpots
 
 
 class Lattice(NamedTuple):
@@ -121,13 +166,14 @@ TAIL, HEAD, COLUMN_STEP, ROW_STEP, CENTER, FIRST_STRETCH, END_STRETCH = range(7)
 CURVE_INTEGERS = 7
 FROM, TO, BRANCH, TANGENT_FROM, TANGENT_TO, LENGTH, SHIFT = range(7)
 COSINE, SINE, BACKWARD_ERROR, COINCIDENCE, MIDDLE, SIDE, KAPPA = range(7, 14)
-CURVE_REALS = 14
+NEAR_FROM, NEAR_TO = 14, 15
+CURVE_REALS = 16
 SLIDE_FROM, SLIDE_TO, DIRECTION, STEP_LENGTH, ORIENTATION = range(5)
 SLIDING_PAIR_REALS = 5
 
 
 class Curves(NamedTuple):
-    """Chord curves: whole numbers (C, 7), reals (C, 14), and their stretches (S, 13), see
+    """Chord curves: whole numbers (C, 7), reals (C, 16), and their stretches (S, 13), see
     ``chord.stretches``."""
 
     integers: IntArray

@@ -300,7 +300,7 @@ def pairs_of(seats: IntArray, halves: IntArray, clamps: Clamps, hardware: Hardwa
     Parameters
     ----------
     seats : (S, 2) the largest column and row of their locators, whose lowest are 0.
-    halves : (S,) 1 where the orientation is in the first half turn, else 0.
+    halves : (S,) 1 where the orientation is in the first half turn, else 0; less where the seat is left out.
     every : all pairs, or of each seat and kind the best, which is the one of the largest clamp freedom, then
         of the largest closure margin, then the first.
 
@@ -311,6 +311,9 @@ def pairs_of(seats: IntArray, halves: IntArray, clamps: Clamps, hardware: Hardwa
     out, spread = np.empty((64, PAIR_LENGTH)), np.empty(4, np.int64)
     count, number = int(np.int64(0)), int(np.int64(0))
     while number < seats.shape[0]:
+        if halves[number] < 0:
+            number += 1
+            continue
         seat = ClampedSeat(number, seats[number], clamps, hardware, spread)
         more = add_pairs(out, count, halves[number] != 0, seat, every)
         if more < 0:

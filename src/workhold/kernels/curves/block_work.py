@@ -7,12 +7,13 @@ they began there is taken back, and begun anew when the caller has made room.
 
 from __future__ import annotations
 
-from math import cos, sin
+from math import cos, inf, sin
 from typing import NamedTuple
 
 import numpy as np
 
 from workhold.kernels.base.compiling import Array, IntArray, inner, inner_making_arrays
+from workhold.kernels.base.feature import IS_ARC, RADIUS
 from workhold.kernels.base.tables import (
     COLUMN_STEP,
     HEAD,
@@ -25,7 +26,9 @@ from workhold.kernels.base.tables import (
     Lattice,
     Limits,
 )
+from workhold.kernels.contact.location_bounds import two_and_two_beyond
 from workhold.kernels.contact.record import (
+    PEG_FEATURE,
     PEG_LENGTH,
     PEG_RADIUS,
     PEG_ROW,
@@ -35,7 +38,7 @@ from workhold.kernels.contact.record import (
     place_peg,
     write_record,
 )
-from workhold.kernels.contact.rules import is_fixture, is_listed
+from workhold.kernels.contact.rules import is_fixture, is_listed, minor_band
 from workhold.kernels.curves.piece_bounds import chord_tail
 from workhold.kernels.curves.roots import MOST_ROOTS, STACK_DEPTH, STACK_LENGTH
 
@@ -162,6 +165,27 @@ def place_triple(
 
 
 @inner
+def is_far_off(angle: Angle, work: BlockWork) -> bool:
+    """Whether two and two pegs in place, just found to be a fixture, have too large a location error."""
+    features, pegs = work.features, work.pegs
+    if features.precision.most == inf or work.counting:
+        return False
+    radius = swing = 0.0
+    numbers = work.null
+    for k in range(4):
+        row = features.rows[int(pegs[k, PEG_FEATURE])]
+        radius = max(radius, pegs[k, PEG_RADIUS])
+        if row[IS_ARC] != 0.0:
+            swing = max(swing, pegs[k, PEG_RADIUS] / row[RADIUS])
+        numbers[k] = pegs[k, PEG_FEATURE]
+    length = work.limits.wrench_length
+    band, points, normals = minor_band(swing, radius, length), work.contacts[:4], work.contacts[4:]
+    return two_and_two_beyond(
+        points, normals, numbers, angle, length, band, features.precision, work.triple
+    )
+
+
+@inner
 def add_listed(
     out: Array, count: int, standing: float, angle: Angle, reach: float, once: bool, work: BlockWork
 ) -> int:
@@ -185,6 +209,8 @@ def add_listed(
     if verdict > 0 and once:
         stats[CONTACTS] += 1
     if not is_listed(verdict, work.counting, count, limits):
+        return count
+    if standing == 2.0 and is_far_off(angle, work):
         return count
     if count == out.shape[0]:
         return -1

@@ -5,11 +5,11 @@ The workpiece stands still there, and each row of the moving carrier meets each 
 
 from __future__ import annotations
 
-from math import atan2, ceil, floor, pi, sin, sqrt
+from math import atan2, ceil, floor, inf, pi, sin, sqrt
 
 import numpy as np
 
-from workhold.conventions import GAP_SLACK, LEAST_CLAMPING
+from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE
 from workhold.kernels.base.compiling import Array, inner
 from workhold.kernels.base.feature import (
     AXIS_X,
@@ -26,6 +26,7 @@ from workhold.kernels.base.feature import (
     middle_of,
 )
 from workhold.kernels.base.tables import Limits
+from workhold.kernels.contact.location_bounds import is_beyond
 from workhold.kernels.contact.record import PEG_FEATURE, PEG_RADIUS, PEG_X, PEG_Y, Angle, place_peg
 from workhold.kernels.contact.rules import minor_band, outward_normal
 from workhold.kernels.curves.block_work import BlockWork, add_listed
@@ -207,7 +208,47 @@ def may_close(
     for k in range(3):
         entry = -(triple[k, 0] * nx + triple[k, 1] * ny + triple[k, 2] * t)
         smallest, total = min(smallest, entry), total + abs(entry)
-    return smallest + band > limits.least_margin * (total - 4.0 * band)
+    return smallest + band > max(LEAST_CLOSURE, limits.least_margin) * (total - 4.0 * band)
+
+
+@inner
+def closing_heights(
+    triple: Array, row: Array, ax: float, ay: float, error: float, length: float
+) -> tuple[float, float]:
+    """Lowest and highest value of a . q over the points q of a straight feature where a moving peg may close
+    with three standing pegs; the lowest is larger where none may.
+
+    What the standing pegs take up changes evenly along the feature, and must not be negative.
+
+    Parameters
+    ----------
+    triple : (8, 3) rows of ``write_triple``.
+    ax, ay : across the rows of holes.
+    error : how far in mm heights may be off.
+    length : L in mm.
+    """
+    slope = ax * row[AXIS_X] + ay * row[AXIS_Y]
+    if abs(slope) <= 0.5 * LEAST_CLAMPING:
+        return (inf, -inf)
+    low, high = -row[HALF_EXTENT] - SPARE, row[HALF_EXTENT] + SPARE
+    band = minor_band(triple[3, 2], max(triple[3, 1], 1.1 * error / abs(slope)), length)
+    nx, ny = row[AXIS_Y], -row[AXIS_X]
+    t = (row[X] * ny - row[Y] * nx) / length
+    if triple[4, 0] > band:
+        for k in range(3):
+            taken = band - (triple[k, 0] * nx + triple[k, 1] * ny + triple[k, 2] * t)
+            change = triple[k, 2] / length
+            if abs(change) * length <= HAIR:
+                if taken + abs(change) * 2.0 * length < 0.0:
+                    return (inf, -inf)
+            elif change > 0.0:
+                low = max(low, -taken / change - HAIR)
+            else:
+                high = min(high, -taken / change + HAIR)
+    if low > high:
+        return (inf, -inf)
+    middle, one, two = ax * row[X] + ay * row[Y], low * slope, high * slope
+    return (middle + min(one, two), middle + max(one, two))
 
 
 @inner
@@ -215,6 +256,17 @@ def faces_away(row: Array, cx: float, cy: float, clamping: float, doubt: float) 
     """Whether a moving peg cannot clamp on a feature: it is straight and faces the way that the peg would
     push."""
     return row[IS_ARC] == 0.0 and clamping * (row[AXIS_Y] * cx - row[AXIS_X] * cy) < -HAIR - doubt
+
+
+@inner
+def locators_beyond(angle: Angle, work: BlockWork) -> bool:
+    """Whether three standing pegs in place, see ``write_triple``, have too large a location error."""
+    triple, length = work.triple, work.limits.wrench_length
+    band = minor_band(triple[3, 2], triple[3, 1], length)
+    numbers = work.null
+    for k in range(3):
+        numbers[k] = work.pegs[k, PEG_FEATURE]
+    return is_beyond(triple[:3], numbers, 3, triple[4, 0], band, angle[0], work.features.precision)
 
 
 @inner
@@ -233,12 +285,19 @@ def add_moving_pegs(out: Array, count: int, angle: Angle, reach: float, work: Bl
     error = pegs[0, PEG_RADIUS] + 4.0 * length * reach
     gap = limits.gap - GAP_SLACK - HAIR - 4.0 * length * reach
     write_triple(triple, pegs, cx, cy, rows, length)
+    if not work.counting and features.precision.most < inf and locators_beyond(angle, work):
+        return count
     asks_closure = not work.counting and limits.pairing == 0.0
     for e in range(features.moving[0], features.moving[1]):
         row = rows[e]
         if not work.counting and faces_away(row, cx, cy, limits.clamping, reach):
             continue
-        lowest, highest = height_range(row, -cy, cx)
+        if asks_closure and row[IS_ARC] == 0.0:
+            lowest, highest = closing_heights(triple, row, -cy, cx, error, length)
+            if lowest > highest:
+                continue
+        else:
+            lowest, highest = height_range(row, -cy, cx)
         first, last = lines_between(lowest, highest, base, pitch_y, error)
         # Nor does the side of an arc count that faces away.
         sides = 2 if work.counting or row[IS_ARC] == 0.0 else 1

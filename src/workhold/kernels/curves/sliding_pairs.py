@@ -25,13 +25,14 @@ from workhold.kernels.base.compiling import (
     inner,
     inner_making_arrays,
 )
-from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y, point_at
 from workhold.kernels.base.interval import TURN
 from workhold.kernels.base.tables import (
     COLUMN_STEP,
     DIRECTION,
     FROM,
     HEAD,
+    LENGTH,
     ORIENTATION,
     ROW_STEP,
     SHIFT,
@@ -44,6 +45,7 @@ from workhold.kernels.base.tables import (
     Features,
     Lattice,
     Limits,
+    NearSpots,
     SlidingPairs,
 )
 from workhold.kernels.chord.coincidences import are_one_chord_apart, shares_a_line
@@ -74,10 +76,14 @@ from workhold.kernels.curves.block_work import (
     place_tail,
 )
 from workhold.kernels.curves.moving_pegs import add_moving_pegs, height_range, lines_between, row_meets
+from workhold.kernels.curves.near_spots import spots_of
+from workhold.kernels.curves.piece_bounds import tail_disc
 from workhold.kernels.curves.three_and_one import heads_share_a_line
 
 # Rounding of a sliding pair's orientation in radians.
 ROUNDING = 4e-15
+# The range of a sliding pair is looked at in so many parts.
+SLIDE_PARTS = 8
 
 
 @inner
@@ -316,6 +322,66 @@ def add_third_peg(
 
 
 @inner
+def first_of_tail(members: IntArray, integers: IntArray, tail: int) -> int:
+    """The number of the first member whose tail is on a feature of no lower number."""
+    low, high = int(np.int64(0)), members.shape[0]
+    while low < high:
+        middle = (low + high) // 2
+        if integers[members[middle], TAIL] < tail:
+            low = middle + 1
+        else:
+            high = middle
+    return low
+
+
+@inner
+def write_member_spots(
+    members: IntArray, psi: float, half: float, features: Features, curves: Curves, out: IntArray
+) -> None:
+    """Writes the ranges (M, 4) of spots that tails and heads of curves may touch within ``half`` of psi; none
+    where a curve does not exist."""
+    near, loose = features.near, features.loose
+    for m in range(members.shape[0]):
+        curve = members[m]
+        whole, real = curves.integers[curve], curves.reals[curve]
+        exists, there = orientation_inside(curve, psi, half, curves.reals)
+        out[m, 1] = out[m, 0] = 0
+        if not exists:
+            continue
+        a, b = loose[whole[TAIL]], loose[whole[HEAD]]
+        x, y, radius = tail_disc(a, b, real, there, half + SLIVER)
+        alpha, d = there + real[SHIFT], real[LENGTH]
+        out[m, 0], out[m, 1] = spots_of(a, whole[TAIL], near, x, y, radius)
+        x, y, radius = x + d * cos(alpha), y + d * sin(alpha), radius + d * (half + SLIVER)
+        out[m, 2], out[m, 3] = spots_of(b, whole[HEAD], near, x, y, radius)
+
+
+@inner
+def write_slide_spots(pair: PlacedPair, sliding_pairs: SlidingPairs, features: Features, out: IntArray) -> None:
+    """Writes the ranges (N, 4) of spots that both pegs of a sliding pair touch in parts of its range."""
+    whole, real, near = sliding_pairs.integers[pair.number], sliding_pairs.reals[pair.number], features.near
+    a, b = features.loose[whole[TAIL]], features.loose[whole[HEAD]]
+    size = (real[SLIDE_TO] - real[SLIDE_FROM]) / out.shape[0]
+    half = 0.5 * size * (1.0 if a[IS_ARC] == 0.0 else a[RADIUS])
+    for k in range(out.shape[0]):
+        x, y = point_at(a, real[SLIDE_FROM] + (k + 0.5) * size)
+        out[k, 0], out[k, 1] = spots_of(a, whole[TAIL], near, x, y, half)
+        out[k, 2], out[k, 3] = spots_of(b, whole[HEAD], near, x + pair.x, y + pair.y, half + pair.swing)
+
+
+@inner
+def may_be_third(slides: IntArray, member: IntArray, near: NearSpots) -> bool:
+    """Whether a curve's head may be a third locator of interest beside a sliding pair, from their spots."""
+    for k in range(slides.shape[0]):
+        for i in range(max(slides[k, 0], member[0]), min(slides[k, 1], member[1])):
+            for j in range(slides[k, 2], slides[k, 3]):
+                for n in range(member[2], member[3]):
+                    if near.triples[i, j, n] != 0:
+                        return True
+    return False
+
+
+@inner
 def add_of_pair(
     out: Array,
     count: int,
@@ -323,18 +389,31 @@ def add_of_pair(
     standing: int,
     sliding_pairs: SlidingPairs,
     members: IntArray,
+    spots: IntArray,
+    slides: IntArray,
     work: BlockWork,
 ) -> int:
     """Appends the fixtures of a sliding pair and the curves, from the member at ``work.at`` on (see
-    ``block_work``). Of three standing pegs the third is on a curve from the pair's tail."""
+    ``block_work``). Of three standing pegs the third is on a curve from the pair's tail.
+
+    ``spots`` and ``slides`` are those of the members and of the pair, none where nothing is ruled out.
+    """
     at, stats, curves = work.at, work.stats, work.curves
     psi, whole = pair.angle[0], sliding_pairs.integers[pair.number]
-    for m in range(at[0], members.shape[0]):
+    near, asks_spots = work.features.near, spots.shape[0] > 0
+    first, end = int(np.int64(0)), members.shape[0]
+    if standing == 3:
+        # Curves are in the order of their tails.
+        first = first_of_tail(members, curves.integers, whole[TAIL])
+        end = first_of_tail(members, curves.integers, whole[TAIL] + 1)
+    for m in range(max(at[0], first), end):
         if stats[STOPPED] != 0:
             break
         curve = members[m]
         one = curves.integers[curve]
-        if standing == 3 and (one[TAIL] != whole[TAIL] or not share_a_carrier(whole, one, work.limits)):
+        if asks_spots and not may_be_third(slides, spots[m], near):
+            continue
+        if standing == 3 and not share_a_carrier(whole, one, work.limits):
             continue
         exists, there = orientation_inside(curve, psi, pair.reach, curves.reals)
         if not exists or shares_a_line(curves.reals[curve], there):
@@ -372,13 +451,22 @@ def sliding_fixtures(
     form the sliding pair from the shared tail.
     """
     out, work = np.empty((16, RECORD_LENGTH)), block_work(features, curves, lattice, limits, counting, stats)
-    count = int(np.int64(0))
+    count, least, most = int(np.int64(0)), np.inf, -np.inf
+    asks_spots = standing == 3 and features.near.triples.shape[0] > 0
+    spots, slides = np.empty((members.shape[0] if asks_spots else 0, 4), np.int64), np.empty((SLIDE_PARTS, 4), np.int64)
+    if asks_spots:
+        for number in chosen:
+            pair = placed_pair(number, sliding_pairs, features.loose)
+            least, most = min(least, pair.angle[0] - pair.reach), max(most, pair.angle[0] + pair.reach)
+        write_member_spots(members, (least + most) / 2.0, (most - least) / 2.0, features, curves, spots)
     for number in chosen:
         if standing == 3 and not is_among(sliding_pairs.integers[number, TAIL], features.standing):
             continue
         pair, work.at[0] = placed_pair(number, sliding_pairs, features.loose), 0
+        if asks_spots:
+            write_slide_spots(pair, sliding_pairs, features, slides)
         while True:
-            count = add_of_pair(out, count, pair, standing, sliding_pairs, members, work)
+            count = add_of_pair(out, count, pair, standing, sliding_pairs, members, spots, slides, work)
             if work.at[0] == members.shape[0]:
                 break
             out = grown(out)

@@ -8,7 +8,7 @@ import numpy as np
 
 from workhold.kernels.base.arrays import with_room
 from workhold.kernels.base.compiling import Array, IntArray, compiled_making_arrays, inner
-from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS, X, Y
+from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS, X, Y, point_at
 from workhold.kernels.base.tables import (
     CENTER,
     COLUMN_STEP,
@@ -20,23 +20,31 @@ from workhold.kernels.base.tables import (
     FROM,
     HEAD,
     LENGTH,
+    NEAR_FROM,
+    NEAR_TO,
     ORIENTATION,
     ROW_STEP,
+    SLIDE_FROM,
+    SLIDE_TO,
     SLIDING_PAIR_REALS,
     STEP_LENGTH,
     TAIL,
     TANGENT_FROM,
     TANGENT_TO,
     TO,
+    NearSpots,
 )
 from workhold.kernels.chord.evaluation import parameter_on, write_curve, write_shift
 from workhold.kernels.chord.intervals import NARROW, SLIVER, chord_intervals
 from workhold.kernels.chord.stretches import STRETCH_LENGTH, add_stretches
+from workhold.kernels.curves.near_spots import may_join
 from workhold.kernels.curves.piece_bounds import tail_disc
 from workhold.kernels.curves.sliding_pairs import sliding_pairs_between
 
 # Rounding of distances in mm, generously counted.
 ROUNDING = 1e-9
+# A chord's range is looked at in so many parts.
+RANGE_PARTS = 16
 
 
 @inner
@@ -73,6 +81,52 @@ def may_exist(a: Array, b: Array, curve: Array) -> bool:
     return at_head and may_reach(a, x, y, radius)
 
 
+@inner
+def write_near_range(a: Array, b: Array, ends: tuple[int, int], near: NearSpots, curve: Array) -> bool:
+    """Writes the part of a chord's range in which its contacts may be of interest; whether there is any."""
+    curve[NEAR_FROM], curve[NEAR_TO] = curve[FROM], curve[TO]
+    if near.joined.shape[0] == 0:
+        return True
+    slack, d = max(curve[TANGENT_FROM], curve[TANGENT_TO]), curve[LENGTH]
+    low, size = curve[FROM], (curve[TO] - curve[FROM]) / RANGE_PARTS
+    first, last = RANGE_PARTS, -1
+    for k in range(RANGE_PARTS):
+        middle, half = low + (k + 0.5) * size, 0.5 * size + slack + SLIVER
+        x, y, radius = tail_disc(a, b, curve, middle, half)
+        head = (x + d * cos(middle), y + d * sin(middle), radius + d * half)
+        if may_join(a, b, ends, near, (x, y, radius), head):
+            first, last = min(first, k), k
+    if last < 0:
+        return False
+    if first > 0:
+        curve[NEAR_FROM] = low + first * size
+    if last < RANGE_PARTS - 1:
+        curve[NEAR_TO] = low + (last + 1) * size
+    return True
+
+
+@inner
+def slides_near(a: Array, b: Array, ends: tuple[int, int], near: NearSpots, pair: Array, d: float) -> bool:
+    """Whether contacts of a sliding pair may be of interest; its range is cut to where they may."""
+    if near.joined.shape[0] == 0:
+        return True
+    first, last = RANGE_PARTS, -1
+    low, size = pair[SLIDE_FROM], (pair[SLIDE_TO] - pair[SLIDE_FROM]) / RANGE_PARTS
+    half = 0.5 * size * (1.0 if a[IS_ARC] == 0.0 else a[RADIUS]) + ROUNDING
+    for k in range(RANGE_PARTS):
+        x, y = point_at(a, low + (k + 0.5) * size)
+        head = (x + d * cos(pair[DIRECTION]), y + d * sin(pair[DIRECTION]), half)
+        if may_join(a, b, ends, near, (x, y, half), head):
+            first, last = min(first, k), k
+    if last < 0:
+        return False
+    if last < RANGE_PARTS - 1:
+        pair[SLIDE_TO] = low + (last + 1) * size
+    if first > 0:
+        pair[SLIDE_FROM] = low + first * size
+    return True
+
+
 @compiled_making_arrays
 def tail_curves(
     tail: int,
@@ -82,9 +136,10 @@ def tail_curves(
     starts: IntArray,
     steps: IntArray,
     angles: Array,
+    near: NearSpots,
 ) -> tuple[IntArray, Array, IntArray, Array, Array]:
-    """All chords whose tail is on one feature and whose head is on the same feature or one of a higher
-    number.
+    """All chords of interest whose tail is on one feature and whose head is on the same feature or one of a
+    higher number.
 
     Parameters
     ----------
@@ -95,6 +150,7 @@ def tail_curves(
     starts : (D + 1,) where the steps of each length begin.
     steps : (S, 2) column and row differences. Both directions of every step are listed.
     angles : (S,) their directions in radians.
+    near : which two stretches of features locators of interest may touch.
 
     Returns
     -------
@@ -118,11 +174,17 @@ def tail_curves(
                 continue
             ranges = chord_intervals(a, b, d)
             sliding = sliding_pairs_between(a, b, d)
+            slides = 0
+            for k in range(sliding.shape[0]):
+                if slides_near(a, b, (tail, head), near, sliding[k], d):
+                    for column_of in range(3):
+                        sliding[slides, column_of] = sliding[k, column_of]
+                    slides += 1
             for k in range(ranges.shape[0]):
                 write_curve(curve, a, b, d, ranges[k, 2], 0.0)
                 curve[FROM], curve[TO] = ranges[k, 0], ranges[k, 1]
                 curve[TANGENT_FROM], curve[TANGENT_TO] = ranges[k, 3], ranges[k, 4]
-                if not may_exist(a, b, curve):
+                if not may_exist(a, b, curve) or not write_near_range(a, b, (tail, head), near, curve):
                     continue
                 first = stretch_count
                 stretches, stretch_count = add_stretches(stretches, stretch_count, a, b, curve)
@@ -141,7 +203,7 @@ def tail_curves(
                 column, row = steps[step, 0], steps[step, 1]
                 if head == tail and (column < 0 or (column == 0 and row < 0)):
                     continue
-                for k in range(sliding.shape[0]):
+                for k in range(slides):
                     whole = with_room(whole, sliding_pair_count)
                     sliding_pairs = with_room(sliding_pairs, sliding_pair_count)
                     write_step(whole[sliding_pair_count], tail, head, column, row, center)

@@ -11,8 +11,14 @@ from math import cos, hypot, pi, sin
 import numpy as np
 
 from workhold.conventions import GAP_SLACK
-from workhold.kernels.base.arrays import grown
-from workhold.kernels.base.compiling import Array, IntArray, compiled_making_arrays, inner
+from workhold.kernels.base.arrays import grown, sort_rows
+from workhold.kernels.base.compiling import (
+    Array,
+    IntArray,
+    compiled_making_arrays,
+    inner,
+    inner_making_arrays,
+)
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, local_size
 from workhold.kernels.base.tables import (
     CENTER,
@@ -20,9 +26,11 @@ from workhold.kernels.base.tables import (
     CURVE,
     HEAD,
     HIGH,
+    LENGTH,
     LOW,
     PIECE_LENGTH,
     ROW_STEP,
+    SHIFT,
     STEADY,
     TAIL,
     VALUE_LEAST,
@@ -32,9 +40,18 @@ from workhold.kernels.base.tables import (
     Features,
     Lattice,
     Limits,
+    NearSpots,
+    Precision,
 )
 from workhold.kernels.chord.evaluation import POSITION
 from workhold.kernels.chord.intervals import share_one_line
+from workhold.kernels.contact.location_bounds import (
+    BEYOND,
+    CONTACT_LENGTH,
+    least_error_in,
+    most_allowed,
+    write_spot,
+)
 from workhold.kernels.contact.record import RECORD_LENGTH, angle_of, write_given_up
 from workhold.kernels.contact.rules import share_a_carrier
 from workhold.kernels.curves.block_work import (
@@ -49,13 +66,17 @@ from workhold.kernels.curves.block_work import (
     place_triple,
 )
 from workhold.kernels.curves.moving_pegs import add_moving_pegs, height_range
-from workhold.kernels.curves.piece_bounds import HAIR, kept_edges
+from workhold.kernels.curves.near_spots import is_any_joined, spots_of
+from workhold.kernels.curves.piece_bounds import HAIR, kept_edges, tail_disc
 from workhold.kernels.curves.pieces import cell_pieces
 from workhold.kernels.curves.roots import ROOT_PSI, ROOT_RADIUS, crossings, may_meet
 
 # Columns of a limb, one of the two chords of a triple: what the pairing of pieces looks at.
 LIMB_LOW, LIMB_HIGH, LIMB_VALUE_LEAST, LIMB_VALUE_MOST, LIMB_PIECE, LIMB_TAIL = range(6)
-LIMB_LENGTH = 6
+LIMB_TAIL_FIRST, LIMB_TAIL_END, LIMB_HEAD_FIRST, LIMB_HEAD_END = range(6, 10)
+# Both contacts as spots (``contact.location_bounds``).
+LIMB_TAIL_SPOT, LIMB_HEAD_SPOT = 10, 10 + CONTACT_LENGTH
+LIMB_LENGTH = LIMB_HEAD_SPOT + CONTACT_LENGTH
 
 
 @inner
@@ -74,11 +95,12 @@ def farthest_right(features: Features, low: float, high: float) -> float:
 
 @inner
 def write_limbs(
-    pieces: Array, integers: IntArray, touched: tuple[int, int], farthest: float, out: Array
+    pieces: Array, features: Features, curves: Curves, farthest: float, length: float, out: Array
 ) -> int:
-    """Writes the (N, 6) limbs, what their pairing looks at, of the pieces of standing pegs that leave room
-    for a moving peg; return their number."""
-    count = int(np.int64(0))
+    """Writes the (N, 20) limbs, what their pairing looks at, of the pieces of standing pegs that leave room
+    for a moving peg and may be of interest; returns their number."""
+    count, integers, touched = int(np.int64(0)), curves.integers, features.standing
+    asks_spots = features.near.triples.shape[0] > 0
     for k in range(pieces.shape[0]):
         row = pieces[k]
         tail = integers[int(row[CURVE]), TAIL]
@@ -88,8 +110,64 @@ def write_limbs(
         limb[LIMB_VALUE_LEAST], limb[LIMB_VALUE_MOST] = row[VALUE_LEAST] - HAIR, row[VALUE_MOST] + HAIR
         limb[LIMB_LOW], limb[LIMB_HIGH], limb[LIMB_PIECE] = row[LOW], row[HIGH], k
         limb[LIMB_TAIL] = tail
+        if asks_spots and not write_spots(limb, row, features, curves, length):
+            continue
         count += 1
     return count
+
+
+@inner
+def write_spots(limb: Array, piece: Array, features: Features, curves: Curves, length: float) -> bool:
+    """Writes the spots that tail and head of a piece may touch; whether any two are of interest."""
+    number, near = int(piece[CURVE]), features.near
+    curve, tail, head = curves.reals[number], curves.integers[number, TAIL], curves.integers[number, HEAD]
+    a, b = features.loose[tail], features.loose[head]
+    psi, half = (piece[LOW] + piece[HIGH]) / 2.0, (piece[HIGH] - piece[LOW]) / 2.0
+    x, y, radius = tail_disc(a, b, curve, psi, half)
+    alpha, d = psi + curve[SHIFT], curve[LENGTH]
+    first, end = spots_of(a, tail, near, x, y, radius)
+    at_x, at_y, off = x + d * cos(alpha), y + d * sin(alpha), radius + d * half
+    begin, last = spots_of(b, head, near, at_x, at_y, off)
+    given = features.precision
+    write_spot(a, tail, x, y, radius, given, length, limb[LIMB_TAIL_SPOT:LIMB_HEAD_SPOT])
+    write_spot(b, head, at_x, at_y, off, given, length, limb[LIMB_HEAD_SPOT:])
+    limb[LIMB_TAIL_FIRST], limb[LIMB_TAIL_END] = first, end
+    limb[LIMB_HEAD_FIRST], limb[LIMB_HEAD_END] = begin, last
+    return is_any_joined(near, first, end, begin, last)
+
+
+@inner
+def are_near(limb: Array, other: Array, near: NearSpots) -> bool:
+    """Whether the pegs of two limbs with one tail may be locators of interest."""
+    first = int(max(limb[LIMB_TAIL_FIRST], other[LIMB_TAIL_FIRST]))
+    end = int(min(limb[LIMB_TAIL_END], other[LIMB_TAIL_END]))
+    for i in range(first, end):
+        for j in range(int(limb[LIMB_HEAD_FIRST]), int(limb[LIMB_HEAD_END])):
+            for k in range(int(other[LIMB_HEAD_FIRST]), int(other[LIMB_HEAD_END])):
+                if near.triples[i, j, k] != 0:
+                    return True
+    return False
+
+
+@inner
+def limbs_beyond(limb: Array, other: Array, precision: Precision, room: Array) -> bool:
+    """Whether the pegs of two limbs with one tail surely have a larger error than is of interest."""
+    tail, head, third = limb[LIMB_TAIL_SPOT:LIMB_HEAD_SPOT], limb[LIMB_HEAD_SPOT:], other[LIMB_HEAD_SPOT:]
+    low, high = max(limb[LIMB_LOW], other[LIMB_LOW]), min(limb[LIMB_HIGH], other[LIMB_HIGH])
+    most = BEYOND * most_allowed(low, high, precision)
+    return least_error_in(tail, head, third, precision, room, most) > most
+
+
+@inner_making_arrays
+def sorted_limbs(limbs: Array) -> Array:
+    """Limbs (N, 20) with those of each tail in the order of their least values."""
+    out, first = np.empty(limbs.shape), int(np.int64(0))
+    keys, order = np.empty(limbs.shape[0]), np.empty(limbs.shape[0], np.int64)
+    for k in range(1, limbs.shape[0] + 1):
+        if k == limbs.shape[0] or limbs[k, LIMB_TAIL] != limbs[first, LIMB_TAIL]:
+            sort_rows(limbs[first:k], LIMB_VALUE_LEAST, 1.0, keys[first:k], order[first:k], out[first:k])
+            first = k
+    return out
 
 
 @inner
@@ -120,36 +198,37 @@ def heads_share_a_line(one: IntArray, two: IntArray, features: Array, lattice: L
 
 @inner
 def add_limb_pairs(out: Array, count: int, limbs: Array, pieces: Array, work: BlockWork) -> int:
-    """Appends what comes of the pairs of (N, 6) limbs with a common tail, from the one at ``work.at`` on
-    (see ``block_work``)."""
+    """Appends what comes of the pairs of (N, 20) limbs with a common tail, sorted, from the one at
+    ``work.at`` on (see ``block_work``)."""
     at, stats, lattice, limits = work.at, work.stats, work.lattice, work.limits
     loose, curves, integers = work.features.loose, work.curves, work.curves.integers
+    near, asks_spots = work.features.near, work.features.near.triples.shape[0] > 0
     for i in range(at[0], limbs.shape[0]):
         if stats[STOPPED] != 0:
             break
         limb = limbs[i]
-        first = pieces[int(limb[LIMB_PIECE])]
-        one = int(first[CURVE])
-        tail = integers[one, TAIL]
+        tail = int(limb[LIMB_TAIL])
         # A tail on a whole circle may be counted from either side of the seam.
         circle = loose[tail, IS_ARC] != 0.0 and loose[tail, HALF_EXTENT] >= pi
         period = 2.0 * pi if circle else 0.0
-        for back in range(at[1], i):
-            j = i - 1 - back
-            other = limbs[j]
-            if other[LIMB_TAIL] != limb[LIMB_TAIL]:
+        for ahead in range(at[1], limbs.shape[0] - 1 - i):
+            other = limbs[i + 1 + ahead]
+            # All that follow have larger values.
+            if other[LIMB_TAIL] != limb[LIMB_TAIL] or not (
+                circle or other[LIMB_VALUE_LEAST] <= limb[LIMB_VALUE_MOST]
+            ):
                 break
             stats[PAIRS] += 1
-            # Most pairs differ by this.
-            if not circle and (
-                limb[LIMB_VALUE_LEAST] > other[LIMB_VALUE_MOST]
-                or other[LIMB_VALUE_LEAST] > limb[LIMB_VALUE_MOST]
-            ):
-                continue
             if limb[LIMB_LOW] >= other[LIMB_HIGH] or other[LIMB_LOW] >= limb[LIMB_HIGH]:
                 continue
-            second = pieces[int(other[LIMB_PIECE])]
-            two = int(second[CURVE])
+            if asks_spots and (
+                not are_near(limb, other, near)
+                or limbs_beyond(limb, other, work.features.precision, work.triple[:4])
+            ):
+                continue
+            first = pieces[int(max(limb[LIMB_PIECE], other[LIMB_PIECE]))]
+            second = pieces[int(min(limb[LIMB_PIECE], other[LIMB_PIECE]))]
+            one, two = int(first[CURVE]), int(second[CURVE])
             if not share_a_carrier(integers[one], integers[two], limits):
                 continue
             if integers[one, CENTER] >= 0 and integers[one, CENTER] == integers[two, CENTER]:
@@ -172,7 +251,7 @@ def add_limb_pairs(out: Array, count: int, limbs: Array, pieces: Array, work: Bl
                 write_given_up(out[count], 3.0, first, second, integers)
                 more = count + 1
             if more < 0:
-                at[0], at[1] = i, back
+                at[0], at[1] = i, ahead
                 stats[PAIRS] -= 1
                 stats[CANDIDATES], stats[CONTACTS] = candidates, contacts
                 return count
@@ -217,8 +296,8 @@ def three_and_one_cells(
         )
         pieces = room[:number]
         limbs = np.empty((pieces.shape[0], LIMB_LENGTH))
-        limb_count = write_limbs(pieces, curves.integers, features.standing, farthest, limbs)
-        limbs, work.at[0] = limbs[:limb_count], 0
+        limb_count = write_limbs(pieces, features, curves, farthest, limits.wrench_length, limbs)
+        limbs, work.at[0] = sorted_limbs(limbs[:limb_count]), 0
         while True:
             count = add_limb_pairs(out, count, limbs, pieces, work)
             if work.at[0] == limb_count:

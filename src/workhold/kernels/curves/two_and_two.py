@@ -16,7 +16,7 @@ from math import ceil, floor
 import numpy as np
 
 from workhold.conventions import GAP_SLACK, LEAST_CLAMPING
-from workhold.kernels.base.arrays import grown
+from workhold.kernels.base.arrays import grown, sort_rows
 from workhold.kernels.base.compiling import Array, IntArray, compiled_making_arrays, inner
 from workhold.kernels.base.tables import (
     ACROSS_LEAST,
@@ -85,32 +85,6 @@ def write_roles(
         role[ROLE_LOW], role[ROLE_HIGH], role[ROLE_PIECE] = row[LOW], row[HIGH], k
         count += 1
     return count
-
-
-@inner
-def sort_from_right(roles: Array, keys: Array, order: IntArray, out: Array) -> None:
-    """Writes (N, 8) roles to ``out`` in the order of their places along x, the rightmost first (Shell's
-    sort).
-
-    ``keys`` and ``order`` are (N,) work space.
-    """
-    count = roles.shape[0]
-    for k in range(count):
-        keys[k], order[k] = roles[k, ROLE_X], k
-    step = 1
-    while step < count // 3:
-        step = 3 * step + 1
-    while step > 0:
-        for k in range(step, count):
-            key, item, at = keys[k], order[k], k
-            while at >= step and keys[at - step] < key:
-                keys[at], order[at] = keys[at - step], order[at - step]
-                at -= step
-            keys[at], order[at] = key, item
-        step //= 3
-    for j in range(count):
-        for k in range(ROLE_LENGTH):
-            out[j, k] = roles[order[j], k]
 
 
 @inner
@@ -273,7 +247,9 @@ def two_and_two_cells(
                 pieces, curves.integers, touched, X_STANDING + side, force, counting, roles[side]
             )
         moving = np.empty((counts[1], ROLE_LENGTH))
-        sort_from_right(roles[1, : counts[1]], np.empty(counts[1]), np.empty(counts[1], np.int64), moving)
+        # The rightmost first.
+        keys, order = np.empty(counts[1]), np.empty(counts[1], np.int64)
+        sort_rows(roles[1, : counts[1]], ROLE_X, -1.0, keys, order, moving)
         standing, work.at[0] = roles[0, : counts[0]], 0
         while True:
             count = add_pairs(out, count, standing, moving, pieces, work)

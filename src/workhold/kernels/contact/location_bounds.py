@@ -1,0 +1,284 @@
+"""Bounds of the location error: of contacts in place, and of all contacts on some short stretches of features.
+
+The location error is the largest movement of a point of the silhouette when all pegs and faces are off by their
+tolerances. Here the movement is taken of a few points and along a few directions only, the probes. So it comes
+out too small, never too large. The movement of a probe is a sum over contacts, each with its error. Signs of
+errors are free, so the largest sum is that of the sizes:
+
+    sum of peg |a_i| + sum over faces of face |sum of a_i at the face|,
+
+where a_i is the movement along a probe for an error of 1 of contact i.
+
+Stretches: let a seat have contacts u and a location error of no more than e. Then no point of the silhouette
+moves by more than e, so the part turns by no more than 2 e / d, where d is the largest distance of two of them.
+Let contacts u' be the middles of stretches that hold u. What a contact measures of a movement changes from u
+to u' by no more than the half length times the turn on a line, and by the half sweep times the movement of the
+centre on an arc. So the same movement belongs to errors of u' that are off by no more than g_i e. As a norm of
+errors, the largest movement of a probe at u' is then at most e (1 + h), with h that of errors of sizes g_i. It
+is no less than its value z for the tolerances, less e h. So e >= z / (1 + h), and that is the bound. It holds
+as well where contacts in the middles fix no pose: all is multiplied by the determinant.
+"""
+
+from __future__ import annotations
+
+from math import floor
+
+import numpy as np
+
+from workhold.kernels.base.arrays import grown
+from workhold.kernels.base.feature import IS_ARC, RADIUS
+from workhold.kernels.base.interval import TURN
+from workhold.kernels.base.compiling import Array, ByteArray, IntArray, compiled_making_arrays, inner
+from workhold.kernels.base.tables import NearSpots, Precision
+from workhold.kernels.contact.record import Angle
+from workhold.kernels.contact.rules import outward_normal
+
+# Columns of a spot, a stretch of a feature: its normal, its moment about the centre over L, what contacts in it
+# may be off by for a location error of 1, its feature, the first of the spots that it is made of, and how many
+# these are (0: it is one of the finest, and has the number that stands for the first).
+SPOT_NX, SPOT_NY, SPOT_MOMENT, SPOT_GIVE, SPOT_FEATURE, SPOT_FIRST, SPOT_COUNT = range(7)
+SPOT_LENGTH = 7
+# Of a contact in place no more than these are known.
+CONTACT_LENGTH = 5
+# Errors this part beyond the limit are surely beyond it, whatever is rounded. So many times what a minor may be
+# off by is more than movements and determinants are.
+BEYOND, WIDE = 1.001, 40.0
+# Radians beside a quarter turn that count as such.
+SQUARE = 1e-4
+
+
+@inner
+def cross_rows(one: Array, two: Array, out: Array) -> None:
+    """Writes the cross product of two rows of three."""
+    out[0] = one[1] * two[2] - one[2] * two[1]
+    out[1] = one[2] * two[0] - one[0] * two[2]
+    out[2] = one[0] * two[1] - one[1] * two[0]
+
+
+@inner
+def error_times(moves: Array, features: Array, count: int, precision: Precision, enough: float) -> float:
+    """A lower bound of the location error in mm for movements (C, 3) that errors of 1 of contacts make.
+
+    ``features`` (C,) are those touched. Where movements are multiplied by something, so is the result. A bound
+    above ``enough`` is as good as any larger one.
+    """
+    most, probes, faces = 0.0, precision.probes, precision.faces
+    for p in range(probes.shape[0]):
+        total = 0.0
+        for i in range(count):
+            along = moves[i, 0] * probes[p, 0] + moves[i, 1] * probes[p, 1] + moves[i, 2] * probes[p, 2]
+            total += precision.peg * abs(along)
+            face, first = faces[int(features[i])], True
+            for j in range(i):
+                first = first and faces[int(features[j])] != face
+            if not first:
+                continue
+            for j in range(i + 1, count):
+                if faces[int(features[j])] == face:
+                    along += (
+                        moves[j, 0] * probes[p, 0] + moves[j, 1] * probes[p, 1] + moves[j, 2] * probes[p, 2]
+                    )
+            total += precision.face * abs(along)
+        most = max(most, total)
+        if most > enough:
+            break
+    return most
+
+
+@inner
+def doubt_at(features: Array, count: int, precision: Precision) -> float:
+    """By how many times contacts on features (C,) count more, at least."""
+    doubt = 1.0
+    for i in range(count):
+        doubt = max(doubt, precision.doubts[int(features[i])])
+    return doubt
+
+
+@inner
+def most_allowed(low: float, high: float, precision: Precision) -> float:
+    """The largest error of interest at orientations from ``low`` to ``high`` in radians."""
+    quarter = TURN / 4.0
+    if floor((high + SQUARE) / quarter) > floor((low - SQUARE) / quarter):
+        return precision.most
+    return precision.most_aslant
+
+
+@inner
+def is_beyond(
+    moves: Array, features: Array, count: int, size: float, band: float, psi: float, precision: Precision
+) -> bool:
+    """Whether contacts surely have a larger effective error than is of interest.
+
+    Parameters
+    ----------
+    moves : (C, 3) movements that errors of 1 make, times ``size``, of which ``band`` may be wrong.
+    features : (C,) touched.
+    psi : orientation in radians.
+    """
+    most = BEYOND * most_allowed(psi, psi, precision) / doubt_at(features, count, precision)
+    enough = most * (size + WIDE * band) + WIDE * band * (precision.peg + precision.face)
+    return error_times(moves, features, count, precision, enough) > enough
+
+
+@inner
+def two_and_two_beyond(
+    points: Array,
+    normals: Array,
+    features: Array,
+    angle: Angle,
+    length: float,
+    band: float,
+    precision: Precision,
+    room: Array,
+) -> bool:
+    """Whether two pegs on each of two carriers surely have a larger effective error than is of interest.
+
+    The travel of the moving carrier is free. What the two moving pegs say besides is one wrench across it.
+
+    Parameters
+    ----------
+    points, normals : (4, 2) of the contacts, the standing ones first.
+    features : (4,) touched.
+    length : L in mm.
+    band : what a minor may be off by.
+    room : (8, 3) work space.
+    """
+    wrenches, moves = room[:4], room[4:]
+    for k in range(4):
+        wrenches[k, 0], wrenches[k, 1] = normals[k, 0], normals[k, 1]
+        wrenches[k, 2] = (points[k, 0] * normals[k, 1] - points[k, 1] * normals[k, 0]) / length
+    one = normals[2, 0] * angle[1] + normals[2, 1] * angle[2]
+    two = normals[3, 0] * angle[1] + normals[3, 1] * angle[2]
+    for n in range(3):
+        wrenches[2, n] = two * wrenches[2, n] - one * wrenches[3, n]
+    cross_rows(wrenches[1], wrenches[2], moves[0])
+    cross_rows(wrenches[2], wrenches[0], moves[1])
+    cross_rows(wrenches[0], wrenches[1], moves[2])
+    size = abs(wrenches[0, 0] * moves[0, 0] + wrenches[0, 1] * moves[0, 1] + wrenches[0, 2] * moves[0, 2])
+    for n in range(3):
+        moves[3, n] = -one * moves[2, n]
+        moves[2, n] = two * moves[2, n]
+    return is_beyond(moves, features, 4, size, band, angle[0], precision)
+
+
+@inner
+def write_spot(
+    row: Array, feature: int, x: float, y: float, radius: float, precision: Precision, length: float, out: Array
+) -> None:
+    """Writes a contact on a feature, known to a radius in mm, as a spot (5,)."""
+    nx, ny = outward_normal(row, x, y)
+    out[SPOT_NX], out[SPOT_NY], out[SPOT_FEATURE] = nx, ny, feature
+    out[SPOT_MOMENT] = (x * ny - y * nx) / length
+    off = radius
+    if row[IS_ARC] != 0.0:
+        # See ``curves.near_spots``.
+        off = 1.1 * radius / row[RADIUS] if radius <= 0.5 * row[RADIUS] else 2.0
+    out[SPOT_GIVE] = off * precision.gives[feature]
+
+
+@inner
+def least_error_in(
+    first: Array, second: Array, third: Array, precision: Precision, room: Array, enough: float
+) -> float:
+    """What the effective error of any seat with contacts in three spots is no less than, in mm.
+
+    ``room`` is (4, 3) work space; a bound above ``enough`` is as good as any larger one.
+    """
+    cross_rows(second, third, room[0])
+    cross_rows(third, first, room[1])
+    cross_rows(first, second, room[2])
+    size = abs(first[0] * room[0, 0] + first[1] * room[0, 1] + first[2] * room[0, 2])
+    room[3, 0], room[3, 1], room[3, 2] = first[SPOT_FEATURE], second[SPOT_FEATURE], third[SPOT_FEATURE]
+    give, probes, doubt = 0.0, precision.probes, doubt_at(room[3], 3, precision)
+    for p in range(probes.shape[0]):
+        total = 0.0
+        for i in range(3):
+            spot = first if i == 0 else (second if i == 1 else third)
+            along = room[i, 0] * probes[p, 0] + room[i, 1] * probes[p, 1] + room[i, 2] * probes[p, 2]
+            total += spot[SPOT_GIVE] * abs(along)
+        give = max(give, total)
+    size = max(size + give, 1e-300) / doubt
+    return error_times(room, room[3], 3, precision, enough * size) / size
+
+
+@inner
+def mark_triple(triples: ByteArray, a: int, b: int, c: int) -> None:
+    """Marks three spots in every order."""
+    triples[a, b, c] = triples[a, c, b] = 1
+    triples[b, a, c] = triples[b, c, a] = 1
+    triples[c, a, b] = triples[c, b, a] = 1
+
+
+@compiled_making_arrays
+def join_near_spots(
+    spots: Array, roots: int, most: float, precision: Precision, near: NearSpots, counts: IntArray
+) -> None:
+    """Marks the spots that locators with no larger effective error may touch.
+
+    Parameters
+    ----------
+    spots : (S, 7), the first so many of them the ``roots``, in the order of features.
+    most : effective error in mm.
+    near : receives the marks, for the finest spots.
+    counts : (2,) to which is added how many triples of spots were looked at, and how many the bound ruled out.
+    """
+    stack, room = np.empty((64, 3), np.int64), np.empty((4, 3))
+    joined, keeps_triples = near.joined, near.triples.shape[0] > 0
+    for i in range(roots):
+        for j in range(i, roots):
+            for k in range(j, roots):
+                stack[0, 0], stack[0, 1], stack[0, 2] = i, j, k
+                height = 1
+                while height > 0:
+                    height -= 1
+                    one, two, three = stack[height, 0], stack[height, 1], stack[height, 2]
+                    counts[0] += 1
+                    first, second, third = spots[one], spots[two], spots[three]
+                    if least_error_in(first, second, third, precision, room, most) > most:
+                        counts[1] += 1
+                        continue
+                    if first[SPOT_COUNT] + second[SPOT_COUNT] + third[SPOT_COUNT] == 0.0:
+                        a, b, c = int(first[SPOT_FIRST]), int(second[SPOT_FIRST]), int(third[SPOT_FIRST])
+                        joined[a, b] = joined[b, a] = 1
+                        joined[a, c] = joined[c, a] = 1
+                        if first[SPOT_FEATURE] == second[SPOT_FEATURE]:
+                            joined[b, c] = joined[c, b] = 1
+                        if keeps_triples:
+                            mark_triple(near.triples, a, b, c)
+                        continue
+                    for a in range(max(int(first[SPOT_COUNT]), 1)):
+                        for b in range(max(int(second[SPOT_COUNT]), 1)):
+                            for c in range(max(int(third[SPOT_COUNT]), 1)):
+                                if height == stack.shape[0]:
+                                    stack = grown(stack)
+                                stack[height, 0] = part_of(spots, one, a)
+                                stack[height, 1] = part_of(spots, two, b)
+                                stack[height, 2] = part_of(spots, three, c)
+                                height += 1
+
+
+@inner
+def part_of(spots: Array, spot: int, number: int) -> int:
+    """A spot that another is made of, by its number among these; one of the finest is itself."""
+    return int(spots[spot, SPOT_FIRST]) + number if spots[spot, SPOT_COUNT] > 0.0 else spot
+
+
+@compiled_making_arrays
+def least_middle_error(spots: Array, roots: int, precision: Precision) -> float:
+    """The least effective error in mm of three contacts in the middles of the first spots; infinite when no
+    three fix the pose."""
+    least, room = np.inf, np.empty((4, 3))
+    for i in range(roots):
+        for j in range(i, roots):
+            for k in range(j, roots):
+                first, second, third = spots[i], spots[j], spots[k]
+                cross_rows(second, third, room[0])
+                size = abs(first[0] * room[0, 0] + first[1] * room[0, 1] + first[2] * room[0, 2])
+                if size <= 1e-6:
+                    continue
+                cross_rows(third, first, room[1])
+                cross_rows(first, second, room[2])
+                room[3, 0], room[3, 1] = first[SPOT_FEATURE], second[SPOT_FEATURE]
+                room[3, 2] = third[SPOT_FEATURE]
+                least = min(least, error_times(room, room[3], 3, precision, np.inf) / size)
+    return least

@@ -1,0 +1,319 @@
+"""The best fixtures first: searches up to a limit of the location error, which grows until enough are found.
+
+In the usual order one fixture surely comes before another whose effective location error is a tenth larger, if
+it is fit for a workshop and has no warning. So once as many such fixtures are known as are asked for, nothing
+with an error a tenth above theirs is among the best. What is searched first is therefore what has a small error.
+
+Three locators have a small error only far apart and on faces that do not all look the same way. So features are
+cut into short stretches, spots, and a bound of the error is found for all three of them
+(``kernels.contact.location_bounds``). Chords that join no two spots of a seat with a small error are not even
+made. What is left of a limited search is a small part of all, and is searched as always, with proof.
+
+Other angles than those of the drawing, by quarters, count half as much again. So square to the drawing the limit
+holds as it is, and elsewhere a smaller one, below which there is often nothing at all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import hypot, inf, pi
+
+import numpy as np
+from attrs import evolve, field, frozen
+from numpy.typing import NDArray
+
+from workhold.contact.curves import EVERYWHERE, loosened
+from workhold.contact.problem import Problem
+from workhold.conventions import SQUARE_TILT
+from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS, SEGMENT_LENGTH, SIGN, X, Y
+from workhold.kernels.base.tables import NearSpots, Precision
+from workhold.kernels.contact.location_bounds import (
+    SPOT_COUNT,
+    SPOT_FIRST,
+    SPOT_LENGTH,
+    join_near_spots,
+    least_middle_error,
+)
+from workhold.listing.ranking import PER_MM, OrderKeys, best_possible, keys_of
+from workhold.model.first_choice import FACTORS
+from workhold.model.quality import LOCATION_ERROR, PENALTY, SMALLEST_FACE, TILT
+from workhold.model.query import Query
+from workhold.statics.effective_error import faces_unasked_for
+from workhold.statics.judging import Judging
+from workhold.statics.quality import extremes, face_sizes, main_direction
+
+__all__ = ["ErrorLimit", "LocatorSpots", "can_limit_errors", "is_enough", "next_limit"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+# The finest spots are no longer than the part's size over this, and no arc turns by more in one, in radians.
+SPOTS_ACROSS, MOST_TURN = 32, pi / 4
+# Spots are cut in two so many times at most.
+MOST_CUTS = 2
+# Of more spots no triples are kept, which would take too much memory.
+MOST_TRIPLED = 400
+# Points nearer than this part of L are side by side.
+BESIDE = 0.1
+# Directions over half a turn, and points of the silhouette, in which movements are looked at.
+DIRECTIONS, OUTERMOST = 8, 8
+# The first limit is so many times the least error of any three contacts, and the next so many times the last
+# one as long as too few fixtures are found. After so many there is none.
+FIRST_TIMES, NEXT_TIMES, MOST_LIMITS = 1.1, 1.3, 9
+# What stands for a tenth more, and what rounding takes.
+TENTH, ROUNDING = 1.1, 1e-7
+ASLANT = next(one.times for one in FACTORS if one.key == "other_angle")
+IN_BORE = next(one.times for one in FACTORS if one.key == "dowel_in_bore")
+# Limits between two among which the next is chosen.
+NEARER = 40
+
+
+def can_limit_errors(query: Query) -> bool:
+    """Whether the best fixtures of a query are found by limits of the location error."""
+    off = query.tolerance.peg + query.tolerance.face
+    return query.best is not None and query.has_house_order and off > 0.0 and not query.workpiece.outlines
+
+
+@frozen(eq=False)
+class ErrorLimit:
+    """A limit of the effective location error, and what it leaves of the search.
+
+    Parameters
+    ----------
+    most : in mm; infinite for none.
+    precision : for the kernels.
+    square, aslant : which two spots locators may touch square to the drawing, and elsewhere.
+    boxes, ruled_out : how many triples of spots were looked at, and how many the bound ruled out.
+    """
+
+    most: float
+    precision: Precision
+    square: NearSpots = EVERYWHERE
+    aslant: NearSpots = EVERYWHERE
+    boxes: int = 0
+    ruled_out: int = 0
+
+    @property
+    def statistics(self) -> dict[str, int]:
+        """Counts for the account of the search."""
+        if self.most == inf:
+            return {}
+        return {"boxes": self.boxes, "boxes_ruled_out": self.ruled_out}
+
+
+@frozen(eq=False)
+class LocatorSpots:
+    """The spots of the features that standing pegs of a problem touch.
+
+    Parameters
+    ----------
+    problem : what is searched.
+    spots : (S, 7), see ``kernels.contact.location_bounds``, the coarsest first.
+    roots : how many of them are the coarsest.
+    starts : (F + 1,) numbers of the finest ones of each feature.
+    precision : without a limit.
+    """
+
+    problem: Problem
+    spots: Array
+    roots: int
+    starts: IntArray
+    precision: Precision
+    joined: dict[float, tuple[NearSpots, IntArray]] = field(factory=dict, init=False)
+
+    @classmethod
+    def of(cls, problem: Problem) -> LocatorSpots:
+        """The spots of a problem."""
+        rows = loosened(problem.rows[:, :SEGMENT_LENGTH])
+        points = outermost(problem)
+        apart = largest_apart(points)
+        first, end = problem.standing
+        cut = [
+            cut_feature(row, number, points, apart, problem.wrench_length)
+            for number, row in enumerate(rows[first:end])
+        ]
+        starts = np.cumsum([0, *(len(levels[-1]) for levels in cut)])
+        roots = sum(len(levels[0]) for levels in cut)
+        return cls(problem, joined_spots(cut, starts), roots, starts, precision_of(problem, points))
+
+    def limit(self, most: float) -> ErrorLimit:
+        """A limit of the effective error in mm; infinite for none."""
+        precision = self.precision._replace(most=most, most_aslant=most / ASLANT)
+        if most == inf:
+            return ErrorLimit(most, precision)
+        (square, one), (aslant, other) = self.near(most), self.near(most / ASLANT)
+        boxes, ruled_out = (one + other).tolist()
+        return ErrorLimit(most, precision, square, aslant, boxes, ruled_out)
+
+    def near(self, most: float) -> tuple[NearSpots, IntArray]:
+        """Which two spots locators may touch up to an effective error in mm, and counts of boxes."""
+        if most not in self.joined:
+            count, counts = int(self.starts[-1]), np.zeros(2, np.int64)
+            keeps_triples = count <= MOST_TRIPLED
+            near = NearSpots(
+                self.starts,
+                np.zeros((count, count), np.int8),
+                np.zeros((count * keeps_triples,) * 3, np.int8),
+            )
+            join_near_spots(self.spots, self.roots, most, self.precision, near, counts)
+            self.joined[most] = near, counts
+        return self.joined[most]
+
+    @property
+    def first(self) -> float:
+        """The limit to begin with, in mm."""
+        return FIRST_TIMES * float(least_middle_error(self.spots, self.roots, self.precision))
+
+
+def precision_of(problem: Problem, points: Array) -> Precision:
+    """What bounds location errors of a problem, given points (C, 2) of the silhouette about the centre."""
+    query, length = problem.query, problem.wrench_length
+    angles = np.arange(DIRECTIONS) * (pi / DIRECTIONS)
+    along = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    turn = (along[:, None, 1] * points[None, :, 0] - along[:, None, 0] * points[None, :, 1]) / length
+    probes = np.concatenate([np.repeat(along, len(points), axis=0), turn.reshape(-1, 1)], axis=1)
+    doubts = np.ones(len(problem.rows))
+    if all(carrier.contact.is_placed for carrier in query.toolkit.carriers):
+        doubts[faces_unasked_for(query)[problem.faces]] = IN_BORE
+    gives = np.array([give_of(row, points) for row in problem.rows])
+    tolerance = query.tolerance
+    return Precision(
+        problem.faces.astype(np.int64),
+        doubts,
+        gives,
+        np.ascontiguousarray(probes),
+        tolerance.peg,
+        tolerance.face,
+        inf,
+        inf,
+    )
+
+
+def outermost(problem: Problem) -> Array:
+    """A few points (C, 2) of the silhouette about the centre, outermost in some directions."""
+    corners, arcs = extremes(problem.workpiece)
+    points = [corners]
+    for x, y, radius, ahead, aside, cosine in arcs.tolist():
+        half, middle = np.arccos(np.clip(cosine, -1.0, 1.0)), np.arctan2(aside, ahead)
+        angle = middle + half * np.linspace(-1.0, 1.0, 2 * OUTERMOST + 1)
+        points.append(np.stack([x + radius * np.cos(angle), y + radius * np.sin(angle)], axis=1))
+    every = np.concatenate(points)
+    angles = np.arange(OUTERMOST) * (2.0 * pi / OUTERMOST) + pi / 8
+    chosen = {int(np.argmax(every @ [np.cos(angle), np.sin(angle)])) for angle in angles}
+    out: list[Array] = []
+    for point in every[sorted(chosen)]:
+        # Of two that are side by side one is enough.
+        if all(np.hypot(*(point - other)) > BESIDE * problem.wrench_length for other in out):
+            out.append(point)
+    return np.array(out)
+
+
+def largest_apart(points: Array) -> float:
+    """The largest distance in mm of two points."""
+    return max(float(np.hypot(*(points - point).T).max()) for point in points)
+
+
+def give_of(row: Array, points: Array) -> float:
+    """What a contact on a feature may be off by for a location error of 1, for each mm it is moved on a line,
+    or each radian on an arc; points (C, 2) are those of the silhouette."""
+    apart = largest_apart(points)
+    if row[IS_ARC] == 0.0:
+        return 2.0 / apart
+    return 1.0 + 2.0 * min(hypot(*(point - row[[X, Y]])) for point in points) / apart
+
+
+def cut_feature(row: Array, number: int, points: Array, apart: float, length: float) -> list[Array]:
+    """The spots of a feature, coarse ones first, in as many lists as it is cut.
+
+    Parameters
+    ----------
+    points : (C, 2) of the silhouette; ``apart`` is the largest distance in mm of two of them.
+    length : L in mm.
+    """
+    half, is_arc = float(row[HALF_EXTENT]), row[IS_ARC] != 0.0
+    size = 2.0 * half * (float(row[RADIUS]) if is_arc else 1.0)
+    pieces = max(size * SPOTS_ACROSS / apart, 2.0 * half / MOST_TURN if is_arc else 1.0, 1.0)
+    cuts = int(np.ceil(np.log2(pieces)))
+    counts = [1 << cut for cut in range(max(cuts - MOST_CUTS, 0), cuts + 1)]
+    return [spots_of(row, number, count, points, length) for count in counts]
+
+
+def spots_of(row: Array, number: int, count: int, points: Array, length: float) -> Array:
+    """So many spots (count, 7) of a feature, of which nobody knows yet what they are made of."""
+    half, out = float(row[HALF_EXTENT]) / count, np.zeros((count, SPOT_LENGTH))
+    at = (2.0 * np.arange(count) + 1.0 - count) * half
+    axis = row[[3, 4]]
+    if row[IS_ARC] == 0.0:
+        place, normal = row[[X, Y]] + at[:, None] * axis, np.tile([axis[1], -axis[0]], (count, 1))
+        give = half * give_of(row, points)
+    else:
+        cosine, sine = np.cos(at)[:, None], np.sin(at)[:, None]
+        ray = cosine * axis + sine * np.array([-axis[1], axis[0]])
+        place, normal = row[[X, Y]] + row[RADIUS] * ray, row[SIGN] * ray
+        give = min(half, 2.0) * give_of(row, points)
+    out[:, 0:2] = normal
+    out[:, 2] = (place[:, 0] * normal[:, 1] - place[:, 1] * normal[:, 0]) / length
+    out[:, 3], out[:, 4] = give, number
+    return out
+
+
+def joined_spots(cut: Sequence[Sequence[Array]], starts: IntArray) -> Array:
+    """All spots (S, 7) of features, the coarsest of each first, and what they are made of.
+
+    Parameters
+    ----------
+    cut : of each feature, see :func:`cut_feature`.
+    starts : numbers of the finest ones of each feature.
+    """
+    sizes = np.array([[len(level[k]) if k < len(level) else 0 for level in cut] for k in range(MOST_CUTS + 1)])
+    offsets = (np.cumsum(sizes.ravel()) - sizes.ravel()).reshape(sizes.shape)
+    for number, levels in enumerate(cut):
+        for k, spots in enumerate(levels):
+            is_last = k == len(levels) - 1
+            first = starts[number] if is_last else offsets[k + 1, number]
+            spots[:, SPOT_COUNT] = 0.0 if is_last else 2.0
+            spots[:, SPOT_FIRST] = first + (1 if is_last else 2) * np.arange(len(spots))
+    return np.concatenate([levels[k] for k in range(MOST_CUTS + 1) for levels in cut if k < len(levels)])
+
+
+def keys_beyond(most: float, query: Query) -> OrderKeys:
+    """The least keys of fixtures that are not found up to a limit of the effective error in mm.
+
+    They are one row for each class of angles, without and with a dowel in a bore, which the limit counts.
+    """
+    times = [factor(key) for key in (None, "quarter_turn", "other_angle")]
+    rows = [(place, times[place] * bore) for place in range(3) for bore in (1.0, IN_BORE)]
+    quality = best_possible(len(rows), query)
+    quality[:, LOCATION_ERROR] = [most / total for _, total in rows]
+    # Where the drawing lies aslant, other angles may be square.
+    is_square = main_direction(query.workpiece) == 0.0
+    quality[:, TILT] = [SQUARE_TILT * (is_square and place == 2) for place, _ in rows]
+    quality[:, SMALLEST_FACE] = np.nanmax(face_sizes(query.workpiece))
+    judging = Judging.of(1.0, query.toolkit, query.tolerance)
+    quality[:, PENALTY] = evolve(judging, small_face=0.0).penalty(quality)
+    return keys_of(quality, query, np.full(len(rows), most), np.array([place for place, _ in rows]))
+
+
+def is_enough(most: float, kept: OrderKeys, query: Query) -> bool:
+    """Whether nothing beyond a limit in mm is among the best, given the keys of what was found up to it."""
+    if most == inf:
+        return True
+    bound = keys_beyond(most, query)
+    return bool(bound.beaten(kept, query.best or 0, bound.lowest).all())
+
+
+def next_limit(most: float, kept: OrderKeys, query: Query, number: int) -> float:
+    """The limit in mm after one that was not enough, the so-manieth, given the keys of what it found."""
+    errors = np.sort(kept.error[kept.is_fine]) if kept.error is not None else np.zeros(0, np.int64)
+    count = query.best or 0
+    if len(errors) < count:
+        return inf if number >= MOST_LIMITS else NEXT_TIMES * most
+    # Of the limits up to where all others surely have a step more, the least that will be enough.
+    last = TENTH * float(errors[count - 1]) / PER_MM * (1.0 + ROUNDING)
+    limits = np.linspace(most, max(last, most), NEARER + 1)[1:].tolist()
+    return next((limit for limit in limits if is_enough(limit, kept, query)), last)
+
+
+def factor(key: str | None) -> float:
+    """By how many times a doubt counts; 1 for none."""
+    return next((one.times for one in FACTORS if one.key == key), 1.0)
