@@ -9,6 +9,7 @@ the nearest side: the same search then finds the best tipping arm, and t* is the
 
 from __future__ import annotations
 
+from functools import cached_property
 from itertools import combinations
 
 import numpy as np
@@ -23,8 +24,10 @@ from workhold.supports.forces import Triangles
 __all__ = ["ClampPlaces", "RankedPlaces"]
 
 Array = NDArray[np.float64]
-# How many of the best candidates are held against the face at a time.
-AT_ONCE = 6
+# How many of the best candidates are held against the face at first; each time after twice as many.
+AT_FIRST = 6
+# A corner this near to a curve, in mm, is on it; a curve too many does no harm.
+ON_CURVE = 1e-5
 # How many candidates, of several triangles, are looked at together.
 CANDIDATES = 1 << 18
 
@@ -74,17 +77,30 @@ class ClampPlaces:
         for x, y, low, high in () if self.rings is None else self.rings.tolist():
             circles += [(x, y, low), (x, y, high)]
         own = [np.unique(np.array(one).reshape(-1, 3), axis=0) for one in (lines, circles)]
-        return own[0], own[1], self.border_corners(own[0], own[1])
+        corners = self.border_corners(own[0], own[1])
+        return *self.bordering(own[0], own[1], corners), corners
+
+    def bordering(self, lines: Array, circles: Array, corners: Array) -> tuple[Array, Array]:
+        """The lines and circles of some of which a piece is a border: with a corner, or all round."""
+        apart = np.abs(corners[:, 0] * lines[:, :1] + corners[:, 1] * lines[:, 1:2] - lines[:, 2:])
+        kept = (apart <= ON_CURVE).any(axis=1)
+        away = np.hypot(*np.moveaxis(corners[None] - circles[:, None, :2], -1, 0))
+        round_ = (np.abs(away - circles[:, 2:]) <= ON_CURVE).any(axis=1)
+        free = np.flatnonzero(~round_)
+        if len(free):
+            beside = circles[free, :2] + circles[free, 2:] * np.array([1.0, 0.0])
+            round_[free] = self.allows(beside)
+        return lines[kept], circles[round_]
 
     def room(self, points: Array) -> Array:
-        """The slack (N,) in mm by which a tip at points (N, 2) keeps the rules of the top."""
-        on, off = self.face.rooms(points)
+        """The slack (N,) in mm by which a tip at points (N, 2) keeps the rules of the top but its zones."""
+        on, _ = self.face.own.rooms(points)
         on = on - self.tip_radius - self.tip_margin
         for regions, away in self.kept_off:
             for level in dict.fromkeys(self.face.levels):
                 own = np.array([one == level for one in self.face.levels])
                 on[:, own] = np.minimum(on[:, own], (regions.apart(level, points) - away)[:, None])
-        room = np.minimum(on.max(axis=1, initial=-np.inf), off - self.tip_radius)
+        room = on.max(axis=1, initial=-np.inf)
         if self.rings is not None:
             apart = np.hypot(*np.moveaxis(points[:, None] - self.rings[None, :, :2], -1, 0))
             ring = np.minimum(apart - self.rings[:, 2], self.rings[:, 3] - apart).max(axis=1, initial=-np.inf)
@@ -93,9 +109,11 @@ class ClampPlaces:
 
     def allows(self, points: Array) -> NDArray[np.bool_]:
         """Whether a tip may stand at points (N, 2)."""
-        return np.asarray(self.room(points) >= -GAP_SLACK)
+        found = self.face.off_zones(points, self.tip_radius, GAP_SLACK)
+        found[found] = self.room(points[found]) >= -GAP_SLACK
+        return found
 
-    @property
+    @cached_property
     def is_empty(self) -> bool:
         """Whether the tip may stand nowhere."""
         if not self.face.faces:
@@ -153,8 +171,10 @@ class ClampPlaces:
         out, least = np.full((len(points), 2), np.nan), np.full(len(points), np.inf)
         order = np.argsort(value, axis=1, kind="stable")
         open_ = np.arange(len(points))
-        for first in range(0, order.shape[1], AT_ONCE):
-            tried = order[open_, first : first + AT_ONCE]
+        first, step = 0, AT_FIRST
+        while first < order.shape[1]:
+            tried = order[open_, first : first + step]
+            first, step = first + step, 2 * step
             values = np.take_along_axis(value[open_], tried, axis=1)
             where = np.take_along_axis(points[open_], tried[..., None], axis=1)
             may = np.isfinite(values)
