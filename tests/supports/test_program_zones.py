@@ -16,9 +16,14 @@ from workhold import Program, Query, Vise, Workpiece, answer
 from workhold.geometry.loop import loop_segments
 from workhold.model.requirements import circle_zone, zone_of
 from workhold.model.support_request import SupportRequest
+from workhold.supports.choosing import WorkLimit
+from workhold.supports.clamp_point import ClampPlaces
 from workhold.supports.faces import FaceBorders, TouchableFace
-from workhold.supports.listing import supports_of
+from workhold.supports.forces import Triangles
+from workhold.supports.listing import supports_of, supports_one_by_one
 from workhold.supports.program import FINEST, MOST_ABOVE, capsule, with_program
+from workhold.supports.words import why_no_set
+from workhold.units import MILLIMETRE
 
 Array = NDArray[np.float64]
 PART = Workpiece.from_points("plate", [(0, 0), (60, 0), (60, 40), (0, 40)])
@@ -136,6 +141,69 @@ def test_many_pieces_become_few_zones_that_leave_nothing_in_the_way() -> None:
     _, above = rooms(program, points)
     walk = walk_room(program, points, [(THICKNESS, THICKNESS + 21.0, TIP)]) - program.clearance
     assert (walk[above >= 0.0] > -OFF).all()
+
+
+@pytest.mark.sampled(2)
+@pytest.mark.parametrize("number", range(6))
+def test_the_clamps_place_is_the_best_of_a_fine_grid(number: int) -> None:
+    """Free pieces of borders hold the best place: no place of a grid 0.4 mm fine that is left is any better."""
+    program = program_of(many_passes()) if number % 2 else random_program(Random(91 + number), PART)
+    request = with_program(SupportRequest(THICKNESS, PAD, TIP), PART, program)
+    face = TouchableFace.of(PART.loops, [zone.loop for zone in request.top_zones])
+    places = ClampPlaces(face, TIP, None)
+    random = np.random.default_rng(number)
+    corners = random.uniform((0, 0), (60, 40), (40, 3, 2))
+    sides = corners[:, 1:] - corners[:, :1]
+    area = sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0]
+    corners = np.where(area[:, None, None] < 0, corners[:, ::-1], corners)[np.abs(area) > 100]
+    triangles = Triangles.of(corners)
+    reach = random.uniform(-1.0, 3.0, (len(corners), 3))
+    reach[:, 0] = np.abs(reach[:, 0]) + 0.1
+    points, value = places.best(triangles, reach, 1.0)
+    around = grid(0.4)
+    around = around[(face.room(around) >= TIP)]
+    shares = triangles.shares(np.broadcast_to(around, (len(corners), *around.shape)))
+    well = (shares / triangles.steepness[:, None]).min(axis=2) >= 1.0
+    with np.errstate(divide="ignore", invalid="ignore"):
+        on_grid = np.where(well, (np.maximum(reach, 0.0)[:, None] / shares).max(axis=2), np.inf)
+    found = np.isfinite(value)
+    assert found.any() or not well.any()
+    assert (value <= on_grid.min(axis=1, initial=np.inf) * (1 + 1e-9)).all()
+    at = triangles.take(np.flatnonzero(found))
+    assert (face.room(points[found]) >= TIP - 1e-8).all()
+    assert (at.sides(points[found]).min(axis=1) >= 1.0 - 1e-8).all()
+
+
+def test_a_limit_of_the_work_stops_at_the_same_fixture_every_time() -> None:
+    """So many places and no more; what is listed before is what it is without a limit."""
+    program = program_of(many_passes())
+    query = Query(PART, Vise(8, 4, 3), program=program, peg_height=4.0, best=6)
+    fixtures = list(answer(query))
+    request = SupportRequest(THICKNESS, PAD, TIP)
+    counted = WorkLimit(10**12)
+    whole = list(supports_one_by_one(fixtures, query, request, cancel=counted))
+    assert len(whole) == len(fixtures) and not any(one.stopped for one in whole) and counted.done > 0
+    for share in (2, 3):
+        first, second = (
+            list(supports_one_by_one(fixtures, query, request, cancel=WorkLimit(counted.done // share)))
+            for _ in range(2)
+        )
+        assert [one.triples for one in first] == [one.triples for one in second]
+        assert len(first) < len(whole) and first[-1].stopped and not any(one.stopped for one in first[:-1])
+        assert [one.triples for one in first[:-1]] == [one.triples for one in whole[: len(first) - 1]]
+
+
+def test_a_top_that_is_machined_all_over_is_said_to_be() -> None:
+    """Where tools leave no place for a tip the reason is the program, not the triangles of the holes."""
+    passes = [
+        (x, y, THICKNESS - 1.0) for k, y in enumerate(range(2, 40, 3)) for x in ((0, 60), (60, 0))[k % 2]
+    ]
+    query = Query(PART, Vise(8, 4, 3), program=program_of(path(1, passes)), peg_height=4.0, best=1)
+    (fixture, *_) = list(answer(query))
+    found = supports_of(fixture, query, SupportRequest(THICKNESS, PAD, TIP))
+    assert not found.triples
+    sentence = why_no_set(found, MILLIMETRE)
+    assert "the tools of the program and the keep-outs leave no place on the upper face" in sentence
 
 
 @pytest.mark.parametrize("number", [1, 2, 5])

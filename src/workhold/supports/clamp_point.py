@@ -143,6 +143,11 @@ class ClampPlaces:
         halves = Triangles.of(np.array([corners[[0, 1, 2]], corners[[0, 2, 3]]]))
         return not np.isfinite(self.best(halves, halves.steepness, 0.0)[1]).any()
 
+    @property
+    def candidate_count(self) -> int:
+        """How many places on the border can be best inside one triangle."""
+        return 6 * len(self.straight) + 14 * len(self.bent) + len(self.corners) + 15
+
     def border_corners(self, lines: Array, circles: Array) -> Array:
         """Points (K, 2) where two curves of a border cross and the tip may stand."""
         points = [line_points(lines[None], lines, circles).reshape(-1, 2)]
@@ -168,8 +173,7 @@ class ClampPlaces:
         good[good] = self.allows(points[good])
         value = total.copy()
         rest = np.flatnonzero(~good)
-        count = 6 * len(self.straight) + 14 * len(self.bent) + len(self.corners) + 15
-        step = max(1, CANDIDATES // count)
+        step = max(1, CANDIDATES // self.candidate_count)
         for first in range(0, len(rest), step):
             some = rest[first : first + step]
             points[some], value[some] = self.on_border(triangles.take(some), asked[some], inside)
@@ -177,10 +181,10 @@ class ClampPlaces:
 
     def on_border(self, triangles: Triangles, asked: Array, inside: float) -> tuple[Array, Array]:
         """The best of the points that :meth:`candidates` gives."""
-        every = self.candidates(triangles, asked, inside)
-        count = len(every)
-        of, which = np.nonzero(np.isfinite(every[..., 0]))
-        points = every[of, which]
+        candidates = self.candidates(triangles, asked, inside)
+        count = len(candidates)
+        of, which = np.nonzero(np.isfinite(candidates[..., 0]))
+        points = candidates[of, which]
         # One column after the other: what numpy does along a short axis takes ten times as long.
         shares = [
             triangles.slopes[of, k, 0] * points[:, 0]
@@ -227,13 +231,14 @@ class ClampPlaces:
         every = np.stack(lines, axis=1)
         first, second = np.triu_indices(every.shape[1], 1)
         normals = triangles.slopes / triangles.steepness[..., None]
-        lines, circles = self.straight.curves, self.bent.curves
+        straight, circles = self.straight.curves, self.bent.curves
         centers, radii = circles[:, :2], circles[:, 2, None]
-        met = line_points(every, lines, circles)
-        on_circles = [met[:, :, len(lines) : -len(circles) or None], met[:, :, len(lines) + len(circles) :]]
+        met = line_points(every, straight, circles)
+        first_circle, second_circle = len(straight), len(straight) + len(circles)
+        on_circles = [met[:, :, first_circle:second_circle], met[:, :, second_circle:]]
         on_circles += [centers + sign * radii * normals[:, :, None] for sign in (1.0, -1.0)]
         out = [
-            self.straight.on_pieces(met[:, :, : len(lines)], False),
+            self.straight.on_pieces(met[:, :, :first_circle], False),
             *(self.bent.on_pieces(one, True) for one in on_circles),
             cross_lines(every[:, first], every[:, second]),
             np.broadcast_to(self.corners, (count, len(self.corners), 2)),
@@ -302,6 +307,11 @@ class RankedPlaces:
     def is_empty(self) -> bool:
         """Whether the tip may stand nowhere."""
         return self.classes[-1].is_empty
+
+    @property
+    def candidate_count(self) -> int:
+        """How many places on borders can be best inside one triangle, in all classes."""
+        return sum(one.candidate_count for one in self.classes)
 
     def hangs(self, points: Array) -> NDArray[np.bool_]:
         """Whether the material under places (N, 2) does not reach down to where the part lies."""

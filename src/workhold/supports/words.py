@@ -47,14 +47,20 @@ def reason(found: Supports, unit: Unit) -> str:
             "there is no top clamp, as no level face of the part is open to above; crowns, fillets and slopes are "
             f"not taken for flat{turned}."
         )
-    bottom = SupportSearch(found.query, request, ()).bottom
+    search = SupportSearch(found.query, request, ())
     plain = SupportSearch(found.query, evolve(request, top_zones=(), reach=None), ())
     if plain.places(found.fixture).is_empty:
         return no_place_for_a_tip(request, turned, unit)
-    holes = holes_under(found.fixture, toolkit, bottom, request)
+    if found.query.program is not None and search.places(found.fixture).is_empty:
+        return (
+            "the tools of the program and the keep-outs leave no place on the upper face where a tip of radius "
+            f"{unit.text(request.tip_radius)} could stay; a smaller tip would help, or to machine what is under "
+            "it in another set-up, or to hold the part down by other means."
+        )
+    holes = holes_under(found.fixture, toolkit, search.bottom, request)
     if found.positions < 3:
         bare = evolve(request, pad_radius=0.0, pad_margin=0.0)
-        return few_holes(found, holes_under(found.fixture, toolkit, bottom, bare), unit)
+        return few_holes(found, holes_under(found.fixture, toolkit, search.bottom, bare), unit)
     sets = np.array(list(islice(combinations(range(len(holes.row)), 3), MOST_LOOKED_AT)), np.int64)
     sets = sets[CarrierRoom.of(found.fixture, toolkit, holes).standing(sets).fits]
     if not len(sets):
