@@ -173,7 +173,8 @@ def side_view(
     )
     levels: dict[float, list[Sequence[Sequence[float]]]] = {}
     if solid is not None:
-        for loop, height in zip(solid.top or (), solid.top_heights, strict=False):
+        tops_at = solid.top_heights or (heights.thickness,) * len(solid.top or ())
+        for loop, height in zip(solid.top or (), tops_at, strict=True):
             levels.setdefault(height, []).append(loop)
     return SideView(
         way=way,
