@@ -255,7 +255,7 @@ def report_supported(result: Result, thickness: float, unit: Unit, stream: TextI
         *notes,
         *place_notes({rank: one.triples[0] for rank, one in enumerate(found, 1) if one.triples}),
         *before_first(best),
-        *flat_faces_notes(result.workpiece, KEEP_OFF),
+        *flat_faces_notes(result.workpiece, KEEP_OFF, unit),
         stream=stream,
     )
     return found
