@@ -17,8 +17,8 @@ from workhold.geometry.loop import loop_segments
 from workhold.model.requirements import circle_zone, zone_of
 from workhold.model.support_request import SupportRequest
 from workhold.supports.choosing import WorkLimit
-from workhold.supports.clamp_point import ClampPlaces
-from workhold.supports.faces import FaceBorders, TouchableFace
+from workhold.supports.clamp_point import ClampPlaces, point_on
+from workhold.supports.faces import FaceBorders, TouchableFace, offset_curves
 from workhold.supports.forces import Triangles
 from workhold.supports.listing import supports_of, supports_one_by_one
 from workhold.supports.program import FINEST, MOST_ABOVE, capsule, with_program
@@ -241,3 +241,52 @@ def test_supports_of_a_fixture_with_a_program_keep_off_what_it_sweeps() -> None:
     assert (walk_room(program, pads, [(-inf, 0.0, PAD)]) >= 1.0 - OFF).all()
     assert (walk_room(program, tips, clamp) >= 1.0 - OFF).all()
     assert found.request.bottom_zones and found.request.top_zones
+
+
+def crowded() -> tuple[TouchableFace, ClampPlaces]:
+    """A face with forty round zones on it, and where a tip may stand."""
+    random = np.random.default_rng(11)
+    middles = random.uniform((-3, -3), (63, 43), (40, 2))
+    face = TouchableFace.of(PART.loops, [circle_zone(x, y, 0.6).loop for x, y in middles.tolist()])
+    return face, ClampPlaces(face, 3.0, None)
+
+
+def test_zones_some_at_a_time_are_what_they_are_together() -> None:
+    """Only those near a point are looked at; what is near to their box from outside counts."""
+    face, places = crowded()
+    points = np.random.default_rng(12).uniform((-8, -8), (68, 48), (4000, 2))
+    assert len(face.zone_groups) > 2
+    _, off = face.rooms(points)
+    assert (face.off_zones(points, 3.0, 0.0) == (off >= 3.0)).all()
+    assert (places.allows(points) == (face.room(points) >= 3.0 - 1e-9)).all()
+    assert 100 < places.allows(points).sum() < 3000
+
+
+def test_free_pieces_hold_all_places_on_borders() -> None:
+    """Also where a piece goes on over the angle at which counting begins, and all of a circle without corners."""
+    _, places = crowded()
+    alone = TouchableFace.of(PART.loops, [circle_zone(30, 20, 1.0).loop])
+    for own in (places, ClampPlaces(alone, 3.0, None)):
+        assert len(own.bent)
+        for curve, (low, high) in zip(own.bent.curves, own.bent.spans, strict=True):
+            inner = np.linspace(low, high, 9)[1:-1]
+            assert own.allows(np.stack([point_on(curve, at, True) for at in inner])).all()
+        for curve in np.unique(own.bent.curves, axis=0):
+            around = np.linspace(-pi, pi, 721)
+            points = np.stack([point_on(curve, at, True) for at in around])
+            free = points[own.allows(points)]
+            mine = np.flatnonzero((own.bent.curves == curve).all(axis=1))
+            kept = own.bent.on_pieces(np.repeat(free[:, None], len(own.bent), axis=1), True)[:, mine, 0]
+            assert np.isfinite(kept).any(axis=1).all()
+
+
+def test_a_disc_rolls_round_corners_alone() -> None:
+    """A circle about each corner of a border; none where it goes on smoothly, unless a hollow is too narrow."""
+    turns = np.arange(8) * pi / 4
+    octagon = tuple(loop_segments(np.array([(10 * cos(t), 10 * sin(t), 0.0) for t in turns])))
+    assert len(offset_curves(octagon, 2.0, left=False)[1]) == 8
+    slot = tuple(loop_segments(np.array(zone_of(capsule(((0.0, 0.0, 0.0), (9.0, 0.0, 0.0)), 2.0)).loop)))
+    lines, circles = offset_curves(slot, 3.0, left=False)
+    assert (len(lines), len(circles)) == (2, 2) and all(radius == 5.0 for *_, radius in circles)
+    # From within the ends are too narrow for the disc, and it may touch their joints.
+    assert len(offset_curves(slot, 3.0, left=True)[1]) == 4
