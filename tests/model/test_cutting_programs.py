@@ -107,9 +107,9 @@ def test_a_slot(tmp_path: Path) -> None:
 
 
 def test_a_tool_that_meets_air_alone_needs_no_data(tmp_path: Path) -> None:
-    """What its force would follow from is not asked of a tool that cuts nothing of the stock."""
+    """What its force would follow from is not asked of a tool that stays above the stock."""
     tools = "[tool.3]\ndiameter = 10\nteeth = 4\ncut_depth = 4\n[tool.4]\ndiameter = 6\n"
-    air = "T4 M6\nG0 X-60. Y35.\nG1 Z-4. F240\nG1 X-30.\n"
+    air = "T4 M6\nG0 X-60. Y35.\nG1 Z10. F240\nG1 X-30.\n"
     text = f"G21 G90\nT3 M6\nS6000 M3\nG0 X30. Y35. Z3.\nG1 Z-4. F240\nG1 X90. F600\nG0 Z5.\n{air}M30\n"
     query = asked(tmp_path, tools, text, "aluminium")
     assert kinds_by_line(query) == {5: "plunging", 6: "milling"}
