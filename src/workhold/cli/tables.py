@@ -376,6 +376,20 @@ def height_table(rows: Sequence[HeightRow], unit: Unit) -> list[Table]:
     return [table]
 
 
+def touches_one_way(workpiece: Workpiece) -> bool:
+    """Whether pegs can touch some faces of a solid, and all these are flat and parallel."""
+    from workhold.conventions import PARALLEL
+    from workhold.geometry.segment import Line
+
+    assert workpiece.solid is not None
+    bands, every = workpiece.solid.bands, workpiece.numbered.faces
+    faces = [face.segment for face in every if any(bands[k] is not None for k in face.segments)]
+    if not faces or not all(isinstance(one, Line) for one in faces):
+        return False
+    (x, y), *rest = (one.normal() for one in faces)
+    return all(abs(x * v - y * u) <= PARALLEL for u, v in rest)
+
+
 def other_heights(workpiece: Workpiece, rows: Sequence[HeightRow], unit: Unit) -> list[str]:
     """What may help where pegs as high as these hold a solid nowhere: other heights, and the other side up.
 
@@ -386,6 +400,14 @@ def other_heights(workpiece: Workpiece, rows: Sequence[HeightRow], unit: Unit) -
     solid = workpiece.solid
     if solid is None:
         return []
+    if touches_one_way(workpiece):
+        return [
+            "All that pegs can touch of the part at this height are flat faces parallel to one another, such as the "
+            "ends and shoulders of a shaft that lies: nothing keeps it from sliding along them, in this or any other "
+            "toolkit. Round sides that lie are touched by no peg: hold it in vee blocks or soft jaws with its end "
+            "against a stop, or turn another side up (--axis). The command features shows whether another height "
+            "has faces in other directions."
+        ]
     others = [row for row in rows if not row.low < solid.peg_height <= row.high and row.touchable > 0]
     longest = sorted(others, key=lambda row: (-row.touchable, -row.high))[:MOST_NAMED]
     named = [f"--peg-height {unit.number(row.high)}" for row in longest]
