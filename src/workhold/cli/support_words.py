@@ -65,8 +65,8 @@ def stopped_words(last: int, count: int) -> str:
     skipped = list(range(last + 1, count + 1))
     rest = f", and under {runs_of(skipped)} none" if skipped else ""
     return (
-        f"Pads and clamp have so many places that looking was stopped after {MOST_PLACES:,}: under {last} not "
-        f"all sets were looked at{rest}. The command supports looks at all under one fixture."
+        f"Pads and clamp have so many places that looking was stopped after {MOST_PLACES:,}: under {last} "
+        f"not all sets were looked at{rest}. The command supports looks at all under one fixture."
     )
 
 

@@ -174,7 +174,7 @@ class Bench:
         return [index for index, peg in enumerate(self.fixture.pegs) if peg.beside is None]
 
     def touched_piece(self, index: int) -> Segment:
-        """The face that a contact is on; of one that lies flush on a wall the piece between the ends of the wall."""
+        """The face that a contact is on; of one flush on a wall the piece between the ends of the wall."""
         face, walls = self.faces[index], self.on_walls
         if index not in walls or isinstance(face, Arc):
             return face

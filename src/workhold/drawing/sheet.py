@@ -324,7 +324,7 @@ def layout_of(
 def under_figure(
     inner: Box, rest: Sequence[Block], figure: SideFigure, scale: StandardScale
 ) -> tuple[float, tuple[tuple[Filled, ...], ...]]:
-    """Where a view from the side at a scale ends, and the pages of words of which the first begins below it."""
+    """Where a view from the side at a scale ends, and the pages of words, the first below it."""
     foot = inner.y0 + figure.height(inner.width, scale.factor)
     return foot, pages_of_words(inner, rest, Box(inner.x0, foot + GUTTER, inner.x1, inner.y1)) or ((),)
 

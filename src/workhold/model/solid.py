@@ -152,7 +152,7 @@ class SolidOutline:
     rising, rising_heights : loops around what rises above heights of ``top``, and for each the height.
     hanging, hanging_heights : loops of what hangs of ``top``: under it the material does not reach down to
         where the part lies; and for each the height of its face.
-    unclear_heights : of level upper faces beside which what rises could not be told, so that nothing of them
+    unclear_heights : of level upper faces beside which it is not known what rises, so that nothing of them
         is in ``top``.
 
     Raises

@@ -31,7 +31,7 @@ __all__ = [
 # Columns of which the figure's name is too wide: how far open the part is caught, by what a wrong seat reads
 # otherwise.
 SHORT = {"capture_opening": "caught", "reading": "reads"}
-# The figure for which a length stands where the part has no edge, and by what share two such lengths may differ.
+# The figure for which a length stands where the part has no edge; by what share such lengths may differ.
 EDGE, SAME_SHARE = "edge_distance", 1e-9
 
 

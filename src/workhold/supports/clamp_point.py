@@ -66,7 +66,7 @@ class ClampPlaces:
         object.__setattr__(self, "corners", np.unique(np.concatenate(corners), axis=0))
 
     def borders_on(self, level: float | None) -> tuple[Pieces, Pieces, Array]:
-        """Pieces of lines and of circles that border the places on faces of one height, and the corners (K, 2)."""
+        """Pieces of lines and circles that border the places on faces of one height, and corners (K, 2)."""
         lines: list[Curve] = []
         circles: list[Curve] = []
         for number, loop in enumerate(self.face.borders.loops):

@@ -210,7 +210,7 @@ def support_forces(
 
 
 def worst_cases(load: SpatialLoad) -> int:
-    """In how many ways a load may act worst on a support: points, heights and axial forces together."""
+    """The number of ways in which a load may act worst: points, heights and axial forces together."""
     return max(len(load.points), 1) * len(set(load.heights or (0.0,))) * len(set(load.axial))
 
 

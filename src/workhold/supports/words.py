@@ -56,9 +56,9 @@ def reason(found: Supports, unit: Unit) -> str:
         return no_place_for_a_tip(request, turned, unit)
     if found.query.program is not None and search.places(found.fixture).is_empty:
         return (
-            "the tools of the program and the keep-outs leave no place on the upper face where a tip of radius "
-            f"{unit.text(request.tip_radius)} could stay; a smaller tip would help, or to machine what is under "
-            "it in another set-up, or to hold the part down by other means."
+            "the tools of the program and the keep-outs leave no place on the upper face where a tip of "
+            f"radius {unit.text(request.tip_radius)} could stay; a smaller tip would help, or to machine "
+            "what is under it in another set-up, or to hold the part down by other means."
         )
     holes = holes_under(found.fixture, toolkit, search.bottom, request)
     if found.positions < 3:
@@ -92,12 +92,12 @@ def reason(found: Supports, unit: Unit) -> str:
 
 
 def unclear_words(heights: Sequence[float], unit: Unit) -> str:
-    """That of upper faces it could not be told what is free, and what would help."""
+    """The words that of upper faces it is not known what is free, with what would help."""
     faces = "face" if len(heights) == 1 else "faces"
     at = listed_words([unit.text(height) for height in heights])
     return (
-        f"beside the level {faces} at a height of {at} so much stands, or in so many curves, that it could not be "
-        "told where a clamp has room; a file without those details would help"
+        f"beside the level {faces} at a height of {at} so much stands, or in so many curves, that where a "
+        "clamp has room is not known; a file without those details would help"
     )
 
 

@@ -84,7 +84,7 @@ class WorkpiecePart(FormPart):
     )
     hanging_heights: list[float] | None = Field(None, description="height in mm of the face of each of these")
     unclear_heights: list[float] | None = Field(
-        None, description="heights in mm of upper faces of which it could not be told what is free"
+        None, description="heights in mm of upper faces of which it is not known what is free"
     )
 
 

@@ -63,7 +63,7 @@ class LevelTop:
     open : the parts of the faces that are open, outer loops counter-clockwise, openings clockwise.
     rising : what rises above the height.
     hanging : the open parts that hang.
-    is_unclear : whether nothing is open because what rises or hangs there could not be told.
+    is_unclear : whether nothing is open because it is not known what rises or hangs there.
     """
 
     height: float
@@ -126,7 +126,7 @@ def level_tops(solid: StandingSolid) -> list[LevelTop]:
 
 
 def every_level_top(solid: StandingSolid) -> list[LevelTop]:
-    """As :func:`level_tops`, with the heights at which nothing is open."""
+    """The tops of :func:`level_tops`, with the heights at which nothing is open."""
     groups: list[list[SolidFace]] = []
     for face in solid.faces:
         if face.lie == "level" and face.upward:
