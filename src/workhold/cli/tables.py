@@ -402,11 +402,11 @@ def other_heights(workpiece: Workpiece, rows: Sequence[HeightRow], unit: Unit) -
         return []
     if touches_one_way(workpiece):
         return [
-            "All that pegs can touch of the part at this height are flat faces parallel to one another, such "
-            "as the ends and shoulders of a shaft that lies: nothing keeps it from sliding along them, in this "
-            "or any other toolkit. Round sides that lie are touched by no peg: hold it in vee blocks or soft "
-            "jaws with its end against a stop, or turn another side up (--axis). The command features shows "
-            "whether another height has faces in other directions."
+            "All that pegs can touch of the part at this height are flat faces parallel to one another, "
+            "such as the ends and shoulders of a shaft that lies: nothing keeps it from sliding along "
+            "them, in this or any other toolkit. Round sides that lie are touched by no peg: hold it in "
+            "vee blocks or soft jaws with its end against a stop, or turn another side up (--axis). The "
+            "command features shows whether another height has faces in other directions."
         ]
     others = [row for row in rows if not row.low < solid.peg_height <= row.high and row.touchable > 0]
     longest = sorted(others, key=lambda row: (-row.touchable, -row.high))[:MOST_NAMED]
