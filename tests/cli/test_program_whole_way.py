@@ -72,3 +72,15 @@ def test_holes_drilled_through_are_no_place_for_supports(run: Any, tmp_path: Pat
         for pad in triple.supports:
             away = np.hypot(holes[:, 0] - pad.x, holes[:, 1] - pad.y)
             assert away.min() >= 4.5 + 1.0 + found.request.pad_radius - 1e-6
+
+
+def test_what_is_skipped_for_too_much_work_is_said(
+    run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Past a limit of places the table ends, and one line says under which fixtures was not looked."""
+    asked = ("design", EXAMPLES / "bracket.dxf", "--vise", "plate-20mm", "--thickness", "12", "--best", 5)
+    whole = run(*asked, "--supports", "--out", tmp_path / "a.json").stdout
+    assert "looking was stopped" not in whole
+    monkeypatch.setattr("workhold.cli.support_words.MOST_PLACES", 1)
+    cut = run(*asked, "--supports", "--out", tmp_path / "b.json").stdout
+    assert "looking was stopped after 1: under 2 not all sets were looked at, and under 3 to 5 none." in cut

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 from datetime import date
 from hashlib import sha256
+from math import sqrt
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ import pytest
 from drawing_examples import diamond
 from svg_reading import by_class
 
+import workhold
 from workhold import __version__
 from workhold.files.result.writer import write_result
 from workhold.model.fixture_table import FixtureTable, unknown_quality
@@ -267,3 +269,28 @@ def test_bad_requests_are_one_sentence(
     assert outcome.exit_code == 2
     assert message in outcome.stderr and outcome.stderr.count("\n") == 1
     assert not list(folder.glob("a.*"))
+
+
+def test_the_command_says_none_where_a_part_has_no_edge(run: Any, folder: Path) -> None:
+    """The figure then stands for no edge: no length is printed that nobody can measure on the part."""
+    turn = sqrt(2) - 1
+    loop = [
+        (5, 0, 0),
+        (35, 0, turn),
+        (40, 5, 0),
+        (40, 25, turn),
+        (35, 30, 0),
+        (5, 30, turn),
+        (0, 25, 0),
+        (0, 5, turn),
+    ]
+    for name, corners, words in (
+        ("rounded", loop, "none"),
+        ("square", [(0, 0, 0), (40, 0, 0), (40, 30, 0), (0, 30, 0)], ""),
+    ):
+        part = workhold.Workpiece.from_loops(name, [corners])
+        vise = workhold.Vise(pitch=10, columns=2, peg_radius=3)
+        workhold.save(workhold.design(part, vise, best=2), folder / f"{name}.json")
+        shown = run("show", f"{name}.json", 1).stdout
+        (line,) = (line for line in shown.splitlines() if line.startswith("edge distance"))
+        assert (line.split()[2] == "none") == (words == "none")

@@ -33,3 +33,19 @@ def test_heights_with_most_to_touch_are_named_and_the_other_side() -> None:
     (said,) = other_heights(standing("-y"), [], MILLIMETRE)
     assert "--peg-height" not in said and "(--axis=y)" in said
     assert not other_heights(Workpiece.from_loops("plate", [SQUARE]), ROWS, MILLIMETRE)
+
+
+def test_a_shaft_that_lies_is_said_to_slide_whatever_its_pegs() -> None:
+    """Only its ends are touched, which are parallel: no other height is named, and what helps is."""
+    for bands, slides in (
+        ([None, (0.0, 20.0), None, (0.0, 20.0)], True),
+        ([(0.0, 20.0), (0.0, 20.0), None, (0.0, 20.0)], False),
+        ([None] * 4, False),
+    ):
+        solid = SolidOutline("z", 20.0, 20.0, 0.5, 1.0, bands)
+        (said,) = other_heights(Workpiece.from_loops("shaft", [SQUARE], solid=solid), ROWS, MILLIMETRE)
+        assert ("parallel to one another" in said and "vee blocks" in said) == slides
+        assert ("--peg-height" in said) != slides
+    solid = SolidOutline("z", 20.0, 20.0, 0.5, 1.0, [(0.0, 20.0)] * 2)
+    disc = Workpiece.from_loops("disc", [[[-20, 0, 1], [20, 0, 1]]], solid=solid)
+    assert "parallel" not in other_heights(disc, ROWS, MILLIMETRE)[0]

@@ -18,9 +18,11 @@ from workhold.drawing.sheet import draw_sheet, result_sheet
 from workhold.drawing.sheet_facts import SheetDetails, result_cautions
 from workhold.model.clamps import order_words
 from workhold.model.quality import FIGURE_RANKING
+from workhold.model.requirements import Load
 from workhold.model.result import Result
 from workhold.model.seating import CLOSE_READING, SMALL_CAPTURE, Seating
 from workhold.seating.clamping import WHY
+from workhold.statics.loads import load_cases
 from workhold.units import INCH, MILLIMETRE, Unit
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
@@ -84,7 +86,9 @@ def test_blocks_that_need_a_third_page_get_one(result: Result, told: list[Seatin
         told[0],
         unsettled=tuple(f"place {k} where the part may rest could not be settled." for k in range(30)),
     )
-    details = evolve(DETAILS, seating=long, part_name="bracket, first operation " * 8)
+    loads = [Load(((20.0, 10.0 + k),), 100.0 + k, name=f"pass {k}") for k in range(6)]
+    cases = load_cases(result[0], result.workpiece, result.toolkit, loads)
+    details = evolve(DETAILS, seating=long, part_name="bracket, first operation " * 8, loads=cases)
     pages = draw_sheet(result[0], result.workpiece, result.toolkit, details)
     foot = page_of(pages[0]).y1 - 44
     for page in pages:

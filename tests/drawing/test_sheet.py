@@ -13,10 +13,11 @@ from sheet_reading import collisions, distance, page_of, words_of
 from svg_reading import by_class, scale_bar_of, texts, to_model
 
 from fakes import fake_result
-from workhold import design
+from workhold import FlatJaw, design
 from workhold.conventions import NEAR_EDGE, STRONG_PEG, WEAK_CLOSURE
+from workhold.drawing.bench import bench_of
 from workhold.drawing.scene import UNITS_PER_MM, Box, LengthUnit
-from workhold.drawing.sheet import draw_sheet, standard_scale
+from workhold.drawing.sheet import draw_sheet, filled_runs, result_sheet, standard_scale
 from workhold.drawing.sheet_facts import (
     PAPERS,
     SheetDetails,
@@ -379,3 +380,43 @@ def test_boxes_of_words_are_found_to_collide() -> None:
     svg = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 99 99">{text}{text}</svg>'
     assert collisions(svg) == [("word", "word")]
     assert words_of(svg)[0][1].overlap(Box(0, 0, 99, 99)) > 0
+
+
+def test_words_fill_the_second_page_before_a_third_begins() -> None:
+    """Blocks at the end stand where a column has room; a view from the side gives way for a few words more."""
+    part = Workpiece.from_loops("block", [[(0, 0, 0), (100, 0, 0), (100, 60, 0), (0, 60, 0)]])
+    result = design(part, Vise(pitch=20, columns=3, peg_radius=3), best=2)
+    pages = result_sheet(result, 1, thickness=20.0)
+    assert len(pages) == 2
+    words = " ".join(word for page in pages for word, _ in words_of(page))
+    assert all(block in words for block in ("Quality", "Counting holes", "Signs", "Side view"))
+    assert all(collisions(page) == [] for page in pages)
+
+
+def test_columns_are_filled_up_in_any_order_only_to_save_a_page() -> None:
+    """In order where that fits; the last ones below the others where it does not; None where nothing does."""
+    blocks = [lambda column, k=k: None for k in range(5)]
+    heights = [6.0, 5.0, 6.0, 4.0, 1.0]
+    assert filled_runs(blocks, heights, 2, 12.0) == [tuple(blocks[:2]), tuple(blocks[2:])]
+    heights = [6.0, 9.0, 3.0, 5.0, 1.0]
+    found = filled_runs(blocks, heights, 2, 12.0)
+    assert found is not None and sorted(blocks.index(one) for run in found for one in run) == [0, 1, 2, 3, 4]
+    assert all(sum(heights[blocks.index(one)] for one in run) <= 12.0 for run in found)
+    assert filled_runs(blocks, heights, 2, 11.0) is None
+
+
+def test_a_face_on_a_flat_jaw_is_painted_no_farther_than_the_jaw() -> None:
+    """What stands out beyond the jaw's ends touches nothing."""
+    part = Workpiece.from_loops("triangle", [[(0, 0, 0), (120, 0, 0), (40, 80, 0)]])
+    jaw = FlatJaw(pitch=12.7, columns=7, peg_radius=3.175, jaw_width=101.6)
+    fixture = next(
+        one for one in design(part, jaw) if {peg.face for peg in one.pegs if peg.beside is None} == {0, 1, 2}
+    )
+    bench = bench_of(fixture, part, jaw)
+    for index in bench.on_walls:
+        piece = bench.touched_piece(index)
+        ends = sorted(x for x, _ in (piece.start, piece.end))
+        assert ends == pytest.approx(sorted(fixture.pegs[k].x for k in bench.on_walls))
+        assert ends[1] - ends[0] <= 101.6 + 1e-6 < bench.faces[index].length
+    others = [k for k in bench.touching if k not in bench.on_walls]
+    assert others and all(bench.touched_piece(k) == bench.faces[k] for k in others)

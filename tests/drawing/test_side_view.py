@@ -78,6 +78,11 @@ def test_view_is_true_to_the_scale_that_is_written(name: str) -> None:
     ends = [way.across(fixture.pose.apply(x, y)) for x, y, _ in FLANGE]
     low, high = min(*ends, way.span(part)[0]), max(*ends, way.span(part)[1])
     assert rest == pytest.approx((low, PEG_HEIGHT + HEAD_ROOM, high, HEIGHT), abs=2e-3)
+    # Nothing is drawn in corners of which nobody knows; the level face on top is a line.
+    assert all(float(one.attrib.get("stroke-width", "0")) == 0.0 for one in by_class(page, "unknown"))
+    (upper,) = by_class(page, "upper-face")
+    assert upper.attrib["stroke-dasharray"] == "7 4"
+    assert re.search("level upper faces, dashed", " ".join(texts(page)))
     feet = [way.across(fixture.pose.apply(x, y)) for x, y, _ in FOOT]
     assert boxes(page, "foot-face") == [pytest.approx((min(feet), 0.0, max(feet), 0.0), abs=2e-3)]
     bench = bench_of(fixture, SOLID, toolkit)

@@ -107,6 +107,22 @@ def test_a_name_however_long_stays_in_its_place(families: dict[str, Family]) -> 
         assert not collisions(page) and on_page(page)
 
 
+def test_a_name_with_room_is_told_in_full(families: dict[str, Family]) -> None:
+    """A name that is wider than its column takes another line of the table; nothing of it is cut off."""
+    family, name = families["vise"], "left hand mounting bracket of the second conveyor, revision 12"
+    long = [
+        evolve(
+            setup,
+            holdings=tuple(evolve(one, member=evolve(one.member, name=name)) for one in setup.holdings[:2]),
+        )
+        for setup in family.plans[0].setups
+    ]
+    for page in draw_setups(evolve(family.plans[0], setups=tuple(long)), family.figure, DAY):
+        assert not collisions(page) and on_page(page)
+        words = " ".join(each.text or "" for each in by_class(page, "table")[0].iter())
+        assert words.count("revision 12") >= 1 and "…" not in words
+
+
 def test_what_is_moved_is_told(families: dict[str, Family]) -> None:
     plan = next(plan for plan in families["vise"].plans if len(plan.setups) > 2)
     assert list(moves_words(plan.setups[0], None)) == []

@@ -16,9 +16,14 @@ from workhold import Program, Query, Vise, Workpiece, answer
 from workhold.geometry.loop import loop_segments
 from workhold.model.requirements import circle_zone, zone_of
 from workhold.model.support_request import SupportRequest
-from workhold.supports.faces import FaceBorders, TouchableFace
-from workhold.supports.listing import supports_of
+from workhold.supports.choosing import WorkLimit
+from workhold.supports.clamp_point import ClampPlaces, point_on
+from workhold.supports.faces import FaceBorders, TouchableFace, offset_curves
+from workhold.supports.forces import Triangles
+from workhold.supports.listing import supports_of, supports_one_by_one
 from workhold.supports.program import FINEST, MOST_ABOVE, capsule, with_program
+from workhold.supports.words import why_no_set
+from workhold.units import MILLIMETRE
 
 Array = NDArray[np.float64]
 PART = Workpiece.from_points("plate", [(0, 0), (60, 0), (60, 40), (0, 40)])
@@ -138,6 +143,69 @@ def test_many_pieces_become_few_zones_that_leave_nothing_in_the_way() -> None:
     assert (walk[above >= 0.0] > -OFF).all()
 
 
+@pytest.mark.sampled(2)
+@pytest.mark.parametrize("number", range(6))
+def test_the_clamps_place_is_the_best_of_a_fine_grid(number: int) -> None:
+    """Free pieces of borders hold the best place: no place of a grid 0.4 mm fine that is left is any better."""
+    program = program_of(many_passes()) if number % 2 else random_program(Random(91 + number), PART)
+    request = with_program(SupportRequest(THICKNESS, PAD, TIP), PART, program)
+    face = TouchableFace.of(PART.loops, [zone.loop for zone in request.top_zones])
+    places = ClampPlaces(face, TIP, None)
+    random = np.random.default_rng(number)
+    corners = random.uniform((0, 0), (60, 40), (40, 3, 2))
+    sides = corners[:, 1:] - corners[:, :1]
+    area = sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0]
+    corners = np.where(area[:, None, None] < 0, corners[:, ::-1], corners)[np.abs(area) > 100]
+    triangles = Triangles.of(corners)
+    reach = random.uniform(-1.0, 3.0, (len(corners), 3))
+    reach[:, 0] = np.abs(reach[:, 0]) + 0.1
+    points, value = places.best(triangles, reach, 1.0)
+    around = grid(0.4)
+    around = around[(face.room(around) >= TIP)]
+    shares = triangles.shares(np.broadcast_to(around, (len(corners), *around.shape)))
+    well = (shares / triangles.steepness[:, None]).min(axis=2) >= 1.0
+    with np.errstate(divide="ignore", invalid="ignore"):
+        on_grid = np.where(well, (np.maximum(reach, 0.0)[:, None] / shares).max(axis=2), np.inf)
+    found = np.isfinite(value)
+    assert found.any() or not well.any()
+    assert (value <= on_grid.min(axis=1, initial=np.inf) * (1 + 1e-9)).all()
+    at = triangles.take(np.flatnonzero(found))
+    assert (face.room(points[found]) >= TIP - 1e-8).all()
+    assert (at.sides(points[found]).min(axis=1) >= 1.0 - 1e-8).all()
+
+
+def test_a_limit_of_the_work_stops_at_the_same_fixture_every_time() -> None:
+    """So many places and no more; what is listed before is what it is without a limit."""
+    program = program_of(many_passes())
+    query = Query(PART, Vise(8, 4, 3), program=program, peg_height=4.0, best=6)
+    fixtures = list(answer(query))
+    request = SupportRequest(THICKNESS, PAD, TIP)
+    counted = WorkLimit(10**12)
+    whole = list(supports_one_by_one(fixtures, query, request, cancel=counted))
+    assert len(whole) == len(fixtures) and not any(one.stopped for one in whole) and counted.done > 0
+    for share in (2, 3):
+        first, second = (
+            list(supports_one_by_one(fixtures, query, request, cancel=WorkLimit(counted.done // share)))
+            for _ in range(2)
+        )
+        assert [one.triples for one in first] == [one.triples for one in second]
+        assert len(first) < len(whole) and first[-1].stopped and not any(one.stopped for one in first[:-1])
+        assert [one.triples for one in first[:-1]] == [one.triples for one in whole[: len(first) - 1]]
+
+
+def test_a_top_that_is_machined_all_over_is_said_to_be() -> None:
+    """Where tools leave no place for a tip the reason is the program, not the triangles of the holes."""
+    passes = [
+        (x, y, THICKNESS - 1.0) for k, y in enumerate(range(2, 40, 3)) for x in ((0, 60), (60, 0))[k % 2]
+    ]
+    query = Query(PART, Vise(8, 4, 3), program=program_of(path(1, passes)), peg_height=4.0, best=1)
+    (fixture, *_) = list(answer(query))
+    found = supports_of(fixture, query, SupportRequest(THICKNESS, PAD, TIP))
+    assert not found.triples
+    sentence = why_no_set(found, MILLIMETRE)
+    assert "the tools of the program and the keep-outs leave no place on the upper face" in sentence
+
+
 @pytest.mark.parametrize("number", [1, 2, 5])
 def test_boxes_of_rapid_moves_count_inside(number: int) -> None:
     """With rapid moves anywhere in the box of their ends nothing is left inside it, at any height of theirs."""
@@ -173,3 +241,52 @@ def test_supports_of_a_fixture_with_a_program_keep_off_what_it_sweeps() -> None:
     assert (walk_room(program, pads, [(-inf, 0.0, PAD)]) >= 1.0 - OFF).all()
     assert (walk_room(program, tips, clamp) >= 1.0 - OFF).all()
     assert found.request.bottom_zones and found.request.top_zones
+
+
+def crowded() -> tuple[TouchableFace, ClampPlaces]:
+    """A face with forty round zones on it, and where a tip may stand."""
+    random = np.random.default_rng(11)
+    middles = random.uniform((-3, -3), (63, 43), (40, 2))
+    face = TouchableFace.of(PART.loops, [circle_zone(x, y, 0.6).loop for x, y in middles.tolist()])
+    return face, ClampPlaces(face, 3.0, None)
+
+
+def test_zones_some_at_a_time_are_what_they_are_together() -> None:
+    """Only those near a point are looked at; what is near to their box from outside counts."""
+    face, places = crowded()
+    points = np.random.default_rng(12).uniform((-8, -8), (68, 48), (4000, 2))
+    assert len(face.zone_groups) > 2
+    _, off = face.rooms(points)
+    assert (face.off_zones(points, 3.0, 0.0) == (off >= 3.0)).all()
+    assert (places.allows(points) == (face.room(points) >= 3.0 - 1e-9)).all()
+    assert 100 < places.allows(points).sum() < 3000
+
+
+def test_free_pieces_hold_all_places_on_borders() -> None:
+    """Also where a piece goes on over the angle at which counting begins, and all of a circle without corners."""
+    _, places = crowded()
+    alone = TouchableFace.of(PART.loops, [circle_zone(30, 20, 1.0).loop])
+    for own in (places, ClampPlaces(alone, 3.0, None)):
+        assert len(own.bent)
+        for curve, (low, high) in zip(own.bent.curves, own.bent.spans, strict=True):
+            inner = np.linspace(low, high, 9)[1:-1]
+            assert own.allows(np.stack([point_on(curve, at, True) for at in inner])).all()
+        for curve in np.unique(own.bent.curves, axis=0):
+            around = np.linspace(-pi, pi, 721)
+            points = np.stack([point_on(curve, at, True) for at in around])
+            free = points[own.allows(points)]
+            mine = np.flatnonzero((own.bent.curves == curve).all(axis=1))
+            kept = own.bent.on_pieces(np.repeat(free[:, None], len(own.bent), axis=1), True)[:, mine, 0]
+            assert np.isfinite(kept).any(axis=1).all()
+
+
+def test_a_disc_rolls_round_corners_alone() -> None:
+    """A circle about each corner of a border; none where it goes on smoothly, unless a hollow is too narrow."""
+    turns = np.arange(8) * pi / 4
+    octagon = tuple(loop_segments(np.array([(10 * cos(t), 10 * sin(t), 0.0) for t in turns])))
+    assert len(offset_curves(octagon, 2.0, left=False)[1]) == 8
+    slot = tuple(loop_segments(np.array(zone_of(capsule(((0.0, 0.0, 0.0), (9.0, 0.0, 0.0)), 2.0)).loop)))
+    lines, circles = offset_curves(slot, 3.0, left=False)
+    assert (len(lines), len(circles)) == (2, 2) and all(radius == 5.0 for *_, radius in circles)
+    # From within the ends are too narrow for the disc, and it may touch their joints.
+    assert len(offset_curves(slot, 3.0, left=True)[1]) == 4

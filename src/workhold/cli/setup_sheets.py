@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from workhold.cli.commands import flag, option, print_remark
 from workhold.cli.outputs import STANDARD_OUTPUT, refuse_output
+from workhold.cli.support_words import stopped_words, supported_within
 from workhold.errors import InputError
 from workhold.units import Unit
 
@@ -178,7 +179,7 @@ def first_supported(
     Supports that are known already go before others, and larger pads before smaller ones.
     """
     from workhold.model.support_triples import ChosenSupports
-    from workhold.supports.asking import requests_by_size, supported_by_size
+    from workhold.supports.asking import requests_by_size
 
     query = result.query
     # What is known is for the jaw force that the loads ask for.
@@ -187,9 +188,16 @@ def first_supported(
         # Fixtures that are alike stand in other holes, which three supports may find room between.
         fixtures = [result[k] for k in range(min(len(result), MOST_ASKED))]
         requests = requests_by_size(query, thickness)
-        found, _ = supported_by_size(
-            fixtures, query, requests, None, query.jaw_force, first_only=True, drops_weak_force=True
+        found, _ = supported_within(
+            fixtures,
+            query,
+            requests,
+            jaw_force=query.jaw_force,
+            first_only=True,
+            drops_weak_force=True,
         )
+        if found[-1].stopped:
+            print_remark(stopped_words(len(found), len(fixtures)))
     for rank, one in enumerate(found, 1):
         if one.triples:
             if rank > 1:

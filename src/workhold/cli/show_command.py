@@ -128,10 +128,17 @@ def print_fixture(
     ----------
     closing : the jaw force in N, None where it is open, and how stiff the jaw is.
     """
-    from workhold.cli.tables import first_sentence, fixture_tables, quality_table, standing_sentences
+    from workhold.cli.tables import (
+        first_sentence,
+        fixture_tables,
+        no_edge,
+        quality_table,
+        standing_sentences,
+    )
 
     fixture, toolkit = result[rank - 1], result.toolkit
-    quality = quality_table(fixture, toolkit.moving.noun, unit, result.query.jaw_force)
+    force, longest = result.query.jaw_force, no_edge(result)
+    quality = quality_table(fixture, toolkit.moving.noun, unit, force, longest)
     standing = standing_sentences(fixture, result, unit)
     print_tables(*fixture_tables(fixture, toolkit, rank, len(result), unit), *standing, "", quality)
     if rank == 1 and (reason := first_sentence(result, unit)):

@@ -2,20 +2,72 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from math import isfinite
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from workhold.cli.progress import progress_bar
 from workhold.cli.search_options import parse_load
+from workhold.cli.table import plural
 from workhold.cli.values import number
 from workhold.errors import InputError
 
 if TYPE_CHECKING:
-    from workhold.model.support_request import SpatialLoad
+    from workhold.model.fixture import Fixture
+    from workhold.model.query import Query
+    from workhold.model.support_request import SpatialLoad, SupportRequest
     from workhold.model.support_triples import Supports
     from workhold.units import Unit
 
-__all__ = ["friction_words", "size_notes", "spatial_load", "with_friction"]
+__all__ = [
+    "friction_words",
+    "size_notes",
+    "spatial_load",
+    "stopped_words",
+    "supported_within",
+    "with_friction",
+]
+
+# Places of pads and clamp that are looked at under several fixtures, half a minute's work.
+MOST_PLACES = 100_000_000
+
+
+def supported_within(
+    fixtures: Sequence[Fixture], query: Query, requests: Iterable[SupportRequest], **how: Any
+) -> tuple[tuple[Supports, ...], tuple[Supports, ...]]:
+    """The best supports of some fixtures as far as a limit of the work allows, with a bar on a terminal.
+
+    Parameters
+    ----------
+    fixtures, query, requests, how : see :func:`workhold.supports.asking.supported_by_size`.
+    """
+    from workhold.supports.asking import supported_by_size
+    from workhold.supports.choosing import WorkLimit
+
+    with progress_bar("Looking for supports", f"of {plural(len(fixtures), 'fixture')}") as show:
+
+        def progress(fraction: float) -> None:
+            show(fraction, int(fraction * len(fixtures)))
+
+        return supported_by_size(
+            fixtures, query, requests, cancel=WorkLimit(MOST_PLACES), progress=progress, **how
+        )
+
+
+def stopped_words(last: int, count: int) -> str:
+    """Says at which fixture the search of supports was stopped, what was skipped, and how to get the rest.
+
+    Parameters
+    ----------
+    last : rank of the fixture at which it was stopped.
+    count : of the fixtures that were asked for.
+    """
+    skipped = list(range(last + 1, count + 1))
+    rest = f", and under {runs_of(skipped)} none" if skipped else ""
+    return (
+        f"Pads and clamp have so many places that looking was stopped after {MOST_PLACES:,}: under {last} "
+        f"not all sets were looked at{rest}. The command supports looks at all under one fixture."
+    )
 
 
 def runs_of(numbers: Sequence[int]) -> str:

@@ -15,7 +15,14 @@ from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output
 from workhold.cli.progress import progress_bar
 from workhold.cli.search_options import FRICTION, JAW_FORCE, zone
 from workhold.cli.setup_sheets import PART_FILE, asked_models, write_bodies
-from workhold.cli.support_words import friction_words, size_notes, spatial_load, with_friction
+from workhold.cli.support_words import (
+    friction_words,
+    size_notes,
+    spatial_load,
+    stopped_words,
+    supported_within,
+    with_friction,
+)
 from workhold.cli.table import Table, print_tables
 from workhold.cli.values import (
     length,
@@ -224,21 +231,23 @@ def report_supported(result: Result, thickness: float, unit: Unit, stream: TextI
 
     They are of the usual sizes, or where these hold up none of the fixtures, of smaller ones.
     """
-    from workhold.supports.asking import requests_by_size, supported_by_size
+    from workhold.supports.asking import requests_by_size
     from workhold.supports.words import flat_faces_notes, place_notes, set_headings, set_row
 
     fixtures = [result[k] for k in range(min(MOST_SUPPORTED, len(result)))]
     if not fixtures:
         return ()
     requests = requests_by_size(result.query, thickness)
-    found, usual = supported_by_size(fixtures, result.query, requests)
+    found, usual = supported_within(fixtures, result.query, requests)
     with_loads = result.query.is_loaded
     table = Table((">rank", *set_headings(unit, with_loads)))
     for rank, one in enumerate(found, 1):
         if one.triples:
             table.add_row(str(rank), *set_row(one.triples[0], unit, with_loads))
-    bare = [rank for rank, one in enumerate(found, 1) if not one.triples]
+    bare = [rank for rank, one in enumerate(found, 1) if not one.triples and not one.stopped]
     notes = size_notes(found, usual, bare, unit)
+    if found[-1].stopped:
+        notes.append(stopped_words(len(found), len(fixtures)))
     best = [triple for one in found for triple in one.triples]
     print_tables(
         "",
@@ -246,7 +255,7 @@ def report_supported(result: Result, thickness: float, unit: Unit, stream: TextI
         *notes,
         *place_notes({rank: one.triples[0] for rank, one in enumerate(found, 1) if one.triples}),
         *before_first(best),
-        *flat_faces_notes(result.workpiece, KEEP_OFF),
+        *flat_faces_notes(result.workpiece, KEEP_OFF, unit),
         stream=stream,
     )
     return found

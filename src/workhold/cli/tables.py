@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import degrees, hypot, nan, pi
+from math import degrees, hypot, inf, nan, pi
 from typing import TYPE_CHECKING
 
 from workhold.cli.table import Table, plural
@@ -11,6 +11,7 @@ from workhold.fixels.contacts import FLAT_PIN
 from workhold.model.solid import other_way_up
 from workhold.presenting.figure_words import (
     counted_text,
+    edgeless,
     figure_text,
     figures_shown,
     peg_groups,
@@ -152,7 +153,7 @@ def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILL
     table = Table(columns, spare=max(len(headings) - (3 if result.seating else 1), 0) + 1)
     # Of two clamps there are two lengths to set, which leave less room: to choose by, fewer decimals will do.
     decimals, degrees_decimals = (unit.decimals, 3) if toolkit.closes_at_once else (unit.decimals - 2, 1)
-    red = unfit(result.table.quality, result.query.tolerance)
+    red, longest = unfit(result.table.quality, result.query.tolerance), no_edge(result)
     for index, like in zip(entries.index[:count].tolist(), entries.like[:count].tolist(), strict=True):
         fixture = result[index]
         if red[index]:
@@ -169,7 +170,7 @@ def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILL
             rounded(fixture.pose.written_deg, degrees_decimals),
             *(
                 (counted_text if figure in ranked[:-1] else figure_text)(
-                    figure, fixture.figures.get(figure.key, nan), unit
+                    figure, edgeless(figure, fixture.figures.get(figure.key, nan), longest), unit
                 )
                 for figure in figures
             ),
@@ -178,8 +179,19 @@ def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILL
     return table
 
 
+def no_edge(result: Result) -> float:
+    """The edge distance in mm of contacts that have no edge, as the figures of a result have it."""
+    from workhold.statics.contact_matrix import Touched
+
+    return Touched.of(result.workpiece, result.toolkit).length
+
+
 def quality_table(
-    fixture: Fixture, mover: str, unit: Unit = MILLIMETRE, jaw_force: float | None = None
+    fixture: Fixture,
+    mover: str,
+    unit: Unit = MILLIMETRE,
+    jaw_force: float | None = None,
+    longest: float = inf,
 ) -> Table:
     """Tabulates the figures of quality of a fixture, and their meaning where ``mover`` (such as a jaw)
     presses.
@@ -187,6 +199,7 @@ def quality_table(
     Parameters
     ----------
     jaw_force : in N, at which pegs bend; None where it is not known.
+    longest : the edge distance that stands for none, see :func:`no_edge`.
     """
     from workhold.model.quality import FIGURES, PIN_KEYS, PROGRAM_FIGURE
 
@@ -195,7 +208,7 @@ def quality_table(
         if figure.key in fixture.quality:
             of = unit_of(figure, unit)
             better = "more" if figure.more_is_better else "less"
-            value = figure_text(figure, fixture.quality[figure.key], unit)
+            value = figure_text(figure, edgeless(figure, fixture.quality[figure.key], longest), unit)
             words, meaning = figure.named_for(mover)
             if figure.key in PIN_KEYS:
                 at = (
@@ -363,6 +376,20 @@ def height_table(rows: Sequence[HeightRow], unit: Unit) -> list[Table]:
     return [table]
 
 
+def touches_one_way(workpiece: Workpiece) -> bool:
+    """Whether pegs can touch some faces of a solid, and all these are flat and parallel."""
+    from workhold.conventions import PARALLEL
+    from workhold.geometry.segment import Line
+
+    assert workpiece.solid is not None
+    bands, every = workpiece.solid.bands, workpiece.numbered.faces
+    faces = [face.segment for face in every if any(bands[k] is not None for k in face.segments)]
+    if not faces or not all(isinstance(one, Line) for one in faces):
+        return False
+    (x, y), *rest = (one.normal() for one in faces)
+    return all(abs(x * v - y * u) <= PARALLEL for u, v in rest)
+
+
 def other_heights(workpiece: Workpiece, rows: Sequence[HeightRow], unit: Unit) -> list[str]:
     """What may help where pegs as high as these hold a solid nowhere: other heights, and the other side up.
 
@@ -373,6 +400,14 @@ def other_heights(workpiece: Workpiece, rows: Sequence[HeightRow], unit: Unit) -
     solid = workpiece.solid
     if solid is None:
         return []
+    if touches_one_way(workpiece):
+        return [
+            "All that pegs can touch of the part at this height are flat faces parallel to one another, "
+            "such as the ends and shoulders of a shaft that lies: nothing keeps it from sliding along "
+            "them, in this or any other toolkit. Round sides that lie are touched by no peg: hold it in "
+            "vee blocks or soft jaws with its end against a stop, or turn another side up (--axis). The "
+            "command features shows whether another height has faces in other directions."
+        ]
     others = [row for row in rows if not row.low < solid.peg_height <= row.high and row.touchable > 0]
     longest = sorted(others, key=lambda row: (-row.touchable, -row.high))[:MOST_NAMED]
     named = [f"--peg-height {unit.number(row.high)}" for row in longest]

@@ -173,6 +173,22 @@ class Bench:
         """The pegs that touch one face each: all but corners on a wall."""
         return [index for index, peg in enumerate(self.fixture.pegs) if peg.beside is None]
 
+    def touched_piece(self, index: int) -> Segment:
+        """The face that a contact is on; of one flush on a wall the piece between the ends of the wall."""
+        face, walls = self.faces[index], self.on_walls
+        if index not in walls or isinstance(face, Arc):
+            return face
+        half = face.half_extent
+        places = sorted(face.parameter(self.contacts[k][0]) for k in walls)
+        low, high = (max(-half, min(half, place)) for place in (places[0], places[-1]))
+        return face.part(low, high) if low < high else face
+
+    @property
+    def on_walls(self) -> list[int]:
+        """The ends of the contact with a wall."""
+        pegs = enumerate(self.fixture.pegs)
+        return [k for k, peg in pegs if self.toolkit.carrier(peg.carrier).contact is WALL_END]
+
     @property
     def placed(self) -> list[int]:
         """The pegs and clamps themselves: all but the ends of the contact with a wall."""
@@ -261,7 +277,7 @@ def draw_part(scene: Scene, bench: Bench, view: View, weight: float) -> None:
     part = scene.group("part", view)
     d = outline_path(bench.loops, view)
     part.path(d, fill=PART_FILL, fill_rule="evenodd", fill_opacity="0.74")
-    for face in dict.fromkeys(bench.faces[k] for k in bench.touching):
+    for face in dict.fromkeys(bench.touched_piece(k) for k in bench.touching):
         part.path(
             segment_path(face, view), TOUCHED, 8.0 * weight, stroke_linecap="butt", **{"class": "touched"}
         )

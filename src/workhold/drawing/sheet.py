@@ -211,6 +211,8 @@ PANELS = {1: 340.0, 2: 310.0}
 SMALLEST_PLAN = 120.0
 # Of a page's height, how much a view from the side may take.
 MOST_FIGURE = 0.62
+# How much smaller a view from the side is drawn to save a page.
+SMALLER_FIGURE = 0.45
 # A drawing this wide or high on paper, page units, needs no second page to become larger.
 LARGE_ENOUGH = 70 * UNITS_PER_MM
 
@@ -304,11 +306,37 @@ def layout_of(
     scale, inner = standard_scale(largest / UNITS_PER_MM), inner_box(page)
     if figure is None:
         return PageLayout(page, plan, tuple(columns), pages_of_words(inner, rest), scale)
-    own = standard_scale(figure.largest(inner.width, MOST_FIGURE * inner.height, scale.factor))
-    foot = inner.y0 + figure.height(inner.width, own.factor)
-    more = pages_of_words(inner, rest, Box(inner.x0, foot + GUTTER, inner.x1, inner.y1)) or ((),)
+    largest = figure.largest(inner.width, MOST_FIGURE * inner.height, scale.factor)
+    own = standard_scale(largest)
+    foot, more = under_figure(inner, rest, figure, own)
+    smaller = standard_scale(largest * SMALLER_FIGURE)
+    if len(more) > 1:
+        # A smaller view saves a page that would hold a few words.
+        for step in between(smaller.factor, own.factor):
+            lower, fewer = under_figure(inner, rest, figure, step)
+            if len(fewer) < len(more):
+                own, foot, more = step, lower, fewer
+                break
     top = Box(inner.x0, inner.y0, inner.x1, foot)
     return PageLayout(page, plan, tuple(columns), more, scale, (top, own))
+
+
+def under_figure(
+    inner: Box, rest: Sequence[Block], figure: SideFigure, scale: StandardScale
+) -> tuple[float, tuple[tuple[Filled, ...], ...]]:
+    """Where a view from the side at a scale ends, and the pages of words, the first below it."""
+    foot = inner.y0 + figure.height(inner.width, scale.factor)
+    return foot, pages_of_words(inner, rest, Box(inner.x0, foot + GUTTER, inner.x1, inner.y1)) or ((),)
+
+
+def between(least: float, most: float) -> list[StandardScale]:
+    """The standard scales from one below the larger factor down to the smaller one."""
+    found = list[StandardScale]()
+    scale = standard_scale(most * (1 - 1e-6))
+    while scale.factor >= least * (1 - ROUNDING):
+        found.append(scale)
+        scale = standard_scale(scale.factor * (1 - 1e-6))
+    return found
 
 
 def beside(
@@ -359,6 +387,9 @@ def pages_of_words(
     count, box = 3 if inner.width > inner.height else 2, inner if first is None else first
     width = (inner.width - (count - 1) * GUTTER) / count
     heights = [height_of(block, width) for block in blocks]
+    runs = filled_runs(blocks, heights, count, box.height)
+    if runs is not None:
+        return (tuple(side_by_side(box, runs)),)
     fits = (
         last
         for last in range(len(blocks), 1, -1)
@@ -367,6 +398,31 @@ def pages_of_words(
     last = next(fits, 0 if heights[0] > box.height and first is not None else 1)
     runs, _ = level_runs(blocks[:last], heights[:last], count)
     return (tuple(side_by_side(box, runs)), *pages_of_words(inner, blocks[last:]))
+
+
+def filled_runs(
+    blocks: Sequence[Block], heights: Sequence[float], count: int, height: float
+) -> list[Sequence[Block]] | None:
+    """Runs that hold all blocks within a height; None where there are none.
+
+    The first of them stand in their order, and the rest where a column has room below.
+    """
+    for last in range(len(blocks), 0, -1):
+        runs, most = level_runs(blocks[:last], heights[:last], count)
+        if most > height:
+            continue
+        sizes = dict(zip(map(id, blocks), heights, strict=True))
+        columns = [list(run) for run in runs]
+        free = [height - sum(sizes[id(block)] for block in run) for run in columns]
+        for block, size in zip(blocks[last:], heights[last:], strict=True):
+            place = next((k for k in range(count) if free[k] >= size), None)
+            if place is None:
+                break
+            columns[place].append(block)
+            free[place] -= size
+        else:
+            return [tuple(column) for column in columns]
+    return None
 
 
 def side_by_side(box: Box, runs: Sequence[Sequence[Block]]) -> list[Filled]:

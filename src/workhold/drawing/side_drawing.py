@@ -128,7 +128,8 @@ class SideFigure:
         elif heights.known_up_to < heights.thickness:
             notes.append(
                 f"Up to {words(heights.known_up_to)} the part is drawn as wide as all that pegs can meet; "
-                "above, dashed, only its height is known and how far level upper faces reach."
+                "above, in pale colour, its true shape may be less: only its height is known, and the level "
+                "upper faces, dashed."
             )
         else:
             notes.append(
@@ -222,15 +223,11 @@ class SideFigure:
         scene.path(outline(known), BLACK, 1.8, PART_FILL, fill_opacity="0.82", **{"class": "part-side"})
         if heights.known_up_to < heights.thickness:
             rest = page.box(Box(view.upper[0], heights.known_up_to, view.upper[1], heights.thickness))
-            scene.path(
-                outline(rest),
-                BLACK,
-                1.2,
-                PART_FILL,
-                fill_opacity="0.3",
-                stroke_dasharray="7 4",
-                **{"class": "unknown"},
-            )
+            # Without a border: of a dome nothing stands in the corners.
+            scene.path(outline(rest), PART_FILL, 0.0, PART_FILL, fill_opacity="0.4", **{"class": "unknown"})
+            for (low, high), height in view.tops:
+                ends = [page((low, height)), page((high, height))]
+                scene.line(ends, BLACK, 1.4, stroke_dasharray="7 4", **{"class": "upper-face"})
         for low, high in view.feet:
             scene.line([page((low, 0.0)), page((high, 0.0))], BLACK, 3.4, **{"class": "foot-face"})
 

@@ -114,6 +114,7 @@ class SideView:
     heights : of everything.
     part : how far the part's outline reaches.
     upper : how far it is known to reach above ``heights.known_up_to``.
+    tops : spans of its level upper faces above ``heights.known_up_to``, each with its height.
     feet : spans over which it lies; the whole outline where no level face below is known.
     plates, walls : spans of these.
     contacts : pegs and clamps.
@@ -137,6 +138,7 @@ class SideView:
     tip_radius: float = 0.0
     clamped_height: float = 0.0
     wall_heights: Band | None = None
+    tops: tuple[tuple[Span, float], ...] = ()
 
     @property
     def extent(self) -> Box:
@@ -169,6 +171,11 @@ def side_view(
         if solid is None
         else (spans_of(loops or (), bench, way) for loops in (solid.top, solid.bottom))
     )
+    levels: dict[float, list[Sequence[Sequence[float]]]] = {}
+    if solid is not None:
+        tops_at = solid.top_heights or (heights.thickness,) * len(solid.top or ())
+        for loop, height in zip(solid.top or (), tops_at, strict=True):
+            levels.setdefault(height, []).append(loop)
     return SideView(
         way=way,
         heights=heights,
@@ -183,6 +190,12 @@ def side_view(
         clamp=None if supports is None else way.across(pose.apply(*supports.clamp.at)),
         tip_radius=0.0 if request is None else request.tip_radius,
         clamped_height=heights.thickness if heights.clamped_height is None else heights.clamped_height,
+        tops=tuple(
+            (span, height)
+            for height, loops in sorted(levels.items())
+            if height > heights.known_up_to
+            for span in spans_of(loops, bench, way)
+        ),
         wall_heights=next((wall.carrier.heights for wall in bench.shown.walls), None),
     )
 

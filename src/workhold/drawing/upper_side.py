@@ -48,7 +48,7 @@ APART, AWAY = 0.3, 0.08
 MOST_MARKS = 60
 EIGHTHS = ("right", "upper right", "top", "upper left", "left", "lower left", "bottom", "lower right")
 # Height of the picture of the part as drawn by its width, and at most, page units.
-TALLEST_INSET, HIGHEST_INSET, INSET_ROOM = 0.75, 230.0, 56.0
+TALLEST_INSET, HIGHEST_INSET, INSET_ROOM = 0.75, 150.0, 56.0
 ON_NO_FACE = "The part lies on no level face: hold it level, on vee blocks or packing, while it is clamped."
 
 

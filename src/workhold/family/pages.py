@@ -144,6 +144,10 @@ HEADER, FOOTER, GAP = 92.0, 34.0, 12.0
 PLAN = 0.42
 # Sizes of words, heights of a line, of a row of the table and of the name under a part, page units.
 NAME, WORDS, SMALL = 13.0, 12.0, 11.0
+# The narrowest column of names, page units, and in how many lines a name may stand there.
+NARROWEST_NAME, MOST_NAME_LINES = 60.0, 3
+# Of the room beside the plan, what the table may take before names are cut off.
+MOST_TABLE = 0.5
 LINE, ROW, CAPTION = 15.0, 17.0, 22.0
 RULE = "#dfe3e8"
 
@@ -262,14 +266,14 @@ def draw_parts(scene: Scene, benches: Sequence[tuple[Holding, Bench]], room: Box
     notes = [
         line for note in notes_of([one for one, _ in benches]) for line in wrapped(note, SMALL, room.width)
     ]
-    high = ROW * (len(rows) + 2) + LINE * len(notes) + GAP
-    draw_table(
-        scene,
-        Box(room.x0, room.y1 - high + GAP / 2, room.x1, room.y1),
-        table_head(benches[0][0], titles),
-        rows,
-        notes,
-    )
+    head = table_head(benches[0][0], titles)
+    widths = column_widths(head, rows, room.width)
+    for most in range(MOST_NAME_LINES, 0, -1):
+        lines = sum(len(name_lines(row[0], widths[0], most)) for row in rows)
+        high = ROW * (lines + 2) + LINE * len(notes) + GAP
+        if high <= MOST_TABLE * room.height:
+            break
+    draw_table(scene, Box(room.x0, room.y1 - high + GAP / 2, room.x1, room.y1), head, rows, notes, most)
     cells = grid(len(benches), Box(room.x0, room.y0, room.x1, room.y1 - high - FOOTER))
     rooms = [Box(cell.x0 + 6, cell.y0 + 6, cell.x1 - 6, cell.y1 - CAPTION) for cell in cells]
     scale = min(
@@ -352,8 +356,8 @@ def notes_of(holdings: Sequence[Holding]) -> Iterator[str]:
             yield f"* {one.member.name}: the same pegs in {', '.join(peg.hole for peg in one.fixture.pegs)}."
 
 
-def draw_table(scene: Scene, room: Box, head: list[str], rows: list[list[str]], notes: list[str]) -> None:
-    """Draws the table of parts, numbers on the right of their columns, and the notes below it."""
+def column_widths(head: list[str], rows: list[list[str]], width: float) -> list[float]:
+    """Widths of the columns of the table of parts; the names have what the others leave."""
     heads = [in_two(words) for words in head]
     widths = [
         max(
@@ -364,20 +368,46 @@ def draw_table(scene: Scene, room: Box, head: list[str], rows: list[list[str]], 
         for k in range(len(head))
     ]
     # What is left goes to the names, and they give way where there is too little.
-    widths[0] = max(room.width - sum(widths[1:]), 60.0)
+    widths[0] = max(width - sum(widths[1:]), NARROWEST_NAME)
+    return widths
+
+
+def name_lines(name: str, width: float, most: int) -> list[str]:
+    """A part's name in as many lines as it takes in its column, the last cut off where these are too many."""
+    room = width - 8
+    lines = wrapped(name, WORDS, room, bold=True) or [""]
+    if len(lines) > most:
+        lines = [*lines[: most - 1], " ".join(lines[most - 1 :])]
+    return [shortened(line, WORDS, room, bold=True) for line in lines]
+
+
+def draw_table(
+    scene: Scene, room: Box, head: list[str], rows: list[list[str]], notes: list[str], most: int
+) -> None:
+    """Draws the table of parts, numbers on the right of their columns, and the notes below it.
+
+    Parameters
+    ----------
+    most : lines of a name.
+    """
+    widths = column_widths(head, rows, room.width)
+    heads = [in_two(words) for words in head]
     ends = [room.x0 + sum(widths[: k + 1]) for k in range(len(widths))]
     group = scene.group("table")
     lines = [[pair[k] for pair in heads] for k in (0, 1)]
+    top = room.y0
     for place, row in enumerate([*lines, *rows]):
-        y, bold = room.y0 + ROW * (place + 0.5), place < len(lines)
-        group.text((room.x0, y), shortened(row[0], WORDS, widths[0] - 8, bold=True), WORDS, bold=True)
+        bold, names = place < len(lines), name_lines(row[0], widths[0], most)
+        for k, name in enumerate(names):
+            group.text((room.x0, top + ROW * (k + 0.5)), name, WORDS, bold=True)
         for end, word in zip(ends[1:], row[1:], strict=True):
-            group.text((end, y), word, WORDS, "end", bold=bold)
+            group.text((end, top + ROW / 2), word, WORDS, "end", bold=bold)
+        top += ROW * len(names)
         if not bold:
-            group.line([(room.x0, y + ROW / 2), (room.x1, y + ROW / 2)], RULE, 0.6)
+            group.line([(room.x0, top), (room.x1, top)], RULE, 0.6)
     y = room.y0 + ROW * len(lines)
     group.line([(room.x0, y), (room.x1, y)], GREY, 0.8)
-    y = room.y0 + ROW * (len(lines) + len(rows)) + 4
+    y = top + 4
     for k, note in enumerate(notes):
         group.text((room.x0, y + LINE * (k + 0.5)), note, SMALL, fill=GREY)
 

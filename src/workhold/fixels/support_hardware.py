@@ -74,7 +74,7 @@ LIMITS = FieldTable(
             "stress_limit",
             "stress",
             "largest bending stress of a pin",
-            (PageLabel("Bending stress, MPa", USUAL),),
+            (PageLabel("Bending stress", USUAL),),
             figure="largest bending stress of a pin",
         ),
         length_row(

@@ -34,7 +34,11 @@ STANDING = ("axis", "height", "peg_height", "head_room", "least_band")
 # What says where a head or a tip on the upper faces is in the way or hangs, as a file has it.
 BESIDE_TOP = ("rising", "rising_heights", "hanging", "hanging_heights")
 # What carriers with outlines of their own say nothing of.
-NO_LEVELS: dict[str, Any] = {"bottom": None, "top": None, "top_heights": (), **dict.fromkeys(BESIDE_TOP, ())}
+NO_LEVELS: dict[str, Any] = {
+    "bottom": None,
+    "top": None,
+    **dict.fromkeys(("top_heights", *BESIDE_TOP, "unclear_heights"), ()),
+}
 Band = tuple[float, float]
 # Heights of the run that holds a segment's band, along the segment: shares of it, rising from 0 to 1, with
 # the lower and the upper end in mm there. Of every four, the last of which begins the next, each end is a
@@ -148,6 +152,8 @@ class SolidOutline:
     rising, rising_heights : loops around what rises above heights of ``top``, and for each the height.
     hanging, hanging_heights : loops of what hangs of ``top``: under it the material does not reach down to
         where the part lies; and for each the height of its face.
+    unclear_heights : of level upper faces beside which it is not known what rises, so that nothing of them
+        is in ``top``.
 
     Raises
     ------
@@ -171,6 +177,7 @@ class SolidOutline:
     rising_heights: tuple[float, ...] = field(default=(), converter=reals_of)
     hanging: Loops = field(default=(), converter=loops_of)
     hanging_heights: tuple[float, ...] = field(default=(), converter=reals_of)
+    unclear_heights: tuple[float, ...] = field(default=(), converter=reals_of)
 
     def __attrs_post_init__(self) -> None:
         if self.axis not in AXES:
@@ -219,6 +226,7 @@ class SolidOutline:
             rising_heights=workpiece.get("rising_heights") or (),
             hanging=workpiece.get("hanging") or (),
             hanging_heights=workpiece.get("hanging_heights") or (),
+            unclear_heights=workpiece.get("unclear_heights") or (),
         )
 
     @property
@@ -228,7 +236,7 @@ class SolidOutline:
 
     @property
     def has_no_top(self) -> bool:
-        """Whether its level faces are known, and nothing of them is open to above."""
+        """Whether its level faces are known, and nothing of them is known to be open to above."""
         return self.top is not None and not self.top
 
     def for_segments(self, count: int) -> SolidOutline:

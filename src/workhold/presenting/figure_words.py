@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import isfinite, isnan
+from math import inf, isfinite, isnan
 from typing import TYPE_CHECKING
 
 from workhold.fixels.contacts import CLAMP_TIP
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "counted_text",
+    "edgeless",
     "figure_text",
     "figures_shown",
     "fixture_title",
@@ -30,6 +31,8 @@ __all__ = [
 # Columns of which the figure's name is too wide: how far open the part is caught, by what a wrong seat reads
 # otherwise.
 SHORT = {"capture_opening": "caught", "reading": "reads"}
+# The figure for which a length stands where the part has no edge; by what share such lengths may differ.
+EDGE, SAME_SHARE = "edge_distance", 1e-9
 
 
 def figures_shown(result: Result) -> tuple[list[Figure], list[Figure]]:
@@ -120,10 +123,20 @@ def rounded(value: float, decimals: int) -> str:
     return text.removeprefix("-") if float(text) == 0 else text
 
 
+def edgeless(figure: Figure, value: float, longest: float) -> float:
+    """A figure's value; infinite where it is the length that stands for no edge, which is on no part.
+
+    Parameters
+    ----------
+    longest : that length in mm, ``Touched.length``.
+    """
+    return inf if figure.key == EDGE and value >= longest * (1 - SAME_SHARE) else value
+
+
 def figure_text(figure: Figure, value: float, unit: Unit) -> str:
     """Formats a figure's value as a number of its unit; in words where it is infinite or not known."""
     if not isfinite(value):
-        return "-" if isnan(value) else "none" if figure.key == "reading" else "any"
+        return "-" if isnan(value) else "none" if figure.key in ("reading", EDGE) else "any"
     if figure.unit == "MPa":
         return unit.stress_number(value)
     # A caliper reads hundredths of a millimetre.

@@ -7,7 +7,6 @@ a clamp so far inside its triangle. Ends of dowels as thick as those that locate
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from threading import Event
 from typing import Any
 
 from attrs import evolve, fields
@@ -22,6 +21,7 @@ from workhold.model.result import Result
 from workhold.model.solid import BESIDE_TOP
 from workhold.model.support_request import SpatialLoad, SupportRequest, usual_head
 from workhold.model.support_triples import Supports
+from workhold.supports.choosing import Stop
 from workhold.supports.listing import supports_of, supports_one_by_one
 
 __all__ = [
@@ -111,7 +111,7 @@ def supported_by_size(
     *,
     first_only: bool = False,
     drops_weak_force: bool = False,
-    cancel: Event | None = None,
+    cancel: Stop | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> tuple[tuple[Supports, ...], tuple[Supports, ...]]:
     """The best supports of some fixtures, of the first request of which any fixture has some.

@@ -13,6 +13,7 @@ from functools import lru_cache
 from itertools import combinations
 from math import floor, log10
 from threading import Event
+from typing import TypeAlias
 
 import numpy as np
 from attrs import define, field
@@ -24,7 +25,7 @@ from workhold.supports.clamp_point import RankedPlaces
 from workhold.supports.forces import Corners, Sides, Triangles
 from workhold.supports.holes import CarrierRoom
 
-__all__ = ["MOST_LISTED", "BoundFigures", "Chosen", "TripleChoice", "coarse"]
+__all__ = ["MOST_LISTED", "BoundFigures", "Chosen", "Stop", "TripleChoice", "WorkLimit", "coarse"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -56,6 +57,30 @@ def digits_of(value: float) -> tuple[float, float]:
     # Below a power of ten figures are ten times as fine.
     below = half * 0.1 if coarse(value - half * 0.2) != coarse(value) else half
     return value - min(half, below) * (1 - ROUNDING), value + half * (1 + ROUNDING)
+
+
+@define(eq=False)
+class WorkLimit:
+    """Stops the search of the sets under several fixtures once so many places of the clamp were looked at.
+
+    It counts, and looks at no clock: the same is found every time.
+
+    Parameters
+    ----------
+    most : places, of all triples together.
+    done : those that were looked at.
+    """
+
+    most: int
+    done: int = 0
+
+    def is_set(self) -> bool:
+        """Whether the search is to stop."""
+        return self.done >= self.most
+
+
+# What may stop a search: an event, or a count.
+Stop: TypeAlias = Event | WorkLimit
 
 
 @lru_cache(maxsize=4)
@@ -187,7 +212,7 @@ class TripleChoice:
     def chosen(
         self,
         best: int | None,
-        cancel: Event | None = None,
+        cancel: Stop | None = None,
         progress: Callable[[float], None] | None = None,
     ) -> Chosen:
         """The best triples, or all.
@@ -218,6 +243,8 @@ class TripleChoice:
                 rows, order, step = order[:step], order[step:], LATER
                 kept.left_out |= kept.last is not None
                 kept.add(self.judged(corners.take(rows), kept.last))
+                if isinstance(cancel, WorkLimit):
+                    cancel.done += len(rows) * self.places.candidate_count
                 order = self.open_rows(bounds, order, kept)
             if progress is not None:
                 progress(fraction)

@@ -9,7 +9,9 @@ the nearest side: the same search then finds the best tipping arm, and t* is the
 
 from __future__ import annotations
 
-from itertools import combinations
+from collections.abc import Sequence
+from functools import cached_property
+from itertools import combinations, pairwise
 
 import numpy as np
 from attrs import define, field
@@ -23,8 +25,13 @@ from workhold.supports.forces import Triangles
 __all__ = ["ClampPlaces", "RankedPlaces"]
 
 Array = NDArray[np.float64]
-# How many of the best candidates are held against the face at a time.
-AT_ONCE = 6
+# How many of the best candidates are held against the face at first; each time after twice as many.
+AT_FIRST = 6
+# A corner this near to a curve is on it, and a point this near to the end of a piece on that; in mm. What is
+# taken for free and is not does no harm.
+ON_CURVE, ON_PIECE = 1e-5, 1e-3
+# Around all of a circle.
+TURN = np.array([0.0, 2 * np.pi])
 # How many candidates, of several triangles, are looked at together.
 CANDIDATES = 1 << 18
 
@@ -47,19 +54,19 @@ class ClampPlaces:
     rings: Array | None
     tip_margin: float = 0.0
     kept_off: tuple[tuple[LevelRegions, float], ...] = ()
-    lines: Array = field(init=False)
-    circles: Array = field(init=False)
+    straight: Pieces = field(init=False)
+    bent: Pieces = field(init=False)
     corners: Array = field(init=False)
 
     def __attrs_post_init__(self) -> None:
         levels = dict.fromkeys(self.face.levels) or [None]
-        for name, parts in zip(
-            ("lines", "circles", "corners"), zip(*map(self.curves_on, levels), strict=True), strict=True
-        ):
-            object.__setattr__(self, name, np.unique(np.concatenate(parts), axis=0))
+        straight, bent, corners = zip(*map(self.borders_on, levels), strict=True)
+        object.__setattr__(self, "straight", Pieces.joined(straight))
+        object.__setattr__(self, "bent", Pieces.joined(bent))
+        object.__setattr__(self, "corners", np.unique(np.concatenate(corners), axis=0))
 
-    def curves_on(self, level: float | None) -> tuple[Array, Array, Array]:
-        """Lines and circles that border the places on faces of one height, and where they cross (K, 2)."""
+    def borders_on(self, level: float | None) -> tuple[Pieces, Pieces, Array]:
+        """Pieces of lines and circles that border the places on faces of one height, and corners (K, 2)."""
         lines: list[Curve] = []
         circles: list[Curve] = []
         for number, loop in enumerate(self.face.borders.loops):
@@ -74,17 +81,42 @@ class ClampPlaces:
         for x, y, low, high in () if self.rings is None else self.rings.tolist():
             circles += [(x, y, low), (x, y, high)]
         own = [np.unique(np.array(one).reshape(-1, 3), axis=0) for one in (lines, circles)]
-        return own[0], own[1], self.border_corners(own[0], own[1])
+        corners = self.border_corners(own[0], own[1])
+        return self.free_pieces(own[0], corners, False), self.free_pieces(own[1], corners, True), corners
+
+    def free_pieces(self, curves: Array, corners: Array, round_: bool) -> Pieces:
+        """The pieces of lines or circles (N, 3) on which the tip may stand.
+
+        They run from corner to corner. So the middle between two corners that follow one another decides, or
+        any point of a circle without corners.
+        """
+        kept, spans = list[int](), list[tuple[float, float]]()
+        middles, owners = list[Array](), list[tuple[int, float, float]]()
+        for number, curve in enumerate(curves):
+            places = np.sort(places_on(curve, corners[apart(curve, corners, round_) <= ON_CURVE], round_))
+            if round_:
+                places = np.append(places, places[:1] + 2 * np.pi) if len(places) else TURN
+            for low, high in pairwise(places.tolist()):
+                middles.append(point_on(curve, (low + high) / 2, round_))
+                owners.append((number, low, high))
+        free = self.allows(np.array(middles).reshape(-1, 2))
+        for (number, low, high), may in zip(owners, free.tolist(), strict=True):
+            if may and kept and kept[-1] == number and spans[-1][1] == low:
+                spans[-1] = (spans[-1][0], high)
+            elif may:
+                kept.append(number)
+                spans.append((low, high))
+        return Pieces(curves[kept].reshape(-1, 3), np.array(spans).reshape(-1, 2))
 
     def room(self, points: Array) -> Array:
-        """The slack (N,) in mm by which a tip at points (N, 2) keeps the rules of the top."""
-        on, off = self.face.rooms(points)
+        """The slack (N,) in mm by which a tip at points (N, 2) keeps the rules of the top but its zones."""
+        on, _ = self.face.own.rooms(points)
         on = on - self.tip_radius - self.tip_margin
         for regions, away in self.kept_off:
             for level in dict.fromkeys(self.face.levels):
                 own = np.array([one == level for one in self.face.levels])
                 on[:, own] = np.minimum(on[:, own], (regions.apart(level, points) - away)[:, None])
-        room = np.minimum(on.max(axis=1, initial=-np.inf), off - self.tip_radius)
+        room = on.max(axis=1, initial=-np.inf)
         if self.rings is not None:
             apart = np.hypot(*np.moveaxis(points[:, None] - self.rings[None, :, :2], -1, 0))
             ring = np.minimum(apart - self.rings[:, 2], self.rings[:, 3] - apart).max(axis=1, initial=-np.inf)
@@ -93,9 +125,11 @@ class ClampPlaces:
 
     def allows(self, points: Array) -> NDArray[np.bool_]:
         """Whether a tip may stand at points (N, 2)."""
-        return np.asarray(self.room(points) >= -GAP_SLACK)
+        found = self.face.off_zones(points, self.tip_radius, GAP_SLACK)
+        found[found] = self.room(points[found]) >= -GAP_SLACK
+        return found
 
-    @property
+    @cached_property
     def is_empty(self) -> bool:
         """Whether the tip may stand nowhere."""
         if not self.face.faces:
@@ -108,6 +142,11 @@ class ClampPlaces:
         )
         halves = Triangles.of(np.array([corners[[0, 1, 2]], corners[[0, 2, 3]]]))
         return not np.isfinite(self.best(halves, halves.steepness, 0.0)[1]).any()
+
+    @property
+    def candidate_count(self) -> int:
+        """How many places on the border can be best inside one triangle."""
+        return 6 * len(self.straight) + 14 * len(self.bent) + len(self.corners) + 15
 
     def border_corners(self, lines: Array, circles: Array) -> Array:
         """Points (K, 2) where two curves of a border cross and the tip may stand."""
@@ -134,8 +173,7 @@ class ClampPlaces:
         good[good] = self.allows(points[good])
         value = total.copy()
         rest = np.flatnonzero(~good)
-        curves = len(self.lines) + 2 * len(self.circles)
-        step = max(1, CANDIDATES // (6 * curves + 6 * len(self.circles) + len(self.corners) + 15))
+        step = max(1, CANDIDATES // self.candidate_count)
         for first in range(0, len(rest), step):
             some = rest[first : first + step]
             points[some], value[some] = self.on_border(triangles.take(some), asked[some], inside)
@@ -143,29 +181,39 @@ class ClampPlaces:
 
     def on_border(self, triangles: Triangles, asked: Array, inside: float) -> tuple[Array, Array]:
         """The best of the points that :meth:`candidates` gives."""
-        points = self.candidates(triangles, asked, inside)
+        candidates = self.candidates(triangles, asked, inside)
+        count = len(candidates)
+        of, which = np.nonzero(np.isfinite(candidates[..., 0]))
+        points = candidates[of, which]
+        # One column after the other: what numpy does along a short axis takes ten times as long.
+        shares = [
+            triangles.slopes[of, k, 0] * points[:, 0]
+            + triangles.slopes[of, k, 1] * points[:, 1]
+            + triangles.constants[of, k]
+            for k in range(3)
+        ]
+        steepness = triangles.steepness
+        well = np.ones(len(of), np.bool_)
+        value = np.zeros(len(of))
         with np.errstate(invalid="ignore", divide="ignore"):
-            shares = triangles.shares(points)
-            value = (asked[:, None] / shares).max(axis=2)
-            sides = (shares / triangles.steepness[:, None]).min(axis=2)
-            value = np.where(sides >= inside - GAP_SLACK, value, np.inf)
-        value[np.isnan(value)] = np.inf
-        out, least = np.full((len(points), 2), np.nan), np.full(len(points), np.inf)
-        order = np.argsort(value, axis=1, kind="stable")
-        open_ = np.arange(len(points))
-        for first in range(0, order.shape[1], AT_ONCE):
-            tried = order[open_, first : first + AT_ONCE]
-            values = np.take_along_axis(value[open_], tried, axis=1)
-            where = np.take_along_axis(points[open_], tried[..., None], axis=1)
-            may = np.isfinite(values)
-            may[may] = self.allows(where[may])
-            hit = may.any(axis=1)
-            which = may.argmax(axis=1)[hit]
-            out[open_[hit]] = where[hit, which]
-            least[open_[hit]] = values[hit, which]
-            open_ = open_[~hit & np.isfinite(values[:, -1])]
-            if not len(open_):
-                break
+            for k, share in enumerate(shares):
+                well &= share / steepness[of, k] >= inside - GAP_SLACK
+                value = np.maximum(value, asked[of, k] / share)
+        well &= np.isfinite(value)
+        points, value, of = points[well], value[well], of[well]
+        order = np.lexsort((value, of))
+        points, value, of = points[order], value[order], of[order]
+        # How many candidates of the same triangle come before each.
+        before = np.arange(len(of)) - np.searchsorted(of, np.arange(count))[of]
+        out, least = np.full((count, 2), np.nan), np.full(count, np.inf)
+        first, step, rest = 0, AT_FIRST, np.arange(len(of))
+        while len(rest):
+            now = rest[before[rest] < first + step]
+            hits = now[self.allows(points[now])]
+            found, place = np.unique(of[hits], return_index=True)
+            out[found], least[found] = points[hits[place]], value[hits[place]]
+            first, step = first + step, 2 * step
+            rest = rest[(before[rest] >= first) & np.isinf(least[of[rest]])]
         return out, least
 
     def candidates(self, triangles: Triangles, asked: Array, inside: float) -> Array:
@@ -183,15 +231,54 @@ class ClampPlaces:
         every = np.stack(lines, axis=1)
         first, second = np.triu_indices(every.shape[1], 1)
         normals = triangles.slopes / triangles.steepness[..., None]
-        centers, radii = self.circles[:, :2], self.circles[:, 2, None]
+        straight, circles = self.straight.curves, self.bent.curves
+        centers, radii = circles[:, :2], circles[:, 2, None]
+        met = line_points(every, straight, circles)
+        first_circle, second_circle = len(straight), len(straight) + len(circles)
+        on_circles = [met[:, :, first_circle:second_circle], met[:, :, second_circle:]]
+        on_circles += [centers + sign * radii * normals[:, :, None] for sign in (1.0, -1.0)]
         out = [
-            line_points(every, self.lines, self.circles).reshape(count, -1, 2),
+            self.straight.on_pieces(met[:, :, :first_circle], False),
+            *(self.bent.on_pieces(one, True) for one in on_circles),
             cross_lines(every[:, first], every[:, second]),
             np.broadcast_to(self.corners, (count, len(self.corners), 2)),
         ]
-        for sign in (1.0, -1.0):
-            out.append((centers + sign * radii * normals[:, :, None]).reshape(count, -1, 2))
-        return np.concatenate(out, axis=1)
+        return np.concatenate([one.reshape(count, -1, 2) for one in out], axis=1)
+
+
+@define(frozen=True, eq=False)
+class Pieces:
+    """Pieces of lines, or of circles.
+
+    Parameters
+    ----------
+    curves : (P, 3) unit normal and distance, or centre and radius, in mm.
+    spans : (P, 2) along the line in mm, or angles in radians, the lower one first.
+    """
+
+    curves: Array
+    spans: Array
+
+    def __len__(self) -> int:
+        return len(self.curves)
+
+    @classmethod
+    def joined(cls, parts: Sequence[Pieces]) -> Pieces:
+        """All pieces of several."""
+        return cls(
+            np.concatenate([one.curves for one in parts]), np.concatenate([one.spans for one in parts])
+        )
+
+    def on_pieces(self, points: Array, round_: bool) -> Array:
+        """Points (..., P, 2), each of the curve of a piece, and NaN for those that are not on the piece."""
+        low, high = self.spans.T
+        along = places_on(self.curves, points, round_)
+        if round_:
+            slack = ON_PIECE / self.curves[:, 2]
+            on = (along - low + slack) % (2 * np.pi) <= high - low + 2 * slack
+        else:
+            on = (along >= low - ON_PIECE) & (along <= high + ON_PIECE)
+        return np.where(on[..., None], points, np.nan)
 
 
 @define(frozen=True, eq=False)
@@ -221,6 +308,11 @@ class RankedPlaces:
         """Whether the tip may stand nowhere."""
         return self.classes[-1].is_empty
 
+    @property
+    def candidate_count(self) -> int:
+        """How many places on borders can be best inside one triangle, in all classes."""
+        return sum(one.candidate_count for one in self.classes)
+
     def hangs(self, points: Array) -> NDArray[np.bool_]:
         """Whether the material under places (N, 2) does not reach down to where the part lies."""
         last = len(self.classes) - 1
@@ -243,6 +335,28 @@ class RankedPlaces:
             if not len(open_):
                 break
         return points, values, classes
+
+
+def apart(curve: Array, points: Array, round_: bool) -> Array:
+    """Distances (N,) of points (N, 2) from a line or a circle (3,)."""
+    if round_:
+        return np.asarray(np.abs(np.hypot(*(points - curve[:2]).T) - curve[2]))
+    return np.asarray(np.abs(points @ curve[:2] - curve[2]))
+
+
+def places_on(curves: Array, points: Array, round_: bool) -> Array:
+    """Where points (..., 2) lie along lines, in mm, or around circles (..., 3), in radians."""
+    x, y = points[..., 0], points[..., 1]
+    if round_:
+        return np.arctan2(y - curves[..., 1], x - curves[..., 0])
+    return np.asarray(curves[..., 0] * y - curves[..., 1] * x)
+
+
+def point_on(curve: Array, place: float, round_: bool) -> Array:
+    """The point (2,) of a line or circle (3,) at a place."""
+    if round_:
+        return np.asarray(curve[:2] + curve[2] * np.array([np.cos(place), np.sin(place)]))
+    return np.asarray(curve[2] * curve[:2] + place * np.array([-curve[1], curve[0]]))
 
 
 def normalised(slope: Array, distance: Array) -> Array:

@@ -8,6 +8,7 @@ changed once between each arc and its chord, says which side a point is on.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from functools import cached_property
 
 import numpy as np
 from attrs import define, field
@@ -25,6 +26,10 @@ Curve = tuple[float, float, float]
 HAIR = 1.3e-10
 # How far beside a loop a point is asked for that says what the loop borders, in mm.
 BESIDE = 1e-4
+# Sine of the turn from one segment into the next below which there is no corner between them.
+SMOOTH = 1e-12
+# Zones that are held against points together, and only against those near them.
+TOGETHER = 16
 # Points times segments that are looked at together.
 AT_ONCE = 1 << 20
 
@@ -109,6 +114,18 @@ class FaceBorders:
         return np.concatenate([np.empty((0, len(self.loops))), *signed])
 
 
+def box_of(loops: Sequence[Loop]) -> tuple[Array, Array]:
+    """The least and the greatest x and y that loops may have; a point where there are none."""
+    points = [] if loops else [(0.0, 0.0)]
+    for one in (one for loop in loops for one in loop):
+        points.append(one.start)
+        if isinstance(one, Arc):
+            (x, y), radius = one.center, one.radius
+            points += [(x - radius, y - radius), (x + radius, y + radius)]
+    every = np.array(points)
+    return every.min(axis=0), every.max(axis=0)
+
+
 def beside(loop: Loop) -> tuple[float, float]:
     """A point just to the left of a loop."""
     (x, y), (nx, ny) = loop[0].middle, loop[0].normal()
@@ -179,6 +196,30 @@ class TouchableFace:
         levels = tuple(of_loops[face[0]] for face in faces)
         return cls(FaceBorders((*ordered, *kept_out)), tuple(first.tolist()), len(kept_out), levels)
 
+    @cached_property
+    def own(self) -> TouchableFace:
+        """The faces without their keep-out zones."""
+        count = len(self.borders.loops) - self.zones
+        return TouchableFace(FaceBorders(self.borders.loops[:count]), self.faces, 0, self.levels)
+
+    @cached_property
+    def zone_groups(self) -> tuple[tuple[FaceBorders, Array], ...]:
+        """The zones, some at a time, each with the box x0, y0, x1, y1 around these."""
+        loops = self.borders.loops[len(self.borders.loops) - self.zones :]
+        groups = [FaceBorders(loops[k : k + TOGETHER]) for k in range(0, len(loops), TOGETHER)]
+        return tuple((one, np.concatenate(box_of(one.loops))) for one in groups)
+
+    def off_zones(self, points: Array, radius: float, slack: float) -> NDArray[np.bool_]:
+        """Whether discs about points (N, 2) keep off all zones, but for a slack in mm."""
+        out = np.ones(len(points), np.bool_)
+        for borders, (x0, y0, x1, y1) in self.zone_groups:
+            x, y = points.T
+            near = (x > x0 - radius) & (x < x1 + radius) & (y > y0 - radius) & (y < y1 + radius)
+            some = np.flatnonzero(out & near)
+            off = (-borders.inside(points[some])).min(axis=1, initial=np.inf)
+            out[some[off - radius < -slack]] = False
+        return out
+
     def rooms(self, points: Array) -> tuple[Array, Array]:
         """Radii of the largest discs about points (N, 2) on each face (N, F), and of those off all zones (N,).
 
@@ -198,14 +239,7 @@ class TouchableFace:
     @property
     def box(self) -> tuple[Array, Array]:
         """The least and the greatest x and y that the faces may have; a point where there is no face."""
-        points = [] if self.faces else [(0.0, 0.0)]
-        for one in (one for number in self.faces for one in self.borders.loops[number]):
-            points.append(one.start)
-            if isinstance(one, Arc):
-                (x, y), radius = one.center, one.radius
-                points += [(x - radius, y - radius), (x + radius, y + radius)]
-        every = np.array(points)
-        return every.min(axis=0), every.max(axis=0)
+        return box_of([self.borders.loops[number] for number in self.faces])
 
     def face_of(self, border: int) -> int | None:
         """The number of the face that a border belongs to; None of a zone's."""
@@ -227,18 +261,38 @@ def offset_curves(loop: Loop, radius: float, left: bool) -> tuple[list[Curve], l
     """
     lines: list[Curve] = []
     circles: list[Curve] = []
-    for one in loop:
-        circles.append((*one.start, radius))
+    grown = [grown_radius(one, radius, left) for one in loop]
+    for number, one in enumerate(loop):
+        # Where a border goes on smoothly, a disc that touches the joint touches both pieces of it.
+        if grown[number] <= 0.0 or grown[number - 1] <= 0.0 or not is_smooth(loop[number - 1], one):
+            circles.append((*one.start, radius))
         if isinstance(one, Arc):
-            grown = one.radius - radius if (one.sign > 0) == left else one.radius + radius
-            if grown > 0:
-                circles.append((*one.center, grown))
+            if grown[number] > 0.0:
+                circles.append((*one.center, grown[number]))
         else:
             (ax, ay), (bx, by) = one.start, one.end
             length = float(np.hypot(bx - ax, by - ay))
             nx, ny = (ay - by) / length, (bx - ax) / length
             lines.append((nx, ny, nx * ax + ny * ay + (radius if left else -radius)))
     return lines, circles
+
+
+def grown_radius(one: Segment, radius: float, left: bool) -> float:
+    """Radius of the circle on which the middle of a disc is that touches an arc, infinite of a line."""
+    if not isinstance(one, Arc):
+        return np.inf
+    return one.radius - radius if (one.sign > 0) == left else one.radius + radius
+
+
+def is_smooth(one: Segment, after: Segment) -> bool:
+    """Whether a border has no corner between two of its segments."""
+    (x, y), (to_x, to_y) = one.normal(last_parameter(one)), after.normal(-last_parameter(after))
+    return abs(x * to_y - y * to_x) < SMOOTH and x * to_x + y * to_y > 0.0
+
+
+def last_parameter(one: Segment) -> float:
+    """The parameter of a segment's end; that of its start is the opposite."""
+    return one.half_extent * (one.sign if isinstance(one, Arc) else 1.0)
 
 
 def area_center(loops: Sequence[Sequence[Segment]]) -> Array:

@@ -45,6 +45,7 @@ __all__ = [
     "WeakJawError",
     "lifted_by_jaws",
     "needed_jaw_force",
+    "worst_cases",
 ]
 
 Array = NDArray[np.float64]
@@ -206,6 +207,11 @@ def support_forces(
                     worst = np.minimum(worst, value)
         out.append(sign * worst)
     return out[0], out[1]
+
+
+def worst_cases(load: SpatialLoad) -> int:
+    """The number of ways in which a load may act worst: points, heights and axial forces together."""
+    return max(len(load.points), 1) * len(set(load.heights or (0.0,))) * len(set(load.axial))
 
 
 def lifted_by_jaws(lines: Lines, pegs: PegForces, bands: Array) -> Array:

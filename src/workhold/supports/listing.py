@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from math import inf, isfinite
-from threading import Event
 
 import numpy as np
 from attrs import define, field
@@ -21,10 +20,18 @@ from workhold.model.support_request import Loops, SpatialLoad, SupportRequest
 from workhold.model.support_triples import ClampFigures, SupportPad, Supports, Triple
 from workhold.statics.contact_matrix import Touched
 from workhold.supports.beside_faces import LevelRegions
-from workhold.supports.choosing import TripleChoice
+from workhold.supports.choosing import Stop, TripleChoice, WorkLimit
 from workhold.supports.clamp_point import ClampPlaces, RankedPlaces
 from workhold.supports.faces import TouchableFace, area_center
-from workhold.supports.forces import Corners, PegForces, Sides, WeakJawError, lifted_by_jaws, needed_jaw_force
+from workhold.supports.forces import (
+    Corners,
+    PegForces,
+    Sides,
+    WeakJawError,
+    lifted_by_jaws,
+    needed_jaw_force,
+    worst_cases,
+)
 from workhold.supports.holes import CarrierRoom, holes_under
 from workhold.supports.program import acting_on, with_program
 
@@ -34,6 +41,8 @@ Array = NDArray[np.float64]
 Heights = Sequence[float] | None
 # How far in mm from the air beside it the middle of a tip is at least that counts as over material.
 OVER = 2e-6
+# Sides of triangles, each under one load, that take as long as a place of the clamp.
+SIDES_A_PLACE = 5
 # More holes than these leave more triples than can be looked at.
 MOST_POSITIONS = 1200
 
@@ -110,7 +119,7 @@ class SupportSearch:
         fixture: Fixture,
         jaw_force: float | None,
         best: int | None,
-        cancel: Event | None = None,
+        cancel: Stop | None = None,
         progress: Callable[[float], None] | None = None,
     ) -> Supports:
         """The supports of a fixture: all triples, or the best few; see :func:`supports_of`.
@@ -131,6 +140,8 @@ class SupportSearch:
                 f"{len(holes.row):,} holes could hold a support, more than {MOST_POSITIONS:,}: give a larger "
                 "pad margin, or places that no pad may stand under."
             )
+        if isinstance(cancel, WorkLimit):
+            cancel.done += len(holes.row) ** 2 * sum(map(worst_cases, self.loads)) // SIDES_A_PLACE
         choice = TripleChoice(
             Sides(holes.points, pegs, request.peg_bands(len(fixture.pegs)), self.loads, force),
             CarrierRoom.of(fixture, toolkit, holes),
@@ -252,7 +263,7 @@ def supports_of(
     jaw_force: float | None = None,
     best: int | None = None,
     *,
-    cancel: Event | None = None,
+    cancel: Stop | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Supports:
     """The supports of one planar fixture, the best first.
@@ -286,7 +297,7 @@ def supports_one_by_one(
     each: int | None = 3,
     *,
     drops_weak_force: bool = False,
-    cancel: Event | None = None,
+    cancel: Stop | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Iterator[Supports]:
     """Yields the supports of each of some fixtures of a query as they are found.

@@ -21,7 +21,7 @@ from workhold.model.workpiece import Workpiece
 from workhold.supports.asking import SMALLER
 from workhold.supports.holes import CarrierRoom, HolesUnderPart, holes_under
 from workhold.supports.listing import SupportSearch
-from workhold.units import Unit
+from workhold.units import MILLIMETRE, Unit
 
 __all__ = ["flat_faces_notes", "listing_notes", "place_notes", "set_headings", "set_row", "why_no_set"]
 
@@ -43,18 +43,27 @@ def reason(found: Supports, unit: Unit) -> str:
     if request.bottom is not None and not request.bottom:
         return f"the part lies on no level face under which a pad could stand{turned}."
     if request.top is not None and not request.top:
+        solid = found.query.workpiece.solid
+        if solid is not None and solid.unclear_heights:
+            return f"there is no top clamp: {unclear_words(solid.unclear_heights, unit)}{turned}."
         return (
             "there is no top clamp, as no level face of the part is open to above; crowns, fillets and slopes are "
             f"not taken for flat{turned}."
         )
-    bottom = SupportSearch(found.query, request, ()).bottom
+    search = SupportSearch(found.query, request, ())
     plain = SupportSearch(found.query, evolve(request, top_zones=(), reach=None), ())
     if plain.places(found.fixture).is_empty:
         return no_place_for_a_tip(request, turned, unit)
-    holes = holes_under(found.fixture, toolkit, bottom, request)
+    if found.query.program is not None and search.places(found.fixture).is_empty:
+        return (
+            "the tools of the program and the keep-outs leave no place on the upper face where a tip of "
+            f"radius {unit.text(request.tip_radius)} could stay; a smaller tip would help, or to machine "
+            "what is under it in another set-up, or to hold the part down by other means."
+        )
+    holes = holes_under(found.fixture, toolkit, search.bottom, request)
     if found.positions < 3:
         bare = evolve(request, pad_radius=0.0, pad_margin=0.0)
-        return few_holes(found, holes_under(found.fixture, toolkit, bottom, bare), unit)
+        return few_holes(found, holes_under(found.fixture, toolkit, search.bottom, bare), unit)
     sets = np.array(list(islice(combinations(range(len(holes.row)), 3), MOST_LOOKED_AT)), np.int64)
     sets = sets[CarrierRoom.of(found.fixture, toolkit, holes).standing(sets).fits]
     if not len(sets):
@@ -79,6 +88,16 @@ def reason(found: Supports, unit: Unit) -> str:
     return (
         f"inside every triangle of the {found.positions} holes that could hold a support, the tip of radius "
         f"{unit.text(request.tip_radius)} finds no place on the upper face; {', or '.join(helps)} would help."
+    )
+
+
+def unclear_words(heights: Sequence[float], unit: Unit) -> str:
+    """The words that of upper faces it is not known what is free, with what would help."""
+    faces = "face" if len(heights) == 1 else "faces"
+    at = listed_words([unit.text(height) for height in heights])
+    return (
+        f"beside the level {faces} at a height of {at} so much stands, or in so many curves, that where a "
+        "clamp has room is not known; a file without those details would help"
     )
 
 
@@ -191,7 +210,7 @@ def those(some: Sequence[int], every: Mapping[int, Triple]) -> str:
     return "each" if len(some) == len(every) else listed_words([str(number) for number in some])
 
 
-def flat_faces_notes(workpiece: Workpiece, keep_off: Sequence[str]) -> list[str]:
+def flat_faces_notes(workpiece: Workpiece, keep_off: Sequence[str], unit: Unit = MILLIMETRE) -> list[str]:
     """Says that a solid has no level face below or on top, or is taken to be flat where none is known.
 
     Parameters
@@ -206,7 +225,10 @@ def flat_faces_notes(workpiece: Workpiece, keep_off: Sequence[str]) -> list[str]
         notes.append(
             "The part lies on no level face, so no support can stand under it: turn another side up."
         )
-    if solid.has_no_top:
+    if solid.unclear_heights:
+        words = unclear_words(solid.unclear_heights, unit)
+        notes.append(f"{words[:1].upper()}{words[1:]}.")
+    elif solid.has_no_top:
         notes.append(
             "No level face of the part is open to above, so no clamp can press on it from above: turn another "
             "side up, or hold it down by other means."

@@ -344,6 +344,7 @@ def keys_missing(head: Head) -> list[str]:
         "workpiece.bottom",
         "workpiece.top",
         "workpiece.top_heights",
+        "workpiece.unclear_heights",
         *(f"workpiece.{key}" for key in BESIDE_TOP),
     } | ({"solid", "workpiece.bands"} if head.solid is None else set())
     if head.seating is None:

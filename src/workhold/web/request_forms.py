@@ -186,6 +186,7 @@ class SolidForm(Form):
     rising_heights: Annotated[list[Number], Field(max_length=MOST_VERTICES)] = Field(default=[])
     hanging: Annotated[list[LoopForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
     hanging_heights: Annotated[list[Number], Field(max_length=MOST_VERTICES)] = Field(default=[])
+    unclear_heights: Annotated[list[Number], Field(max_length=MOST_VERTICES)] = Field(default=[])
 
 
 class OwnOutlineForm(Form):

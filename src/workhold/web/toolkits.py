@@ -27,7 +27,7 @@ __all__ = ["DESCRIBED", "Described", "kinds_answer", "page_kind", "toolkit_answe
 
 # How the page reads a form of field where it has no form of its own for it; choices are taken by "one" or
 # "several".
-PAGE_FORMS: Mapping[str, str] = {"flat": "length", "heights": "span", "stress": "number"}
+PAGE_FORMS: Mapping[str, str] = {"flat": "length", "heights": "span"}
 
 
 @frozen

@@ -11,7 +11,12 @@ import pytest
 
 pytest.importorskip("OCP", reason="the extra 'step' is not installed")
 
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeWire
+from OCP.BRepBuilderAPI import (
+    BRepBuilderAPI_MakeEdge,
+    BRepBuilderAPI_MakeFace,
+    BRepBuilderAPI_MakeWire,
+    BRepBuilderAPI_NurbsConvert,
+)
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeRevol, BRepPrimAPI_MakeTorus
 from OCP.collections import Array1_gp_Pnt
 from OCP.GC import GC_MakeSegment
@@ -20,8 +25,11 @@ from OCP.gp import gp_Ax1, gp_Ax2, gp_Dir, gp_Pnt
 from step_shapes import box, cut, cylinder, fused
 
 from workhold.files.step.edge_curves import bisected, crossing
+from workhold.files.step.enclosing import fold_squares
+from workhold.files.step.faces import surface_of
 from workhold.files.step.heights import measures, standing
-from workhold.files.step.projected import OtherCurveError
+from workhold.files.step.library import sub_shapes
+from workhold.files.step.projected import OtherCurveError, normal_height
 
 
 def area_at(shape: Any, high: float) -> float:
@@ -85,3 +93,26 @@ def test_crossing_is_that_of_bisection(root: float, power: int) -> None:
 def test_crossing_of_a_value_that_falls() -> None:
     """The end with the value below 0 may be the greater one."""
     assert crossing(lambda t: 0.25 - t, (1.0, -0.75), (0.0, 0.25)) == pytest.approx(0.25, abs=1e-15)
+
+
+def test_squares_hold_a_fold_with_room_beside_it() -> None:
+    """Where a free-form face stands upright lies in a square, as far inside that no rounding leads out of it."""
+    ring = BRepPrimAPI_MakeTorus(gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(0.3, 0.2, 0.9)), 10.0, 3.0).Shape()
+    (face,) = sub_shapes(BRepBuilderAPI_NurbsConvert(ring).Shape(), "FACE")
+    surface, size, room = surface_of(face), 0.5, 0.02
+    squares = fold_squares(surface, size)
+    u = np.linspace(surface.FirstUParameter(), surface.LastUParameter(), 241)
+    v = np.linspace(surface.FirstVParameter(), surface.LastVParameter(), 241)
+    missed = found = 0
+    for a in u:
+        leans = [normal_height(surface, float(a), float(b)) for b in v]
+        for k in range(len(v) - 1):
+            if (leans[k] > 0.0) == (leans[k + 1] > 0.0):
+                continue
+            share = leans[k] / (leans[k] - leans[k + 1])
+            place = surface.Value(float(a), float(v[k] + share * (v[k + 1] - v[k])))
+            found += 1
+            for dx, dy in ((room, 0.0), (-room, 0.0), (0.0, room), (0.0, -room)):
+                at = int(np.floor((place.X() + dx) / size)), int(np.floor((place.Y() + dy) / size))
+                missed += at not in squares
+    assert found > 400 and missed == 0

@@ -85,8 +85,14 @@ def test_hardware_is_typed_and_used(walk: Walk, block: str) -> None:
     fill(walk, supports_pad_margin="0.1")
     wanted[0]["pad_margin"] = pytest.approx(2.54)
     assert hardware() == wanted
+    # A limit of stress is typed in thousands of pounds to the square inch there: 50 ksi are 344.7 MPa.
+    assert page.inner_text("label:has(#pins-stress-limit)").strip() == "Bending stress ksi"
+    fill(walk, pins_stress_limit="50")
+    assert held_in(walk)["pins"]["stress_limit"] == pytest.approx(344.738, abs=1e-3)
     page.focus("#unit")
     page.select_option("#unit", "mm")
+    assert page.inner_text("label:has(#pins-stress-limit)").strip() == "Bending stress MPa"
+    fill(walk, pins_stress_limit="")
     walk.search()
     walk.seen("#supports-sets tr")
     thick = len(sets(walk, pad_radius=9.0, bottom_zones=[]))

@@ -138,6 +138,26 @@ def test_lengths_are_told_in_the_unit_chosen(walk: Walk, unit: str) -> None:
     assert walk.page.locator("#list .row").count() > 0
 
 
+@pytest.mark.parametrize(
+    ("unit", "words"),
+    [
+        ("mm", ["896 MPa", "1000 N", "1000 N", "1000 N"]),
+        ("inch", ["130.0 ksi", "225 lbf (1000 N)", "225 lbf (1000 N)", "225 lbf"]),
+    ],
+)
+def test_forces_and_stresses_are_told_in_the_unit_chosen(walk: Walk, unit: str, words: list[str]) -> None:
+    """As the sheet tells them: pounds and ksi with inches, newtons beside where there is room."""
+    walk.page.select_option("#unit", unit)
+    told = walk.page.evaluate(
+        """async () => {
+            const { figureText, forceAlone, forceText } = await import('/static/units.js');
+            return [figureText({ key: "pin_stress", unit: "MPa" }, 896.2), figureText({ key: "load", unit: "N" }, 1000),
+                forceText(1000), forceAlone(1000)];
+        }"""
+    )
+    assert told == words
+
+
 def test_the_keys_are_enough(walk: Walk) -> None:
     """Part, face, search, list and a peg without the mouse."""
     page = walk.page

@@ -83,6 +83,9 @@ class WorkpiecePart(FormPart):
         None, description="loops of what of the upper faces has air between itself and the lying plane"
     )
     hanging_heights: list[float] | None = Field(None, description="height in mm of the face of each of these")
+    unclear_heights: list[float] | None = Field(
+        None, description="heights in mm of upper faces of which it is not known what is free"
+    )
 
 
 class SolidPart(FormPart):

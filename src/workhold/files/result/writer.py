@@ -204,7 +204,8 @@ def bands_entry(solid: SolidOutline | None) -> dict[str, Any]:
     faces = {"solid_faces": [list(faces) for faces in solid.faces]} if solid.faces else {}
     faces_known = {"bottom": solid.bottom, "top": solid.top}
     level: dict[str, Any] = {name: loops for name, loops in faces_known.items() if loops is not None}
-    level |= {key: list(value) for key in ("top_heights", *BESIDE_TOP) if (value := getattr(solid, key))}
+    beside = ("top_heights", *BESIDE_TOP, "unclear_heights")
+    level |= {key: list(value) for key in beside if (value := getattr(solid, key))}
     runs = {"runs": [list(map(list, rows)) for rows in solid.runs]} if any(solid.runs) else {}
     return {"bands": [None if band is None else list(band) for band in solid.bands], **runs, **faces, **level}
 

@@ -63,12 +63,14 @@ class LevelTop:
     open : the parts of the faces that are open, outer loops counter-clockwise, openings clockwise.
     rising : what rises above the height.
     hanging : the open parts that hang.
+    is_unclear : whether nothing is open because it is not known what rises or hangs there.
     """
 
     height: float
     open: list[Array]
     rising: list[Array]
     hanging: list[Array]
+    is_unclear: bool = False
 
 
 @frozen(eq=False)
@@ -93,11 +95,13 @@ class FaceBorder:
 def known_levels(solid: StandingSolid) -> dict[str, list[Any]]:
     """The level faces of a solid by the names that ``SolidOutline`` has for them."""
     found: dict[str, list[Any]] = {"bottom": [loop.tolist() for loop in bottom_loops(solid)]}
-    tops = level_tops(solid)
+    every = every_level_top(solid)
+    tops = [top for top in every if top.open]
+    found["unclear_heights"] = [top.height for top in every if top.is_unclear]
     for name, kind in (("top", "open"), ("rising", "rising"), ("hanging", "hanging")):
-        every = [(top.height, loop) for top in tops for loop in getattr(top, kind)]
-        found[name] = [loop.tolist() for _, loop in every]
-        found[f"{name}_heights"] = [height for height, _ in every]
+        loops = [(top.height, loop) for top in tops for loop in getattr(top, kind)]
+        found[name] = [loop.tolist() for _, loop in loops]
+        found[f"{name}_heights"] = [height for height, _ in loops]
     return found
 
 
@@ -118,6 +122,11 @@ def level_tops(solid: StandingSolid) -> list[LevelTop]:
 
     Faces of one height that lie side by side are one face; those of other heights stay faces of their own.
     """
+    return [top for top in every_level_top(solid) if top.open]
+
+
+def every_level_top(solid: StandingSolid) -> list[LevelTop]:
+    """The tops of :func:`level_tops`, with the heights at which nothing is open."""
     groups: list[list[SolidFace]] = []
     for face in solid.faces:
         if face.lie == "level" and face.upward:
@@ -127,8 +136,7 @@ def level_tops(solid: StandingSolid) -> list[LevelTop]:
             else:
                 group.append(face)
     lying, places = on_faces(lying_borders(solid)), Budget(LIMITS["tops"])
-    found = (level_top(solid, group, lying, places) for group in groups)
-    return [top for top in found if top.open]
+    return [level_top(solid, group, lying, places) for group in groups]
 
 
 def level_top(
@@ -168,7 +176,7 @@ def level_top(
             return nothing
         return LevelTop(height, open_, rising, hanging_of(solid, open_, height, lies_on, places))
     except InputError:
-        return nothing
+        return LevelTop(height, [], [], [], is_unclear=True)
 
 
 def rises_above(

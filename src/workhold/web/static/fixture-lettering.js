@@ -5,7 +5,7 @@ import { draw } from "./dom.js";
 import { along, apart, isFree } from "./labels.js";
 import { columnLetters, place } from "./pose.js";
 import { programLabel } from "./program-drawing.js";
-import { length, number } from "./units.js";
+import { forceAlone, length, number } from "./units.js";
 
 const LONGEST = 62;
 const SHORTEST = 20;
@@ -188,7 +188,7 @@ function padLabels(drawing) {
     return label([x, y], [(x - clamp[0]) / far, (y - clamp[1]) / far], supports.holes[k], supports.pad_radius * view.k, ".support");
   });
   if (drawing.open) return pads;
-  const words = supports.clamp_force === null ? "clamp" : `clamp ${number(Math.ceil(supports.clamp_force), 0)} N`;
+  const words = supports.clamp_force === null ? "clamp" : `clamp ${forceAlone(Math.ceil(supports.clamp_force))}`;
   return [...pads, label(clamp, [0.6, -0.8], words, supports.tip_radius * view.k, ".from-above")];
 }
 
@@ -285,7 +285,7 @@ function loadLabel({ view, load }) {
   const tip = view.page([load.at[0] + load.vector[0], load.at[1] + load.vector[1]]);
   const long = Math.hypot(tip[0] - tail[0], tip[1] - tail[1]);
   const [ux, uy] = long > 1 ? [(tip[0] - tail[0]) / long, (tip[1] - tail[1]) / long] : [0, -1];
-  const text = `${number(load.size, 0)} N`;
+  const text = forceAlone(load.size);
   const w = 8.4 * text.length;
   return { tail, tip, text, w, h: 16, places: around(tip, [ux, uy], [8 + w / 2, 14]) };
 }

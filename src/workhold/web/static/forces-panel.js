@@ -12,7 +12,7 @@ import { selectRank } from "./selection.js";
 import { fixtureDrawing } from "./stage-panel.js";
 import { change, on, state } from "./state.js";
 import { kindOf } from "./toolkits.js";
-import { fieldLength, number, readLength, readNumber } from "./units.js";
+import { fieldLength, forceAlone, forceText, number, readLength, readNumber } from "./units.js";
 
 /** A drag over the part's diagonal is this many newtons. */
 const NEWTONS = 1000;
@@ -222,16 +222,16 @@ function writeBars(row, { forces, needed, jaw, loose }) {
       fill.style.transform = `scaleX(${Math.abs(force) / most})`;
       return make(`div.bar${pulls ? ".pulls" : ""}`, {},
         make("b", {}, row.holes[k]), make("div.bar-track", { "aria-hidden": "true" }, fill),
-        make("span.number", {}, pulls ? "lets go" : `${number(force, 0)} N`));
+        make("span.number", {}, pulls ? "lets go" : forceText(force)));
     }),
   );
   const enough = jaw >= needed * (1 - 1e-9);
-  const told = state.force?.jaw === null && needed > 0 ? `that ${mover()} force` : `a ${mover()} force of ${number(jaw, 0)} N`;
+  const told = state.force?.jaw === null && needed > 0 ? `that ${mover()} force` : `a ${mover()} force of ${forceText(jaw)}`;
   byId("force-words").textContent = [
     needed === 0
       ? `No peg lets go, however little the ${mover()} presses.`
-      : `The ${mover()} must press with ${number(Math.ceil(needed), 0)} N so that no peg lets go; below that ${row.holes[loose]} does.`,
-    enough ? `Forces are told for ${told} of ${kindWords(state.force?.kind)}, without friction.` : `With ${number(jaw, 0)} N it lets go.`,
+      : `The ${mover()} must press with ${forceText(Math.ceil(needed))} so that no peg lets go; below that ${row.holes[loose]} does.`,
+    enough ? `Forces are told for ${told} of ${kindWords(state.force?.kind)}, without friction.` : `With ${forceText(jaw)} it lets go.`,
   ].join(" ");
 }
 
@@ -270,7 +270,7 @@ function askBest() {
 /** Links to the fixtures that resist best. */
 function writeBest(best) {
   const links = best.slice(0, 4).map(({ rank, load_reaction: most }) =>
-    make("button", { type: "button", click: () => selectRank(rank) }, `${rank}: ${number(most, 0)} N`),
+    make("button", { type: "button", click: () => selectRank(rank) }, `${rank}: ${forceAlone(most)}`),
   );
   byId("resist-words").replaceChildren("Resisted best, by the largest peg force: ", ...links.flatMap((link) => [link, " "]));
 }

@@ -2,7 +2,7 @@
  * A set-up from the side, to scale: part, pegs with the heights at which they press, supports, and the clamp on top.
  */
 import { draw } from "./dom.js";
-import { bareLength, number } from "./units.js";
+import { bareLength, forceAlone } from "./units.js";
 
 /** @typedef {{name: string, kind: string, x: number[], y: number[], z: number[]}} BodyBox extents in mm in the toolkit's frame */
 
@@ -52,7 +52,7 @@ export function drawSide(svg, seen, holes, clamp, across) {
     return [draw("line.side-band", { x1: x(middle), x2: x(middle), y1: z(band[0]), y2: z(band[1]) })];
   });
   const tip = z(clamp.height ?? thickness);
-  const press = clamp.force === null ? "clamp" : `${number(Math.ceil(clamp.force), 0)} N`;
+  const press = clamp.force === null ? "clamp" : forceAlone(Math.ceil(clamp.force));
   const arrow = [
     draw("path.side-push", { d: `M${x(clampAt)} ${tip}l-5 -11h3.4v-10h3.2v10h3.4Z` }),
     draw("text.side-word", { x: Math.min(Math.max(x(clampAt), 26), wide - 26), y: Math.max(tip - 25, 11), "text-anchor": "middle" }, press),

@@ -10,7 +10,7 @@ import { forceOf } from "./pose.js";
 import { step } from "./selection.js";
 import { change, on, state } from "./state.js";
 import { kindOf, kinds } from "./toolkits.js";
-import { countText, number } from "./units.js";
+import { countText, forceText, number } from "./units.js";
 
 /** @type {PartDrawing} */
 export let partDrawing;
@@ -193,7 +193,7 @@ function pegWords(k, at, row) {
   const box = byId("peg-words");
   show(box, k !== null && row !== null);
   if (k === null || !row) return;
-  const force = fixtureDrawing.load && row === state.selected ? `${number(fixtureDrawing.load.forces[k], 0)} N` : `${number(row.forces[k], 3)} N for each N of ${forceOf(row)}`;
+  const force = fixtureDrawing.load && row === state.selected ? forceText(fixtureDrawing.load.forces[k]) : `${number(row.forces[k], 3)} N for each N of ${forceOf(row)}`;
   box.textContent = `${row.holes[k]} · face ${row.touched[k]} · ${force}`;
   const wide = box.offsetWidth;
   box.style.left = `${Math.max(6, Math.min(innerWidth - wide - 6, at.left + at.width / 2 - wide / 2))}px`;

@@ -8,7 +8,7 @@ import { fixtureDrawing, partDrawing } from "./stage-panel.js";
 import { change, on, state } from "./state.js";
 import { supportsCard } from "./supports-card.js";
 import { areShown, supportsRequest, thicknessOf } from "./supports.js";
-import { bareLength, fieldLength, length, number, readLength, readNumber, unitWord } from "./units.js";
+import { bareForce, bareLength, fieldLength, forceText, forceWord, length, readLength, readNumber, unitWord } from "./units.js";
 import { ZoneTool } from "./zone-tool.js";
 
 /** Lengths of the wish by the ids of their fields; the least that each may be. */
@@ -121,7 +121,7 @@ function writeAnswer() {
 /** What the chosen set comes to, in words. */
 function sentence(answer, one) {
   const force = one.clamp_force === null ? "" : one.clamp_force > 0
-    ? ` It has to press with ${number(Math.ceil(one.clamp_force), 0)} N; then no support carries more than ${number(one.support_force, 0)} N.`
+    ? ` It has to press with ${forceText(Math.ceil(one.clamp_force))}; then no support carries more than ${forceText(one.support_force)}.`
     : " The loads keep it down by themselves: the clamp has to add nothing.";
   const built = one.built
     ? ` Not all of these holes have a name on the plate, or the jaws stand elsewhere: build it in ${one.built.pegs.join(", ")}, supports in ${one.built.supports.join(", ")}, as on the sheet.` : "";
@@ -133,13 +133,13 @@ function sentence(answer, one) {
 /** The table of the sets. */
 function writeSets(answer, chosen) {
   const loaded = answer.with_loads;
-  const heads = ["Set", "Supports in", `Clamp at ${unitWord()}`, ...(loaded ? ["Clamp force N", "Support force N"] : []), `Tipping arm ${unitWord()}`, `Stands by ${unitWord()}`];
+  const heads = ["Set", "Supports in", `Clamp at ${unitWord()}`, ...(loaded ? [`Clamp force ${forceWord()}`, `Support force ${forceWord()}`] : []), `Tipping arm ${unitWord()}`, `Stands by ${unitWord()}`];
   byId("supports-heads").replaceChildren(...heads.map((words, k) => make(k > 2 ? "th.number" : "th", { scope: "col" }, words)));
   byId("supports-sets").replaceChildren(...answer.sets.map((one, k) => {
     const row = make(`tr${k === chosen ? ".marked" : ""}`, {},
       make("td", {}, make("button", { type: "button", "aria-pressed": String(k === chosen), "aria-label": `Set ${k + 1}`, click: () => wish({ chosen: k + 1 }) }, String(k + 1))),
       make("td", {}, one.holes.join(" ")), make("td", {}, one.at_part.map((value) => bareLength(value, 2)).join(", ")),
-      ...(loaded ? [make("td.number", {}, number(Math.ceil(one.clamp_force), 0)), make("td.number", {}, number(one.support_force, 0))] : []),
+      ...(loaded ? [make("td.number", {}, bareForce(Math.ceil(one.clamp_force))), make("td.number", {}, bareForce(one.support_force))] : []),
       make("td.number", {}, bareLength(one.arm, 1)), make(`td.number${one.standing > 0 ? "" : ".bad"}`, {}, bareLength(one.standing, 1)));
     return row;
   }));

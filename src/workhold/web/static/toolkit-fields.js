@@ -3,7 +3,7 @@
  */
 import { field as input, make } from "./dom.js";
 import { same } from "./toolkits.js";
-import { fieldLength, readLength, readNumber } from "./units.js";
+import { fieldLength, fieldStress, readLength, readNumber, readStress } from "./units.js";
 
 /** @typedef {import("./toolkits.js").Field} Field */
 
@@ -37,6 +37,7 @@ export function makeFields(field) {
   }
   const mode = field.form === "count" ? "numeric" : ["holes", "rings"].includes(field.form) ? "text" : "decimal";
   const unit = ["length", "pitch", "span", "rings"].includes(field.form) ? [" ", make("span.unit")] : [];
+  if (field.form === "stress") unit.push(" ", make("span.pressure"));
   return idsOf(field).map((each, k) => {
     const label = PAIRS[field.form] ? `${field.label}${field.form === "span" ? "," : ""} ${PAIRS[field.form][k]}` : field.label;
     return make("label", {}, label, ...unit.map((part) => (typeof part === "string" ? part : part.cloneNode())),
@@ -71,7 +72,8 @@ export function readField(field, known) {
   const before = ids.length > 1 ? (known ?? []) : [known];
   const values = ids.map((each, k) => {
     const text = input(each).value;
-    if (field.form === "count" || field.form === "number") return readNumber(text);
+    if (field.form === "count") return readNumber(text);
+    if (field.form === "stress") return text !== "" && text === fieldStress(before[k]) ? before[k] : readStress(text);
     return text !== "" && text === fieldLength(before[k]) ? before[k] : readLength(text);
   });
   const empty = values.every((value) => value === null);
@@ -123,7 +125,8 @@ export function writeField(field, value) {
     if (input(each) === document.activeElement) return;
     if (field.form === "holes") input(each).value = (value ?? []).join(", ");
     else if (field.form === "rings") input(each).value = ringsText(value);
-    else input(each).value = ["count", "number"].includes(field.form) ? String(values[k] ?? "") : fieldLength(values[k]);
+    else if (field.form === "count") input(each).value = String(values[k] ?? "");
+    else input(each).value = field.form === "stress" ? fieldStress(values[k]) : fieldLength(values[k]);
     input(each).setAttribute("aria-invalid", "false");
   });
 }

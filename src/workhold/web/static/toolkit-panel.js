@@ -6,7 +6,7 @@ import { byId, field, make, quiet, show } from "./dom.js";
 import { change, on, state } from "./state.js";
 import { makeFields, readField, writeField } from "./toolkit-fields.js";
 import { asKind, fieldsOf, kindOf, kinds, learnKinds, same, setValue, valueOf } from "./toolkits.js";
-import { fieldLength, readLength, unitWord } from "./units.js";
+import { fieldLength, pressureWord, readLength, unitWord } from "./units.js";
 
 const TOLERANCES = ["tolerance-peg", "tolerance-face"];
 const OWN = "own";
@@ -145,6 +145,7 @@ function write() {
     if (field(id) !== document.activeElement) field(id).value = fieldLength(off[k]);
   });
   for (const word of document.querySelectorAll(".unit")) word.textContent = unitWord();
+  for (const word of document.querySelectorAll(".pressure")) word.textContent = pressureWord();
   byId("more-title").textContent = `More about the ${kind.noun}`;
   field("toolkit").value = kind.name;
   field("preset").value = state.toolkitName || OWN;

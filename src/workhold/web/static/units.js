@@ -1,9 +1,13 @@
 /**
- * Lengths in mm and what people read and type: mm or inches. The program reckons in mm; only words and fields change.
+ * Lengths in mm, forces in N and stresses in MPa, and what people read and type: with inches pounds and ksi as well.
+ * The program reckons in mm, N and MPa; only words and fields change.
  */
 import { state } from "./state.js";
 
 const MM_PER_INCH = 25.4;
+/** N in a pound-force, and MPa in a thousand of them to the square inch. */
+const POUND = 0.45359237 * 9.80665;
+const KSI = (1000 * POUND) / MM_PER_INCH ** 2;
 
 /** Millimetres in the unit that is shown. */
 export function scale() {
@@ -13,6 +17,16 @@ export function scale() {
 /** The short name of the unit that is shown. */
 export function unitWord() {
   return state.unit === "inch" ? "in" : "mm";
+}
+
+/** The short name of the unit of stress that is shown. */
+export function pressureWord() {
+  return state.unit === "inch" ? "ksi" : "MPa";
+}
+
+/** MPa in the unit of stress that is shown. */
+function stressScale() {
+  return state.unit === "inch" ? KSI : 1;
 }
 
 /**
@@ -78,9 +92,64 @@ export function figureText(figure, value) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   if (figure.unit === "mm") return length(value, ["location_error", "pin_deflection", "pin_movement"].includes(figure.key) ? 4 : 2);
   if (figure.unit === "deg") return `${number(value, figure.decimals)}°`;
-  if (figure.unit === "MPa") return `${number(value, 0)} MPa`;
-  if (figure.unit === "N") return `${number(value, 0)} N`;
+  if (figure.unit === "MPa") return stressText(value);
+  if (figure.unit === "N") return forceText(value);
   return number(value, figure.key === "clamp_amplification" ? 2 : figure.decimals);
+}
+
+/**
+ * A force for reading, such as "1000 N"; with inches in pounds, with newtons beside them.
+ * @param {number} newtons
+ */
+export function forceText(newtons) {
+  const own = `${number(newtons, 0)} N`;
+  return state.unit === "inch" ? `${forceAlone(newtons)} (${own})` : own;
+}
+
+/**
+ * As {@link forceText}, in the unit that is shown alone: for places with little room.
+ * @param {number} newtons
+ */
+export function forceAlone(newtons) {
+  return `${bareForce(newtons)} ${forceWord()}`;
+}
+
+/** The short name of the unit of force that is shown. */
+export function forceWord() {
+  return state.unit === "inch" ? "lbf" : "N";
+}
+
+/**
+ * As {@link forceAlone}, without the unit.
+ * @param {number} newtons
+ */
+export function bareForce(newtons) {
+  return number(state.unit === "inch" ? newtons / POUND : newtons, 0);
+}
+
+/**
+ * A stress for reading, such as "896 MPa" or "130.0 ksi".
+ * @param {number} stress in MPa
+ */
+export function stressText(stress) {
+  return `${number(stress / stressScale(), state.unit === "inch" ? 1 : 0)} ${pressureWord()}`;
+}
+
+/**
+ * A stress as a field holds it: no more decimals than it has.
+ * @param {number|null|undefined} stress in MPa
+ */
+export function fieldStress(stress) {
+  return stress === null || stress === undefined ? "" : String(Number((stress / stressScale()).toPrecision(9)));
+}
+
+/**
+ * The MPa of a field; null when it is empty, NaN when it is no number.
+ * @param {string} text
+ */
+export function readStress(text) {
+  const value = readNumber(text);
+  return value === null ? null : value * stressScale();
 }
 
 /**

@@ -1,0 +1,72 @@
+"""Level faces beside which it cannot be told what is free: none of them is taken, and that is what is said."""
+
+from __future__ import annotations
+
+import json
+from math import cos, sin
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+pytest.importorskip("OCP", reason="the extra 'step' is not installed")
+
+from attrs import evolve
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeTorus
+from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
+from step_shapes import box, fused
+
+import workhold
+from workhold import Plate, load
+from workhold.files.budget import LIMITS
+from workhold.presenting.data import solid_data
+from workhold.supports.words import flat_faces_notes, why_no_set
+from workhold.units import INCH, MILLIMETRE
+from workhold.web.request_forms import WorkpieceForm
+
+
+def plate_with_rings() -> Any:
+    """A plate of 100 x 60 x 20 mm on which two tilted rings of 3 mm reach into one another."""
+    rings = [
+        BRepPrimAPI_MakeTorus(
+            gp_Ax2(gp_Pnt(40.0 + 12.0 * k, 30.0, 24.0), gp_Dir(sin(0.3 + 0.2 * k), 0.2, cos(0.3 + 0.2 * k))),
+            10.0,
+            3.0,
+        ).Shape()
+        for k in (0, 1)
+    ]
+    return fused(box(100, 60, 20), *rings)
+
+
+def test_what_could_not_be_told_is_not_said_to_be_closed_to_the_sky(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The sentence names the height and what helps, in Python, files and requests alike."""
+    # As on any machine where the count of places runs out; how much that is changes with the code.
+    monkeypatch.setitem(LIMITS, "tops", evolve(LIMITS["tops"], most_elements=50))
+    part = load(plate_with_rings(), name="rings", peg_height=11)
+    assert part.solid is not None and part.solid.top == () and part.solid.unclear_heights == (20.0,)
+    result = workhold.design(part, Plate(pitch=10, peg_radius=3), best=1)
+    found = result[0].supports(best=1)
+    assert found.triples == ()
+    why = why_no_set(found, MILLIMETRE)
+    assert (
+        "beside the level face at a height of 20.000 mm" in why
+        and "where a clamp has room is not known" in why
+    )
+    assert "open to above" not in why and "crowns" not in why
+    (note,) = flat_faces_notes(part, ("a", "b"), INCH)
+    assert note.startswith("Beside the level face at a height of 0.7874 in") and "Beside" in note
+    workhold.save(result, tmp_path / "r.json")
+    assert workhold.open(tmp_path / "r.json").workpiece.solid == part.solid
+    assert workhold.verify(tmp_path / "r.json").faults == ()
+    sent = {"name": part.name, "loops": [loop.tolist() for loop in part.loops], **solid_data(part.solid)}
+    asked = WorkpieceForm.model_validate(json.loads(json.dumps(sent))).workpiece(1000).solid
+    assert asked is not None and asked.unclear_heights == (20.0,)
+
+
+def test_other_faces_of_such_a_part_stay_known() -> None:
+    """What lies beside them is told as before, and nothing is unclear where all is told."""
+    plain = load(box(100, 60, 20), name="plain", peg_height=11)
+    assert plain.solid is not None and plain.solid.unclear_heights == () and plain.solid.top
+    assert flat_faces_notes(plain, ("a", "b")) == []
