@@ -12,7 +12,7 @@ import pytest
 from workhold import Query, Vise, Workpiece, count_contacts, design, load
 from workhold.contact.problem import Problem
 from workhold.files.result.writer import write_result
-from workhold.listing.collector import BestFixtures
+from workhold.listing.collector import BestFixtures, Needed
 from workhold.listing.ranking import measured
 from workhold.model.fixture_table import FixtureTable
 from workhold.search.toolkit_search import ToolkitSearch
@@ -127,7 +127,7 @@ def waiting_records(part: str, vise: Vise) -> tuple[Problem, list[np.ndarray]]:
     """A problem of the best five, and what its search hands over, in two shares."""
     problem = Problem.of(Query(load(part), vise, best=5))
     search = ToolkitSearch.of(problem, threads=1)
-    records = np.concatenate([block.work(0.0) for block in search.blocks(problem.query.arrangements)])
+    records = np.concatenate([block.work(Needed()) for block in search.blocks(problem.query.arrangements)])
     return problem, np.array_split(records, 2)
 
 

@@ -11,6 +11,7 @@ import pytest
 from workhold import Vise, answer, load
 from workhold.contact.problem import Problem
 from workhold.kernels.curves.block_work import CANDIDATES, CROSSED
+from workhold.listing.collector import Needed
 from workhold.model.query import Query
 from workhold.proof.deciding import Course, decided
 from workhold.search.cells import Block, cell_edges, member_counts, members_of_cell, run_blocks
@@ -23,7 +24,7 @@ def test_kernels_that_are_stopped_seek_nothing() -> None:
     search = ToolkitSearch.of(PROBLEM)
     blocks = search.blocks(("I", "II"))
     search.stop()
-    assert sum(len(block.work(0.0)) for block in blocks) == 0
+    assert sum(len(block.work(Needed())) for block in blocks) == 0
     assert search.totals[CROSSED] == search.totals[CANDIDATES] == 0
 
 
@@ -87,7 +88,7 @@ def test_blocks_are_stopped_when_a_signal_ends_the_search() -> None:
 
 def test_what_is_not_decided_soon_after_is_left() -> None:
     search = ToolkitSearch.of(PROBLEM)
-    records = np.concatenate([block.work(0.0) for block in search.blocks(("I", "II"))])
+    records = np.concatenate([block.work(Needed()) for block in search.blocks(("I", "II"))])
     course = Course(len(records))
     course.give_up()
     proven, account = decided(records, PROBLEM, course)

@@ -18,6 +18,7 @@ from workhold.conventions import SQUARE_TILT
 from workhold.files.result.writer import write_result
 from workhold.fixels.toolkit import Toolkit
 from workhold.listing.bounds import preferred_angles
+from workhold.listing.collector import Needed
 from workhold.model.quality import TILT
 from workhold.model.requirements import Restrictions
 from workhold.model.search_report import best_note
@@ -104,7 +105,7 @@ def test_angles_that_are_asked_for_stay_so() -> None:
 def records_of(search: ToolkitSearch, **asked: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
     """All that some blocks of a search find, each record once."""
     blocks = search.blocks(search.problem.query.arrangements, **asked)
-    return np.unique(np.concatenate([block.work(0.0) for block in blocks]), axis=0)
+    return np.unique(np.concatenate([block.work(Needed()) for block in blocks]), axis=0)
 
 
 @pytest.mark.parametrize("loose", [False, True])
@@ -132,7 +133,7 @@ def test_pairs_that_slide_at_any_angle_are_in_the_first_share(monkeypatch: pytes
         monkeypatch.setattr("workhold.search.toolkit_search.VAGUE", vague)
         with LatticeShares.of(Query(part(NOTCHED), CLAMPS, best=4), 1, None) as shares:
             blocks = shares.blocks_of(0, shares.searches[0], shares.whole_turn[0])
-        psi = np.degrees(-np.concatenate([block.work(0.0) for block in blocks])[:, 13])
+        psi = np.degrees(-np.concatenate([block.work(Needed()) for block in blocks])[:, 13])
         tilted.append(int((np.abs((psi + 45.0) % 90.0 - 45.0) > 5.0).sum()))
     assert tilted[0] == 0 < tilted[1]
 

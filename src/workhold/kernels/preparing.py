@@ -69,7 +69,10 @@ OUTLINE.setflags(write=False)
 # Arrays of which kernels ask something before they know that there is nothing to do.
 ONE, FOUR, SQUARE = np.zeros(1, np.int64), np.zeros(4), np.zeros((4, 4))
 LATTICE, LIMITS = Lattice(1.0, 1.0, 0.0), Limits(1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0)
-PRECISION, NEAR = Precision(NUMBERS, LINE, LINE, ROWS, 0.0, 0.0, 1.0, 1.0), NearSpots(ONE, FLAGGED, np.zeros((0, 0, 0), np.int8))
+PRECISION, NEAR = (
+    Precision(NUMBERS, LINE, LINE, ROWS, 0.0, 0.0, 1.0, 1.0),
+    NearSpots(ONE, FLAGGED, np.zeros((0, 0, 0), np.int8)),
+)
 PEGS, SIDES, PIECES = np.zeros((4, 2)), np.zeros(4, np.int64), np.zeros((2, 2), np.int64)
 GIVEN = Given(ROWS, WHOLE, ROWS, ROWS, PEGS, SIDES, PIECES)
 AROUND = Obstacles(ROWS, ROWS, ROWS, PEGS, SIDES, PIECES, 1.0, 0.0, ROWS, np.zeros(3))

@@ -15,8 +15,10 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Executor, Future, wait
 from contextlib import contextmanager
+from math import inf
 from pathlib import Path
 from threading import Event
+from typing import NamedTuple
 
 import numpy as np
 from attrs import astuple, define, field
@@ -35,7 +37,7 @@ from workhold.listing.canonical_form import (
 )
 from workhold.listing.identity import Identity
 from workhold.listing.placing import placeable, placed
-from workhold.listing.ranking import OrderKeys, keys_of, measured, order_keys, usual_errors
+from workhold.listing.ranking import A_STEP, OrderKeys, keys_of, measured, order_keys, usual_errors
 from workhold.listing.runs import Runs, SortedRun, in_order, key_of
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import CLOSURE_MARGIN
@@ -43,7 +45,16 @@ from workhold.proof.deciding import Account, Course, decided
 from workhold.statics.effective_error import EffectiveErrors, angle_classes
 from workhold.statics.judging import unfit
 
-__all__ = ["BLOCK", "Batches", "BestFixtures", "ResultCollector", "blocks_of", "finish", "listed_form"]
+__all__ = [
+    "BLOCK",
+    "Batches",
+    "BestFixtures",
+    "Needed",
+    "ResultCollector",
+    "blocks_of",
+    "finish",
+    "listed_form",
+]
 
 Array = NDArray[np.float64]
 
@@ -110,6 +121,13 @@ class Batches:
 WAITING, WAITING_LONG = 64, 1 << 13
 
 
+class Needed(NamedTuple):
+    """What fixtures must reach to be of interest: a closure margin, and an effective location error in mm."""
+
+    margin: float = 0.0
+    error: float = inf
+
+
 @define(eq=False)
 class BestFixtures:
     """The best of the fixtures added so far, as many as the query asks for, and those that tie with the last
@@ -119,13 +137,13 @@ class BestFixtures:
     ----------
     problem : what is searched.
     cancel : when set, only what needs no ball arithmetic and the like is decided, and soon after nothing.
-    margin : the closure margin that further fixtures must reach.
+    needed : what further fixtures must reach.
     keys : of those kept, once more were decided than are.
     """
 
     problem: Problem
     cancel: Event | None = None
-    margin: float = field(default=0.0, init=False)
+    needed: Needed = field(factory=Needed, init=False)
     keys: OrderKeys | None = field(default=None, init=False)
     has_dropped: bool = field(default=False, init=False)
     waiting: list[NDArray[np.float64]] = field(factory=list, init=False)
@@ -143,13 +161,13 @@ class BestFixtures:
         assert self.problem.query.best is not None
         return self.problem.query.best
 
-    def add(self, records: NDArray[np.float64]) -> float:
-        """Takes records (N, 19) from the search; the closure margin that further ones must reach."""
+    def add(self, records: NDArray[np.float64]) -> Needed:
+        """Takes records (N, 19) from the search; what further ones must reach."""
         self.waiting.append(records)
         least = WAITING if self.problem.query.by_margin_alone else WAITING_LONG
         if sum(map(len, self.waiting)) >= max(least, self.most):
             self.decide()
-        return self.margin
+        return self.needed
 
     def decide(self) -> None:
         """Decides the records that wait, and keeps the best."""
@@ -178,7 +196,11 @@ class BestFixtures:
         self.keys = keys.take(chosen)
         # One that is none for a workshop is worse than any that is, whatever its margin.
         if query.by_margin_alone and not unfit(table.quality[chosen], query.tolerance).any():
-            self.margin = max(float(table.quality[chosen, CLOSURE_MARGIN].min()) - MARGIN_SLACK, 0.0)
+            margin = float(table.quality[chosen, CLOSURE_MARGIN].min()) - MARGIN_SLACK
+            self.needed = Needed(margin=max(margin, 0.0))
+        # What is surely a step behind so many is not among the best.
+        if (last := self.keys.last_fine_error(self.most)) is not None:
+            self.needed = Needed(error=A_STEP * last)
         return everything.take(chosen)
 
     @property
@@ -265,13 +287,13 @@ class ResultCollector:
             self.course.give_up()
             raise
 
-    def take(self, records: NDArray[np.float64]) -> float:
-        """Takes records (N, 19) of the search, in its order; 0, the closure margin that further ones must
-        reach."""
+    def take(self, records: NDArray[np.float64]) -> Needed:
+        """Takes records (N, 19) of the search, in its order; what further ones must reach, which is
+        nothing."""
         self.course.total += len(records)
         for block in self.batches.add(records):
             self.decide(block)
-        return 0.0
+        return Needed()
 
     def decide(self, block: NDArray[np.float64]) -> None:
         """Has a block decided."""

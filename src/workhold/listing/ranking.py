@@ -53,6 +53,7 @@ from workhold.statics.judging import unfit
 from workhold.statics.quality import quality_of
 
 __all__ = [
+    "A_STEP",
     "MOST_ERROR",
     "OrderKeys",
     "best_possible",
@@ -75,6 +76,8 @@ BoolArray = NDArray[np.bool_]
 COARSE_DIGITS = 2
 # Effective errors are whole billionths of a millimetre, no more than an integer holds eleven times.
 PER_MM, MOST_ERROR = 10.0**FIGURE_DECIMALS, 4 * 10**17
+# A location error so many times another, and more than rounding takes, is a step above it for certain.
+A_STEP = STEP_TENTHS[0] / STEP_TENTHS[1] * (1.0 + 1e-7)
 # Rows compared with others at a time.
 TOGETHER = 1 << 22
 
@@ -209,6 +212,13 @@ class OrderKeys:
             return None
         best = self.first[np.lexsort(self.first.T[::-1])[0]]
         return int(self.error[(self.first == best).all(axis=1)].min())
+
+    def last_fine_error(self, count: int) -> float | None:
+        """The so-manieth least effective error in mm of those fit and without a warning; None where there are
+        fewer."""
+        if self.error is None or (errors := self.error[self.is_fine]).size < count:
+            return None
+        return float(np.partition(errors, count - 1)[count - 1]) / PER_MM
 
     def numbers(self, least: int | None) -> Array:
         """Numbers (N, R) to order by, given the least effective error of all."""

@@ -148,12 +148,11 @@ def with_table(result: Result, collector: ResultCollector, progress: Progress | 
     return result if len(table) == sum(result.found.values()) else result.cut_short(len(table))
 
 
-def best_result(
-    kept: BestFixtures, work: Work, is_part: bool = False, is_limited: bool = False
-) -> Result:
+def best_result(kept: BestFixtures, work: Work, is_part: bool = False, is_limited: bool = False) -> Result:
     """The result of a search for the best fixtures only; of a part of one, all that may be among the best.
 
-    Where the search ``is_limited``, some were not even looked for. How many fixtures there are in all is not known: those that could not be among the best were not examined.
+    Where the search ``is_limited``, some were not even looked for. How many fixtures
+    there are in all is not known: those that could not be among the best were not examined.
     """
     candidates, account = kept.finished()
     kept.has_dropped |= is_limited

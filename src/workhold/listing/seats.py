@@ -257,7 +257,9 @@ class ClampedSeats:
         known, has_one = rows[~is_open], np.zeros(len(seats), np.bool_)
         has_one[seat[~is_open]] = True
         wanted = ~has_one & (not self.is_limited)
-        wanted[seat[~is_open][~self.ranked.beaten(self.ranked.keys_of(self.table_of(known, seats)), 0)]] = True
+        wanted[seat[~is_open][~self.ranked.beaten(self.ranked.keys_of(self.table_of(known, seats)), 0)]] = (
+            True
+        )
         self.ranked.has_dropped |= not wanted[seat].all()
         return rows[wanted[seat]]
 

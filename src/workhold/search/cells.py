@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from workhold.contact.curves import CurveTable
 from workhold.contact.problem import Progress
+from workhold.listing.collector import Needed
 
 __all__ = ["Block", "cell_edges", "cost_of", "member_counts", "members_of_cell", "run_blocks"]
 
@@ -23,7 +24,7 @@ Records = NDArray[np.float64]
 
 # Orientations are counted from here, so that no aligned part has its coincidences at the edge of a cell.
 FIRST_ORIENTATION = -0.7320508075688772
-# A block is given the closure margin known so many blocks before it; as many may run at the same time.
+# A block is given what is needed as known so many blocks before it; as many may run at the same time.
 LAG = 8
 # Seconds in which threads are left alone: waking for every small block takes the interpreter from them, and
 # time to wake up.
@@ -40,12 +41,12 @@ class Block:
 
     Parameters
     ----------
-    work : does it, given a closure margin that is to be reached, and returns records.
+    work : does it, given what fixtures must reach to be of interest, and returns records.
     cost : a guess of how long it takes, in any unit.
     cells : how many cells it works on.
     """
 
-    work: Callable[[float], Records]
+    work: Callable[[Needed], Records]
     cost: float
     cells: int = 1
 
@@ -85,7 +86,7 @@ def run_blocks(
     threads: int,
     progress: Progress | None,
     cancel: Event | None,
-    receive: Callable[[Records], float] | None = None,
+    receive: Callable[[Records], Needed] | None = None,
     look: Callable[[Records], None] | None = None,
     stop: Callable[[], None] | None = None,
     pool: Executor | None = None,
@@ -95,7 +96,7 @@ def run_blocks(
     Parameters
     ----------
     receive : called from this thread with the records of each block, in the order of the blocks; they are
-        then not kept. It returns the closure margin that further fixtures must reach. The block ``LAG``
+        then not kept. It returns what further fixtures must reach. The block ``LAG``
         places later is given it, so what a block leaves out does not depend on how fast the others are.
     look : called from this thread with the records of each block as it finishes, in any order.
     stop : called once when the work is cancelled or given up: blocks that run then end soon, with what they
@@ -108,8 +109,8 @@ def run_blocks(
     """
     total = sum(block.cost for block in blocks) or 1.0
     results: dict[int, Records] = {}
-    # The margin to reach once so many blocks have been received.
-    margins = [0.0]
+    # What is needed once so many blocks have been received.
+    margins = [Needed()]
     done_cost, found = 0.0, 0
     done: list[Block] = []
     known = margins if receive is not None else None
@@ -138,7 +139,7 @@ def finished_blocks(
     blocks: Sequence[Block],
     threads: int,
     cancel: Event | None,
-    margins: list[float] | None,
+    margins: list[Needed] | None,
     stop: Callable[[], None] | None,
     pool: Executor | None,
 ) -> Iterator[tuple[int, Records, bool]]:
@@ -172,8 +173,8 @@ def finished_blocks(
                     known = max(first - LAG, 0)
                     if margins is not None and known >= len(margins):
                         break
-                    margin = 0.0 if margins is None else margins[known]
-                    future = workers.submit(blocks[first].work, margin)
+                    needed = Needed() if margins is None else margins[known]
+                    future = workers.submit(blocks[first].work, needed)
                     running[future] = first
                     future.add_done_callback(ended.put)
                     first += 1

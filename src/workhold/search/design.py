@@ -14,12 +14,10 @@ from threading import Event
 import numpy as np
 from attrs import evolve, frozen
 
-from workhold.contact.curves import center_numbers
 from workhold.contact.problem import Problem, Progress
 from workhold.errors import InputError, refuse_kind
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Toolkit
-from workhold.kernels.base.feature import IS_ARC
 from workhold.kernels.curves.block_work import CONTACTS
 from workhold.limits import counting_number, thread_count
 from workhold.listing.collector import BestFixtures, ResultCollector
@@ -42,14 +40,15 @@ from workhold.model.search_report import left_notes, no_fixture_notes, no_place_
 from workhold.model.workpiece import Workpiece
 from workhold.search.broken_rules import line_in_the_way
 from workhold.search.cells import run_blocks
-from workhold.search.lattice_shares import LatticeShares, problems_of
 from workhold.search.error_limits import (
     ErrorLimit,
     LocatorSpots,
     can_limit_errors,
     is_enough,
     next_limit,
+    precision_of,
 )
+from workhold.search.lattice_shares import LatticeShares, problems_of
 from workhold.search.seated import Sink, seated_answer
 from workhold.search.shares import (
     LIMITED_FROM,
@@ -62,7 +61,7 @@ from workhold.search.shares import (
     one_clamp,
     work_of,
 )
-from workhold.search.toolkit_search import ToolkitSearch, contacts_of, lattice_steps
+from workhold.search.toolkit_search import ANY_ERROR, ToolkitSearch, contacts_of, is_round, lattice_steps
 from workhold.statics.judging import unfit
 
 __all__ = ["Explored", "Sink", "answer", "design", "explore", "first_choice"]
@@ -215,6 +214,9 @@ def answer(
 
 def is_large(query: Query) -> bool:
     """Whether so much is to be searched that limits of the location error are worth their while."""
+    if any(one.pegs[0] < 3 for one in query.toolkit.arrangements if one.name in query.arrangements):
+        # Of two pegs that stand still nobody knows where they touch for a small error.
+        return False
     problem = Problem.of(one_clamp(query, query.toolkit.ways[0]))
     first, end = problem.standing
     steps = lattice_steps((problem.frame.standing,), problem.diameter).steps
@@ -307,7 +309,8 @@ def answer_of_a_way(
     Of one of several ways, it is all that may be among the best of all.
     """
     problem = Problem.of(query)
-    search = ToolkitSearch.of(problem, threads=threads, cancel=cancel)
+    precision = precision_of(problem) if can_limit_errors(query) else ANY_ERROR
+    search = ToolkitSearch.of(problem, threads=threads, cancel=cancel, precision=precision)
     kept = None if query.best is None else BestFixtures(problem, cancel)
     look = None if preview is None else Previews(problem, preview).add
     before, rest = stage(progress, 0.0, SEARCH), stage(progress, SEARCH, 1.0)
@@ -383,12 +386,6 @@ def of_what_is_left(reason: str, problem: Problem, threads: int) -> str:
     table = ToolkitSearch.of(whole, threads=threads).table
     is_far = len(table) + len(table.sliding_pairs.integers) == 0
     return reason if is_far else left_notes(toolkit.wording, query.asked_of_places)[1]
-
-
-def is_round(problem: Problem) -> bool:
-    """Whether every face that a peg could touch is an arc about one centre."""
-    arcs = problem.rows[:, IS_ARC] != 0.0
-    return bool(arcs.all()) and len(set(center_numbers(problem.rows).tolist())) == 1
 
 
 # Of a tenth of a part's length: what is this little short of one counts as it.

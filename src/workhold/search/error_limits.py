@@ -34,15 +34,16 @@ from workhold.kernels.contact.location_bounds import (
     join_near_spots,
     least_middle_error,
 )
-from workhold.listing.ranking import PER_MM, OrderKeys, best_possible, keys_of
+from workhold.listing.ranking import A_STEP, OrderKeys, best_possible, keys_of
 from workhold.model.first_choice import FACTORS
 from workhold.model.quality import LOCATION_ERROR, PENALTY, SMALLEST_FACE, TILT
 from workhold.model.query import Query
+from workhold.search.toolkit_search import ASLANT, with_limit
 from workhold.statics.effective_error import faces_unasked_for
 from workhold.statics.judging import Judging
 from workhold.statics.quality import extremes, face_sizes, main_direction
 
-__all__ = ["ErrorLimit", "LocatorSpots", "can_limit_errors", "is_enough", "next_limit"]
+__all__ = ["ErrorLimit", "LocatorSpots", "can_limit_errors", "is_enough", "next_limit", "precision_of"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -52,7 +53,7 @@ SPOTS_ACROSS, MOST_TURN = 32, pi / 4
 # Spots are cut in two so many times at most.
 MOST_CUTS = 2
 # Of more spots no triples are kept, which would take too much memory.
-MOST_TRIPLED = 400
+MOST_TRIPLED = 320
 # Points nearer than this part of L are side by side.
 BESIDE = 0.1
 # Directions over half a turn, and points of the silhouette, in which movements are looked at.
@@ -60,9 +61,6 @@ DIRECTIONS, OUTERMOST = 8, 8
 # The first limit is so many times the least error of any three contacts, and the next so many times the last
 # one as long as too few fixtures are found. After so many there is none.
 FIRST_TIMES, NEXT_TIMES, MOST_LIMITS = 1.1, 1.3, 9
-# What stands for a tenth more, and what rounding takes.
-TENTH, ROUNDING = 1.1, 1e-7
-ASLANT = next(one.times for one in FACTORS if one.key == "other_angle")
 IN_BORE = next(one.times for one in FACTORS if one.key == "dowel_in_bore")
 # Limits between two among which the next is chosen.
 NEARER = 40
@@ -134,11 +132,11 @@ class LocatorSpots:
         ]
         starts = np.cumsum([0, *(len(levels[-1]) for levels in cut)])
         roots = sum(len(levels[0]) for levels in cut)
-        return cls(problem, joined_spots(cut, starts), roots, starts, precision_of(problem, points))
+        return cls(problem, joined_spots(cut, starts), roots, starts, precision_of(problem))
 
     def limit(self, most: float) -> ErrorLimit:
         """A limit of the effective error in mm; infinite for none."""
-        precision = self.precision._replace(most=most, most_aslant=most / ASLANT)
+        precision = with_limit(self.precision, most)
         if most == inf:
             return ErrorLimit(most, precision)
         (square, one), (aslant, other) = self.near(most), self.near(most / ASLANT)
@@ -165,8 +163,9 @@ class LocatorSpots:
         return FIRST_TIMES * float(least_middle_error(self.spots, self.roots, self.precision))
 
 
-def precision_of(problem: Problem, points: Array) -> Precision:
-    """What bounds location errors of a problem, given points (C, 2) of the silhouette about the centre."""
+def precision_of(problem: Problem) -> Precision:
+    """What bounds location errors of a problem, without a limit."""
+    points = outermost(problem)
     query, length = problem.query, problem.wrench_length
     angles = np.arange(DIRECTIONS) * (pi / DIRECTIONS)
     along = np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -265,7 +264,9 @@ def joined_spots(cut: Sequence[Sequence[Array]], starts: IntArray) -> Array:
     cut : of each feature, see :func:`cut_feature`.
     starts : numbers of the finest ones of each feature.
     """
-    sizes = np.array([[len(level[k]) if k < len(level) else 0 for level in cut] for k in range(MOST_CUTS + 1)])
+    sizes = np.array(
+        [[len(level[k]) if k < len(level) else 0 for level in cut] for k in range(MOST_CUTS + 1)]
+    )
     offsets = (np.cumsum(sizes.ravel()) - sizes.ravel()).reshape(sizes.shape)
     for number, levels in enumerate(cut):
         for k, spots in enumerate(levels):
@@ -304,12 +305,11 @@ def is_enough(most: float, kept: OrderKeys, query: Query) -> bool:
 
 def next_limit(most: float, kept: OrderKeys, query: Query, number: int) -> float:
     """The limit in mm after one that was not enough, the so-manieth, given the keys of what it found."""
-    errors = np.sort(kept.error[kept.is_fine]) if kept.error is not None else np.zeros(0, np.int64)
-    count = query.best or 0
-    if len(errors) < count:
+    known = kept.last_fine_error(query.best or 0)
+    if known is None:
         return inf if number >= MOST_LIMITS else NEXT_TIMES * most
     # Of the limits up to where all others surely have a step more, the least that will be enough.
-    last = TENTH * float(errors[count - 1]) / PER_MM * (1.0 + ROUNDING)
+    last = A_STEP * known
     limits = np.linspace(most, max(last, most), NEARER + 1)[1:].tolist()
     return next((limit for limit in limits if is_enough(limit, kept, query)), last)
 

@@ -102,7 +102,9 @@ class LatticeShares:
         With a limit those of seats with no larger location error, the square ones first.
         """
         if limit is not None:
-            square, aslant = (searches_of(query, threads, cancel, limit, near) for near in (limit.square, limit.aslant))
+            square, aslant = (
+                searches_of(query, threads, cancel, limit, near) for near in (limit.square, limit.aslant)
+            )
             blocks = [blocks_of_search(search) for search in aslant]
             ranges = square_first(ranges_of(blocks), preferred_angles(query))
             seats = ClampedSeats(query, square[0].problem, is_limited=True)

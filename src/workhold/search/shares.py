@@ -23,7 +23,6 @@ import numpy as np
 from attrs import define, evolve, field
 from numpy.typing import NDArray
 
-from workhold.contact.curves import EVERYWHERE
 from workhold.contact.problem import Problem, Progress
 from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.curves.block_work import CANDIDATES
@@ -231,22 +230,15 @@ def limited_work(
     look: Callable[[Array], None] | None,
 ) -> Work:
     """Hands all fixtures up to a limit of the location error to those kept, and perhaps some beyond."""
-    query, angles, works = problem.query, preferred_angles(problem.query), list[Work]()
-    names = {one.name: one.pegs[0] for one in problem.frame.toolkit.arrangements}
-    # Of three standing pegs the limit says where they may touch; of two it is asked when they are placed.
-    asked = [name for name in query.arrangements if name in names]
-    threes, others = (
-        [name for name in asked if (names[name] == 3) == is_three] for is_three in (True, False)
-    )
-    kinds = [(threes, limit.square, False), (threes, limit.aslant, True), (others, EVERYWHERE, None)]
-    kinds = [kind for kind in kinds if kind[0]]
-    for number, (types, near, rest) in enumerate(kinds):
-        share = stage(progress, number / len(kinds), (number + 1) / len(kinds))
+    query, works = problem.query, list[Work]()
+    for number, near in enumerate((limit.square, limit.aslant)):
+        share = stage(progress, number / 2, (number + 1) / 2)
         search = ToolkitSearch.of(
             problem, threads=threads, cancel=cancel, near=near, precision=limit.precision
         )
-        first = () if rest is None else angles
-        blocks = search.blocks(types, 4 * LEAST_BLOCKS, first=first, rest=bool(rest))
+        blocks = search.blocks(
+            query.arrangements, 4 * LEAST_BLOCKS, first=preferred_angles(query), rest=number > 0
+        )
         done = run_blocks(blocks, threads, share, cancel, kept.add, look, search.stop)[1]
         works.append(work_of(search, blocks, done))
     statistics = summed([work.statistics for work in works])

@@ -22,6 +22,7 @@ from workhold.contact.curves import (
     EVERYWHERE,
     CurveTable,
     LatticeSteps,
+    center_numbers,
     curve_table,
     joined,
     loosened,
@@ -46,6 +47,8 @@ from workhold.kernels.curves.sliding_pairs import sliding_fixtures
 from workhold.kernels.curves.three_and_one import three_and_one_cells
 from workhold.kernels.curves.two_and_two import two_and_two_cells
 from workhold.limits import thread_count
+from workhold.listing.collector import Needed
+from workhold.model.first_choice import FACTORS
 from workhold.model.query import Query
 from workhold.model.workpiece import Workpiece
 from workhold.search.cells import (
@@ -75,6 +78,8 @@ PAIRS_PER_BLOCK = 2e6
 LEAST_BLOCKS = 8
 # Radians: sliding pairs that may be off by more are vague. Lengths that make one are off by less, in mm.
 VAGUE, APART = 1e-5, 1e-8
+# What an angle that is not the drawing's, by quarters, costs.
+ASLANT = next(one.times for one in FACTORS if one.key == "other_angle")
 # Location errors of any size are of interest.
 ANY_ERROR = Precision(np.zeros(0, np.int64), np.zeros(0), np.zeros(0), np.zeros((0, 3)), 0.0, 0.0, inf, inf)
 
@@ -182,6 +187,17 @@ def neighbours(wanted: NDArray[np.bool_], together: int) -> Iterator[tuple[int, 
         first = last
 
 
+def with_limit(precision: Precision, most: float) -> Precision:
+    """Bounds of location errors with a largest effective one of interest, in mm."""
+    return precision._replace(most=most, most_aslant=most / ASLANT)
+
+
+def is_round(problem: Problem) -> bool:
+    """Whether every face that a peg could touch is an arc about one centre."""
+    arcs = problem.rows[:, IS_ARC] != 0.0
+    return bool(arcs.all()) and len(set(center_numbers(problem.rows).tolist())) == 1
+
+
 @define(eq=False)
 class ToolkitSearch:
     """Everything the kernels of a toolkit need, and the blocks of work made of it.
@@ -276,6 +292,9 @@ class ToolkitSearch:
         workpiece in degrees, they find all fixtures in these, and some near them. So they do with ``first``,
         and all others with ``rest`` as well.
         """
+        if not self.counting and is_round(self.problem):
+            # All lines of action pass the centre, so nothing keeps the part from turning.
+            return []
         # In a cell heights should change by no more than part of a pitch, so that most pairs of pieces cannot
         # cross.
         cells = int(
@@ -361,7 +380,7 @@ class ToolkitSearch:
         members = member_counts(self.table, edges[cells], edges[np.add(cells, 1)])
         cost = float(members @ np.array([len(sliding_pairs[cell]) for cell in cells]))
         return Block(
-            lambda margin: np.concatenate([part(margin) for part in parts]), len(cells) + cost, len(cells)
+            lambda needed: np.concatenate([part(needed) for part in parts]), len(cells) + cost, len(cells)
         )
 
     def tally(self) -> NDArray[np.int64]:
@@ -375,20 +394,23 @@ class ToolkitSearch:
             counts[STOPPED] = 1
 
     def run(
-        self, kernel: Callable[..., Array], low: float, high: float, stats: NDArray[np.int64], margin: float
+        self, kernel: Callable[..., Array], low: float, high: float, stats: NDArray[np.int64], needed: Needed
     ) -> Array:
-        """Runs a kernel with the curves of some orientations, for fixtures of a closure margin or more."""
-        limits, members = self.limits_from(margin), members_of_cell(self.table, low, high)
-        return kernel(
-            members, self.features, self.table.curves, self.frame.lattice, limits, self.counting, stats
-        )
+        """Runs a kernel with the curves of some orientations, for fixtures that reach what is needed."""
+        most = min(self.precision.most, needed.error)
+        features = self.features
+        if most < self.precision.most and len(self.precision.probes):
+            features = features._replace(precision=with_limit(self.precision, most))
+        limits = self.limits_from(needed.margin, features.precision.most)
+        members = members_of_cell(self.table, low, high)
+        return kernel(members, features, self.table.curves, self.frame.lattice, limits, self.counting, stats)
 
-    def limits_from(self, margin: float) -> Limits:
-        """The limits with a closure margin to reach.
+    def limits_from(self, margin: float, most: float) -> Limits:
+        """The limits with a closure margin to reach, and a largest effective error.
 
         Where errors are limited nothing with a warning is of interest, and a weak closure is one.
         """
-        if self.precision.most < inf:
+        if most < inf:
             margin = max(margin, WEAK_CLOSURE - MARGIN_SLACK)
         return self.problem.limits._replace(least_margin=margin, most_listed=float(self.most_listed))
 

@@ -85,6 +85,8 @@ def test_near_copies_are_one_row(walk: Walk) -> None:
     page = walk.page
     walk.take()
     walk.search()
+    # Before the search has come to its end, its best fixtures are told alone.
+    walk.until("state.job.state === 'done'")
     walk.seen('#list [aria-posinset="1"]:not(.coming)')
     job = f"/api/jobs/{walk.job()}/fixtures"
     told = walk.server.client.get(job, params={"together": True, "unfit": False, "limit": 1000}).json()

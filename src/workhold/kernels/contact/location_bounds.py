@@ -26,9 +26,9 @@ from math import floor
 import numpy as np
 
 from workhold.kernels.base.arrays import grown
+from workhold.kernels.base.compiling import Array, ByteArray, IntArray, compiled_making_arrays, inner
 from workhold.kernels.base.feature import IS_ARC, RADIUS
 from workhold.kernels.base.interval import TURN
-from workhold.kernels.base.compiling import Array, ByteArray, IntArray, compiled_making_arrays, inner
 from workhold.kernels.base.tables import NearSpots, Precision
 from workhold.kernels.contact.record import Angle
 from workhold.kernels.contact.rules import outward_normal
@@ -128,17 +128,19 @@ def two_and_two_beyond(
     angle: Angle,
     length: float,
     band: float,
+    still: int,
     precision: Precision,
     room: Array,
 ) -> bool:
     """Whether two pegs on each of two carriers surely have a larger effective error than is of interest.
 
-    The travel of the moving carrier is free. What the two moving pegs say besides is one wrench across it.
+    The travel of the carrier that moves is free. What its two pegs say besides is one wrench across it.
 
     Parameters
     ----------
-    points, normals : (4, 2) of the contacts, the standing ones first.
+    points, normals : (4, 2) of the contacts, two of either carrier after each other.
     features : (4,) touched.
+    still : 0 where the first two pegs stand still, 2 where the last two do.
     length : L in mm.
     band : what a minor may be off by.
     room : (8, 3) work space.
@@ -147,23 +149,31 @@ def two_and_two_beyond(
     for k in range(4):
         wrenches[k, 0], wrenches[k, 1] = normals[k, 0], normals[k, 1]
         wrenches[k, 2] = (points[k, 0] * normals[k, 1] - points[k, 1] * normals[k, 0]) / length
-    one = normals[2, 0] * angle[1] + normals[2, 1] * angle[2]
-    two = normals[3, 0] * angle[1] + normals[3, 1] * angle[2]
+    a, b, c, d = still, still + 1, 2 - still, 3 - still
+    one = normals[c, 0] * angle[1] + normals[c, 1] * angle[2]
+    two = normals[d, 0] * angle[1] + normals[d, 1] * angle[2]
     for n in range(3):
-        wrenches[2, n] = two * wrenches[2, n] - one * wrenches[3, n]
-    cross_rows(wrenches[1], wrenches[2], moves[0])
-    cross_rows(wrenches[2], wrenches[0], moves[1])
-    cross_rows(wrenches[0], wrenches[1], moves[2])
-    size = abs(wrenches[0, 0] * moves[0, 0] + wrenches[0, 1] * moves[0, 1] + wrenches[0, 2] * moves[0, 2])
+        wrenches[c, n] = two * wrenches[c, n] - one * wrenches[d, n]
+    cross_rows(wrenches[b], wrenches[c], moves[a])
+    cross_rows(wrenches[c], wrenches[a], moves[b])
+    cross_rows(wrenches[a], wrenches[b], moves[c])
+    size = abs(wrenches[a, 0] * moves[a, 0] + wrenches[a, 1] * moves[a, 1] + wrenches[a, 2] * moves[a, 2])
     for n in range(3):
-        moves[3, n] = -one * moves[2, n]
-        moves[2, n] = two * moves[2, n]
+        moves[d, n] = -one * moves[c, n]
+        moves[c, n] = two * moves[c, n]
     return is_beyond(moves, features, 4, size, band, angle[0], precision)
 
 
 @inner
 def write_spot(
-    row: Array, feature: int, x: float, y: float, radius: float, precision: Precision, length: float, out: Array
+    row: Array,
+    feature: int,
+    x: float,
+    y: float,
+    radius: float,
+    precision: Precision,
+    length: float,
+    out: Array,
 ) -> None:
     """Writes a contact on a feature, known to a radius in mm, as a spot (5,)."""
     nx, ny = outward_normal(row, x, y)

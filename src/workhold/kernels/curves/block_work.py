@@ -166,7 +166,10 @@ def place_triple(
 
 @inner
 def is_far_off(angle: Angle, work: BlockWork) -> bool:
-    """Whether two and two pegs in place, just found to be a fixture, have too large a location error."""
+    """Whether two and two pegs in place, just found to be a fixture, have too large a location error.
+
+    Where a half turn swaps the carriers, either may turn out to be the one that stands still.
+    """
     features, pegs = work.features, work.pegs
     if features.precision.most == inf or work.counting:
         return False
@@ -180,9 +183,10 @@ def is_far_off(angle: Angle, work: BlockWork) -> bool:
         numbers[k] = pegs[k, PEG_FEATURE]
     length = work.limits.wrench_length
     band, points, normals = minor_band(swing, radius, length), work.contacts[:4], work.contacts[4:]
+    given = features.precision
     return two_and_two_beyond(
-        points, normals, numbers, angle, length, band, features.precision, work.triple
-    )
+        points, normals, numbers, angle, length, band, 0, given, work.triple
+    ) and two_and_two_beyond(points, normals, numbers, angle, length, band, 2, given, work.triple)
 
 
 @inner

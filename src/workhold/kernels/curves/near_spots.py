@@ -48,6 +48,14 @@ def may_join(
 
 
 @inner
+def may_be_three(near: NearSpots, tail: int, head: int, third: int) -> bool:
+    """Whether three spots, the tail's first, may be those of locators of interest."""
+    if near.triples.shape[0] > 0:
+        return near.triples[tail, head, third] != 0
+    return near.joined[tail, head] != 0 and near.joined[tail, third] != 0
+
+
+@inner
 def is_any_joined(near: NearSpots, first: int, end: int, begin: int, last: int) -> bool:
     """Whether any two spots of two ranges may be those of locators of interest."""
     for i in range(first, end):

@@ -76,7 +76,7 @@ from workhold.kernels.curves.block_work import (
     place_tail,
 )
 from workhold.kernels.curves.moving_pegs import add_moving_pegs, height_range, lines_between, row_meets
-from workhold.kernels.curves.near_spots import spots_of
+from workhold.kernels.curves.near_spots import may_be_three, spots_of
 from workhold.kernels.curves.piece_bounds import tail_disc
 from workhold.kernels.curves.three_and_one import heads_share_a_line
 
@@ -357,7 +357,9 @@ def write_member_spots(
 
 
 @inner
-def write_slide_spots(pair: PlacedPair, sliding_pairs: SlidingPairs, features: Features, out: IntArray) -> None:
+def write_slide_spots(
+    pair: PlacedPair, sliding_pairs: SlidingPairs, features: Features, out: IntArray
+) -> None:
     """Writes the ranges (N, 4) of spots that both pegs of a sliding pair touch in parts of its range."""
     whole, real, near = sliding_pairs.integers[pair.number], sliding_pairs.reals[pair.number], features.near
     a, b = features.loose[whole[TAIL]], features.loose[whole[HEAD]]
@@ -376,7 +378,7 @@ def may_be_third(slides: IntArray, member: IntArray, near: NearSpots) -> bool:
         for i in range(max(slides[k, 0], member[0]), min(slides[k, 1], member[1])):
             for j in range(slides[k, 2], slides[k, 3]):
                 for n in range(member[2], member[3]):
-                    if near.triples[i, j, n] != 0:
+                    if may_be_three(near, i, j, n):
                         return True
     return False
 
@@ -452,8 +454,11 @@ def sliding_fixtures(
     """
     out, work = np.empty((16, RECORD_LENGTH)), block_work(features, curves, lattice, limits, counting, stats)
     count, least, most = int(np.int64(0)), np.inf, -np.inf
-    asks_spots = standing == 3 and features.near.triples.shape[0] > 0
-    spots, slides = np.empty((members.shape[0] if asks_spots else 0, 4), np.int64), np.empty((SLIDE_PARTS, 4), np.int64)
+    asks_spots = standing == 3 and features.near.joined.shape[0] > 0
+    spots, slides = (
+        np.empty((members.shape[0] if asks_spots else 0, 4), np.int64),
+        np.empty((SLIDE_PARTS, 4), np.int64),
+    )
     if asks_spots:
         for number in chosen:
             pair = placed_pair(number, sliding_pairs, features.loose)

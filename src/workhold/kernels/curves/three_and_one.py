@@ -66,7 +66,7 @@ from workhold.kernels.curves.block_work import (
     place_triple,
 )
 from workhold.kernels.curves.moving_pegs import add_moving_pegs, height_range
-from workhold.kernels.curves.near_spots import is_any_joined, spots_of
+from workhold.kernels.curves.near_spots import is_any_joined, may_be_three, spots_of
 from workhold.kernels.curves.piece_bounds import HAIR, kept_edges, tail_disc
 from workhold.kernels.curves.pieces import cell_pieces
 from workhold.kernels.curves.roots import ROOT_PSI, ROOT_RADIUS, crossings, may_meet
@@ -100,7 +100,7 @@ def write_limbs(
     """Writes the (N, 20) limbs, what their pairing looks at, of the pieces of standing pegs that leave room
     for a moving peg and may be of interest; returns their number."""
     count, integers, touched = int(np.int64(0)), curves.integers, features.standing
-    asks_spots = features.near.triples.shape[0] > 0
+    asks_spots = features.near.joined.shape[0] > 0
     for k in range(pieces.shape[0]):
         row = pieces[k]
         tail = integers[int(row[CURVE]), TAIL]
@@ -144,7 +144,7 @@ def are_near(limb: Array, other: Array, near: NearSpots) -> bool:
     for i in range(first, end):
         for j in range(int(limb[LIMB_HEAD_FIRST]), int(limb[LIMB_HEAD_END])):
             for k in range(int(other[LIMB_HEAD_FIRST]), int(other[LIMB_HEAD_END])):
-                if near.triples[i, j, k] != 0:
+                if may_be_three(near, i, j, k):
                     return True
     return False
 
@@ -202,7 +202,7 @@ def add_limb_pairs(out: Array, count: int, limbs: Array, pieces: Array, work: Bl
     ``work.at`` on (see ``block_work``)."""
     at, stats, lattice, limits = work.at, work.stats, work.lattice, work.limits
     loose, curves, integers = work.features.loose, work.curves, work.curves.integers
-    near, asks_spots = work.features.near, work.features.near.triples.shape[0] > 0
+    near, asks_spots = work.features.near, work.features.near.joined.shape[0] > 0
     for i in range(at[0], limbs.shape[0]):
         if stats[STOPPED] != 0:
             break
