@@ -49,9 +49,9 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 # The finest spots are no longer than the part's size over this, and no arc turns by more in one, in radians.
-SPOTS_ACROSS, MOST_TURN = 32, pi / 4
+SPOTS_ACROSS, MOST_TURN = 32, pi / 8
 # Spots are cut in two so many times at most.
-MOST_CUTS = 2
+MOST_CUTS = 3
 # Of more spots no triples are kept, which would take too much memory.
 MOST_TRIPLED = 320
 # Points nearer than this part of L are side by side.
