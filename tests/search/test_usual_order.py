@@ -20,7 +20,7 @@ from workhold import FlatJaw, Plate, Query, Vise, Workpiece, answer
 from workhold.fixels.toolkit import Toolkit
 from workhold.listing import collector
 from workhold.model.first_choice import HOUSE_ORDER
-from workhold.search import lattice_shares, shares
+from workhold.search import design, lattice_shares, shares
 from workhold.verification import verify_file
 
 PLATE = [(0, 0, 0), (100, 0, 0), (100, 60, 0), (0, 60, 0)]
@@ -41,6 +41,7 @@ TOOLKITS: dict[str, Toolkit] = {
 def searches_of_any_size_stop_early(monkeypatch: pytest.MonkeyPatch) -> None:
     """What only long searches do, and with few fixtures decided at a time."""
     monkeypatch.setattr(shares, "SQUARE_FIRST", 0.0)
+    monkeypatch.setattr(design, "LIMITED_FROM", 0.0)
     monkeypatch.setattr(lattice_shares, "COUNTED_WHOLE", 0)
     monkeypatch.setattr(collector, "WAITING_LONG", 50)
     monkeypatch.setattr("workhold.listing.contact_groups.FIRST_CONTACTS", 32)

@@ -251,7 +251,8 @@ class ClampedSeats:
     def of_interest(self, rows: Array, seats: Seats) -> Array:
         """The pairs (N, 10) of seats that may be among the best.
 
-        A pair that is open hardly closes. So it is not the best of a seat that has another, and has a warning.
+        A pair that is open hardly closes. So it has a warning, and is not the best of a seat that has
+        another one.
         """
         seat, is_open = rows[:, SEAT].astype(np.int64), rows[:, OPEN] != 0.0
         known, has_one = rows[~is_open], np.zeros(len(seats), np.bool_)

@@ -1,16 +1,17 @@
 """The best fixtures first: searches up to a limit of the location error, which grows until enough are found.
 
-In the usual order one fixture surely comes before another whose effective location error is a tenth larger, if
-it is fit for a workshop and has no warning. So once as many such fixtures are known as are asked for, nothing
-with an error a tenth above theirs is among the best. What is searched first is therefore what has a small error.
+In the usual order one fixture surely comes before another whose effective location error is a tenth larger,
+if it is fit for a workshop and has no warning. So once as many such fixtures are known as are asked for,
+nothing with an error a tenth above theirs is among the best. What is searched first is therefore what has a
+small error.
 
-Three locators have a small error only far apart and on faces that do not all look the same way. So features are
-cut into short stretches, spots, and a bound of the error is found for all three of them
+Three locators have a small error only far apart and on faces that do not all look the same way. So features
+are cut into short stretches, spots, and a bound of the error is found for all three of them
 (``kernels.contact.location_bounds``). Chords that join no two spots of a seat with a small error are not even
 made. What is left of a limited search is a small part of all, and is searched as always, with proof.
 
-Other angles than those of the drawing, by quarters, count half as much again. So square to the drawing the limit
-holds as it is, and elsewhere a smaller one, below which there is often nothing at all.
+Other angles than those of the drawing, by quarters, count half as much again. So square to the drawing the
+limit holds as it is. Elsewhere it is a smaller one, below which there is often nothing at all.
 """
 
 from __future__ import annotations
@@ -213,8 +214,11 @@ def largest_apart(points: Array) -> float:
 
 
 def give_of(row: Array, points: Array) -> float:
-    """What a contact on a feature may be off by for a location error of 1, for each mm it is moved on a line,
-    or each radian on an arc; points (C, 2) are those of the silhouette."""
+    """What a contact on a feature may be off by for a location error of 1.
+
+    On a line it is for each mm that the contact is moved, on an arc for each radian. Points (C, 2) are those
+    of the silhouette.
+    """
     apart = largest_apart(points)
     if row[IS_ARC] == 0.0:
         return 2.0 / apart
@@ -310,10 +314,12 @@ def next_limit(most: float, kept: OrderKeys, query: Query, number: int) -> float
         return inf if number >= MOST_LIMITS else NEXT_TIMES * most
     # Of the limits up to where all others surely have a step more, the least that will be enough.
     last = A_STEP * known
-    limits = np.linspace(most, max(last, most), NEARER + 1)[1:].tolist()
+    if last <= most:
+        return inf
+    limits = np.linspace(most, last, NEARER + 1)[1:].tolist()
     return next((limit for limit in limits if is_enough(limit, kept, query)), last)
 
 
 def factor(key: str | None) -> float:
-    """By how many times a doubt counts; 1 for none."""
+    """The factor of a doubt; 1 for none."""
     return next((one.times for one in FACTORS if one.key == key), 1.0)

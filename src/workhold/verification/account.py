@@ -65,6 +65,8 @@ from workhold.verification.undecided import undecided_faults
 __all__ = ["account_faults", "is_by_algebra", "seat_faults", "too_few_contacts"]
 
 SEARCH = ("features", "chord_curves", "sliding_pairs", "curve_pairs", "crossings_sought", "contacts_examined")
+# Counts besides, where only the best were sought up to a limit of the location error.
+LIMITED = ("boxes", "boxes_ruled_out")
 FENCE = ("features", "hull_edges", "locator_places", "contacts_examined")
 ALGEBRA = ("features", "systems", "orientations", "simultaneous_contacts", "undecided")
 # The algebra names so many undecided systems, and counts the others in one note more.
@@ -151,6 +153,10 @@ def statistics_faults(listing: Listing) -> Iterator[str]:
     numbers, proof = listing.statistics, listing.proof
     is_flush = WALL_END in listing.query.toolkit.contacts
     known = [FENCE] if is_flush else [SEARCH, ALGEBRA]
+    if listing.query.best is not None and set(LIMITED) <= set(numbers):
+        if numbers["boxes_ruled_out"] > numbers["boxes"]:
+            yield "the statistics say that more boxes were ruled out than were looked at"
+        numbers = {name: count for name, count in numbers.items() if name not in LIMITED}
     if set(numbers) not in map(set, known) or min(numbers.values()) < 0:
         yield f"the statistics are not {', '.join(known[0])}, each a number from 0"
         return

@@ -1,22 +1,22 @@
-"""Bounds of the location error: of contacts in place, and of all contacts on some short stretches of features.
+"""Bounds of the location error: of contacts in place, and of all contacts on short stretches of features.
 
-The location error is the largest movement of a point of the silhouette when all pegs and faces are off by their
-tolerances. Here the movement is taken of a few points and along a few directions only, the probes. So it comes
-out too small, never too large. The movement of a probe is a sum over contacts, each with its error. Signs of
-errors are free, so the largest sum is that of the sizes:
+The location error is the largest movement of a point of the silhouette when all pegs and faces are off by
+their tolerances. Here the movement is taken of a few points and along a few directions only, the probes. So
+it comes out too small, never too large. The movement of a probe is a sum over contacts, each with its error.
+Signs of errors are free, so the largest sum is that of the sizes:
 
-    sum of peg |a_i| + sum over faces of face |sum of a_i at the face|,
+    sum of peg |a_i| + sum over faces of face |sum of a_i at the face|.
 
-where a_i is the movement along a probe for an error of 1 of contact i.
+Here a_i is the movement along a probe for an error of 1 of contact i.
 
 Stretches: let a seat have contacts u and a location error of no more than e. Then no point of the silhouette
-moves by more than e, so the part turns by no more than 2 e / d, where d is the largest distance of two of them.
-Let contacts u' be the middles of stretches that hold u. What a contact measures of a movement changes from u
-to u' by no more than the half length times the turn on a line, and by the half sweep times the movement of the
-centre on an arc. So the same movement belongs to errors of u' that are off by no more than g_i e. As a norm of
-errors, the largest movement of a probe at u' is then at most e (1 + h), with h that of errors of sizes g_i. It
-is no less than its value z for the tolerances, less e h. So e >= z / (1 + h), and that is the bound. It holds
-as well where contacts in the middles fix no pose: all is multiplied by the determinant.
+moves by more than e. So the part turns by no more than 2 e / d, where d is the largest distance of two of
+them. Let contacts u' be the middles of stretches that hold u. What a contact measures of a movement changes
+from u to u'. On a line it changes by no more than the half length times the turn, and on an arc by the half
+sweep times the movement of the centre. So the same movement belongs to errors of u' that are off by no more
+than g_i e. Let z be the largest movement of a probe at u' for the tolerances, and h that for errors of sizes
+g_i. Then z is at most e (1 + h), and e >= z / (1 + h) is the bound. It holds as well where contacts in the
+middles fix no pose: all is multiplied by the determinant.
 """
 
 from __future__ import annotations
@@ -33,15 +33,15 @@ from workhold.kernels.base.tables import NearSpots, Precision
 from workhold.kernels.contact.record import Angle
 from workhold.kernels.contact.rules import outward_normal
 
-# Columns of a spot, a stretch of a feature: its normal, its moment about the centre over L, what contacts in it
-# may be off by for a location error of 1, its feature, the first of the spots that it is made of, and how many
-# these are (0: it is one of the finest, and has the number that stands for the first).
+# Columns of a spot, a stretch of a feature: its normal, its moment about the centre over L, what contacts in
+# it may be off by for a location error of 1, its feature, the first of the spots that it is made of, and how
+# many these are (0: it is one of the finest, and has the number that stands for the first).
 SPOT_NX, SPOT_NY, SPOT_MOMENT, SPOT_GIVE, SPOT_FEATURE, SPOT_FIRST, SPOT_COUNT = range(7)
 SPOT_LENGTH = 7
 # Of a contact in place no more than these are known.
 CONTACT_LENGTH = 5
-# Errors this part beyond the limit are surely beyond it, whatever is rounded. So many times what a minor may be
-# off by is more than movements and determinants are.
+# Errors this part beyond the limit are surely beyond it, whatever is rounded. So many times what a minor may
+# be off by is more than movements and determinants are.
 BEYOND, WIDE = 1.001, 40.0
 # Radians beside a quarter turn that count as such.
 SQUARE = 1e-4
@@ -59,8 +59,8 @@ def cross_rows(one: Array, two: Array, out: Array) -> None:
 def error_times(moves: Array, features: Array, count: int, precision: Precision, enough: float) -> float:
     """A lower bound of the location error in mm for movements (C, 3) that errors of 1 of contacts make.
 
-    ``features`` (C,) are those touched. Where movements are multiplied by something, so is the result. A bound
-    above ``enough`` is as good as any larger one.
+    ``features`` (C,) are those touched. Where movements are multiplied by something, so is the result.
+    A bound above ``enough`` is as good as any larger one.
     """
     most, probes, faces = 0.0, precision.probes, precision.faces
     for p in range(probes.shape[0]):
@@ -87,7 +87,7 @@ def error_times(moves: Array, features: Array, count: int, precision: Precision,
 
 @inner
 def doubt_at(features: Array, count: int, precision: Precision) -> float:
-    """By how many times contacts on features (C,) count more, at least."""
+    """The factor by which contacts on features (C,) count more, at least."""
     doubt = 1.0
     for i in range(count):
         doubt = max(doubt, precision.doubts[int(features[i])])
@@ -230,7 +230,7 @@ def join_near_spots(
     spots : (S, 7), the first so many of them the ``roots``, in the order of features.
     most : effective error in mm.
     near : receives the marks, for the finest spots.
-    counts : (2,) to which is added how many triples of spots were looked at, and how many the bound ruled out.
+    counts : (2,) to which is added how many triples of spots were looked at, and how many were ruled out.
     """
     stack, room = np.empty((64, 3), np.int64), np.empty((4, 3))
     joined, keeps_triples = near.joined, near.triples.shape[0] > 0

@@ -9,7 +9,7 @@ from math import atan2, ceil, floor, inf, pi, sin, sqrt
 
 import numpy as np
 
-from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE
+from workhold.conventions import GAP_SLACK, LEAST_CLAMPING
 from workhold.kernels.base.compiling import Array, inner
 from workhold.kernels.base.feature import (
     AXIS_X,
@@ -208,17 +208,17 @@ def may_close(
     for k in range(3):
         entry = -(triple[k, 0] * nx + triple[k, 1] * ny + triple[k, 2] * t)
         smallest, total = min(smallest, entry), total + abs(entry)
-    return smallest + band > max(LEAST_CLOSURE, limits.least_margin) * (total - 4.0 * band)
+    return smallest + band > limits.least_margin * (total - 4.0 * band)
 
 
 @inner
 def closing_heights(
     triple: Array, row: Array, ax: float, ay: float, error: float, length: float
 ) -> tuple[float, float]:
-    """Lowest and highest value of a . q over the points q of a straight feature where a moving peg may close
-    with three standing pegs; the lowest is larger where none may.
+    """Lowest and highest value of a . q over the points q of a straight feature where a moving peg may close.
 
-    What the standing pegs take up changes evenly along the feature, and must not be negative.
+    The lowest is larger where none may. What the standing pegs take up changes evenly along the feature, and
+    must not be negative.
 
     Parameters
     ----------
@@ -292,7 +292,7 @@ def add_moving_pegs(out: Array, count: int, angle: Angle, reach: float, work: Bl
         row = rows[e]
         if not work.counting and faces_away(row, cx, cy, limits.clamping, reach):
             continue
-        if asks_closure and row[IS_ARC] == 0.0:
+        if asks_closure and limits.least_margin > 0.0 and row[IS_ARC] == 0.0:
             lowest, highest = closing_heights(triple, row, -cy, cx, error, length)
             if lowest > highest:
                 continue

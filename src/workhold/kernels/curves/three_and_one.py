@@ -97,8 +97,10 @@ def farthest_right(features: Features, low: float, high: float) -> float:
 def write_limbs(
     pieces: Array, features: Features, curves: Curves, farthest: float, length: float, out: Array
 ) -> int:
-    """Writes the (N, 20) limbs, what their pairing looks at, of the pieces of standing pegs that leave room
-    for a moving peg and may be of interest; returns their number."""
+    """Writes the (N, 20) limbs, what their pairing looks at, and returns their number.
+
+    They are of the pieces of standing pegs that leave room for a moving peg and may be of interest.
+    """
     count, integers, touched = int(np.int64(0)), curves.integers, features.standing
     asks_spots = features.near.joined.shape[0] > 0
     for k in range(pieces.shape[0]):
@@ -203,22 +205,24 @@ def add_limb_pairs(out: Array, count: int, limbs: Array, pieces: Array, work: Bl
     at, stats, lattice, limits = work.at, work.stats, work.lattice, work.limits
     loose, curves, integers = work.features.loose, work.curves, work.curves.integers
     near, asks_spots = work.features.near, work.features.near.joined.shape[0] > 0
+    end = at[0]
     for i in range(at[0], limbs.shape[0]):
         if stats[STOPPED] != 0:
             break
         limb = limbs[i]
         tail = int(limb[LIMB_TAIL])
+        while end < limbs.shape[0] and limbs[end, LIMB_TAIL] == limb[LIMB_TAIL]:
+            end += 1
+        if at[1] == 0:
+            stats[PAIRS] += end - 1 - i
         # A tail on a whole circle may be counted from either side of the seam.
         circle = loose[tail, IS_ARC] != 0.0 and loose[tail, HALF_EXTENT] >= pi
         period = 2.0 * pi if circle else 0.0
-        for ahead in range(at[1], limbs.shape[0] - 1 - i):
+        for ahead in range(at[1], end - 1 - i):
             other = limbs[i + 1 + ahead]
-            # All that follow have larger values.
-            if other[LIMB_TAIL] != limb[LIMB_TAIL] or not (
-                circle or other[LIMB_VALUE_LEAST] <= limb[LIMB_VALUE_MOST]
-            ):
+            # All that follow have larger values, as most have.
+            if not circle and other[LIMB_VALUE_LEAST] > limb[LIMB_VALUE_MOST]:
                 break
-            stats[PAIRS] += 1
             if limb[LIMB_LOW] >= other[LIMB_HIGH] or other[LIMB_LOW] >= limb[LIMB_HIGH]:
                 continue
             if asks_spots and (
@@ -252,7 +256,8 @@ def add_limb_pairs(out: Array, count: int, limbs: Array, pieces: Array, work: Bl
                 more = count + 1
             if more < 0:
                 at[0], at[1] = i, ahead
-                stats[PAIRS] -= 1
+                if ahead == 0:
+                    stats[PAIRS] -= end - 1 - i
                 stats[CANDIDATES], stats[CONTACTS] = candidates, contacts
                 return count
             stats[CROSSED] += 1

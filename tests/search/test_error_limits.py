@@ -1,0 +1,207 @@
+"""The best by limits of the location error are the first of all, and what a limit rules out is surely beyond it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import inf
+from typing import Any
+
+import numpy as np
+import pytest
+
+from cad_parts import cad_part
+from workhold import OpeningVise, Plate, Query, Result, Tolerance, Vise, Workpiece, answer, load
+from workhold.contact.problem import Problem
+from workhold.fixels.toolkit import Toolkit
+from workhold.listing.bounds import preferred_angles
+from workhold.listing.canonical_form import listed_once
+from workhold.listing.collector import Needed, listed_form
+from workhold.listing.placing import placed
+from workhold.listing.ranking import PER_MM, measured, order_keys, usual_errors
+from workhold.proof.deciding import Course
+from workhold.search import design as designing
+from workhold.search.error_limits import LocatorSpots, can_limit_errors, is_enough, next_limit, precision_of
+from workhold.search.shares import one_clamp
+from workhold.search.toolkit_search import ToolkitSearch, with_limit
+
+TOLERANCE = Tolerance(peg=0.0145, face=0.01)
+
+
+def rectangle(width: float, height: float) -> Workpiece:
+    """A plain rectangle."""
+    corners = [(0.0, 0.0, 0.0), (width, 0.0, 0.0), (width, height, 0.0), (0.0, height, 0.0)]
+    return Workpiece("rectangle", [np.array(corners)])
+
+
+PARTS = {
+    "flange": load("flange"),
+    "widget": load("widget"),
+    "bores": cad_part(2),
+    "arcs": cad_part(7),
+    "rectangle": rectangle(120.0, 80.0),
+}
+KITS: dict[str, Toolkit] = {
+    "plate": Plate(pitch=16, peg_radius=3),
+    "two clamps": Plate(pitch=30, peg_radius=3, clamps=2),
+    "vise": Vise(pitch=10, columns=2, peg_radius=3),
+    "opening": OpeningVise(pitch=10, columns=2, peg_radius=3),
+}
+
+
+def listed(result: Result, count: int) -> list[Any]:
+    """What a file says of the first fixtures."""
+    table = result.table.take(slice(count))
+    columns = (
+        table.arrangement,
+        table.column,
+        table.row,
+        table.face,
+        table.theta,
+        table.position,
+        table.pairs,
+    )
+    return [None if column is None else np.asarray(column).tolist() for column in columns]
+
+
+@pytest.fixture
+def limited(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    """Has every part count as a large one; the limits that are tried."""
+    tried: list[float] = []
+    plain = LocatorSpots.limit
+
+    def limit(self: LocatorSpots, most: float) -> Any:
+        tried.append(most)
+        return plain(self, most)
+
+    monkeypatch.setattr(designing, "LIMITED_FROM", 0.0)
+    monkeypatch.setattr(LocatorSpots, "limit", limit)
+    return tried
+
+
+@pytest.mark.parametrize("kit", ["plate", "two clamps"])
+@pytest.mark.parametrize("part", PARTS)
+def test_the_best_are_the_first_of_all(part: str, kit: str, limited: list[float]) -> None:
+    """Whatever number is asked for, ties and pairs of clamps included."""
+    everything = answer(Query(PARTS[part], KITS[kit], tolerance=TOLERANCE))
+    for count in (1, 5, 20):
+        best = answer(Query(PARTS[part], KITS[kit], tolerance=TOLERANCE, best=count))
+        assert listed(best, count) == listed(everything, count)
+        assert best.least_effective_error == everything.least_effective_error
+        assert best.complete
+    assert bool(limited) == bool(len(everything))
+
+
+def test_what_limits_save_is_told(limited: list[float]) -> None:
+    """How many boxes were looked at and ruled out, and far fewer contacts than a whole search examines."""
+    query = Query(rectangle(150.0, 90.0), Plate(pitch=15, peg_radius=3, clamps=2), tolerance=TOLERANCE)
+    best, everything = (
+        answer(Query(query.workpiece, query.toolkit, tolerance=TOLERANCE, best=5)),
+        answer(query),
+    )
+    assert 0 < best.statistics["boxes_ruled_out"] < best.statistics["boxes"]
+    assert best.statistics["contacts_examined"] < 0.2 * everything.statistics["contacts_examined"]
+    assert listed(best, 5) == listed(everything, 5)
+    assert limited
+
+
+def found_errors(search: ToolkitSearch, **asked: Any) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
+    """Effective errors in mm of the fixtures that a search finds, and which are fit and without a warning."""
+    problem = search.problem
+    blocks = search.blocks(problem.query.arrangements, **asked)
+    records = np.concatenate([np.zeros((0, 19)), *(block.work(Needed()) for block in blocks)])
+    candidates = listed_once(listed_form(records, problem, Course(len(records)))[0])
+    keys = order_keys(
+        measured(placed(candidates, problem), problem), problem.query, usual_errors(problem.query)
+    )
+    assert keys.error is not None
+    return keys.error / PER_MM, keys.is_fine
+
+
+@pytest.mark.parametrize("times", [1.02, 1.2, 1.6])
+@pytest.mark.parametrize("kit", ["plate", "vise", "opening"])
+@pytest.mark.parametrize("part", ["flange", "widget", "bores", "rectangle"])
+def test_a_limit_loses_nothing_below_it(part: str, kit: str, times: float) -> None:
+    """Each fixture without a warning that is up to the limit is found, square or aslant, and not all beyond are."""
+    query = Query(PARTS[part], KITS[kit], tolerance=TOLERANCE, best=5)
+    problem = Problem.of(one_way(query))
+    errors, fine = found_errors(ToolkitSearch.of(problem))
+    if not fine.any():
+        pytest.skip("nothing holds it")
+    most = times * float(errors[fine].min())
+    search = ToolkitSearch.of(problem, precision=with_limit(precision_of(problem), most))
+    some, good = found_errors(search)
+    assert (some[good] <= most).sum() == (errors[fine] <= most).sum() > 0
+    assert len(some) <= len(errors)
+    if kit == "plate":
+        limit = LocatorSpots.of(problem).limit(most)
+        parts = [
+            found_errors(
+                ToolkitSearch.of(problem, near=near, precision=limit.precision),
+                first=preferred_angles(query),
+                rest=rest,
+            )
+            for near, rest in ((limit.square, False), (limit.aslant, True))
+        ]
+        # What lies between two shares may be found in both.
+        assert sum(((one <= most) & ok).sum() for one, ok in parts) >= (errors[fine] <= most).sum()
+
+
+def one_way(query: Query) -> Query:
+    """A query with the first of its toolkit's ways."""
+    ways = query.toolkit.ways
+    return query if len(ways) == 1 else one_clamp(query, ways[0])
+
+
+def test_spots_join_what_fixtures_touch() -> None:
+    """The three spots that locators of a fixture touch are marked at its own error, and hardly any far below."""
+    query = Query(PARTS["bores"], KITS["plate"], tolerance=TOLERANCE, best=5)
+    problem = Problem.of(query)
+    spots = LocatorSpots.of(problem)
+    assert spots.first > 0.0
+    shares = [
+        spots.limit(most).square.joined.mean() for most in (0.5 * spots.first, spots.first, 4.0 * spots.first)
+    ]
+    assert shares[0] < shares[1] < shares[2]
+    near = spots.limit(spots.first).square
+    assert (near.joined == near.joined.T).all()
+    marked = np.argwhere(near.triples)
+    assert {tuple(row) for row in marked.tolist()} == {tuple(row) for row in marked[:, [2, 0, 1]].tolist()}
+
+
+def test_the_next_limit_is_no_larger_than_it_must_be() -> None:
+    """A tenth above the last one that is asked for is enough; without enough found it grows, at last without end."""
+    query = Query(PARTS["flange"], KITS["plate"], tolerance=TOLERANCE, best=5)
+    table = answer(Query(PARTS["flange"], KITS["plate"], tolerance=TOLERANCE)).table
+    keys = order_keys(table, query, usual_errors(query))
+    assert keys.error is not None and keys.is_fine.sum() > 5
+    last = float(np.sort(keys.error[keys.is_fine])[4]) / PER_MM
+    least = float(keys.error.min()) / PER_MM
+    assert is_enough(1.2 * last, keys, query) and is_enough(inf, keys, query)
+    assert not is_enough(least, keys, query)
+    assert least < next_limit(least, keys, query, 1) <= 1.1001 * last
+    few = keys.take(np.flatnonzero(keys.is_fine)[:4])
+    assert 1.0 < next_limit(1.0, few, query, 1) < inf == next_limit(1.0, few, query, 99)
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        lambda q: Query(q.workpiece, q.toolkit, tolerance=TOLERANCE),
+        lambda q: Query(q.workpiece, q.toolkit, tolerance=TOLERANCE, best=3, ranking=["closure-margin"]),
+        lambda q: Query(q.workpiece, q.toolkit, tolerance=Tolerance(0.0, 0.0), best=3),
+    ],
+    ids=["all", "another order", "no tolerance"],
+)
+def test_only_the_usual_order_of_the_best_limits_errors(changed: Callable[[Query], Query]) -> None:
+    """Not where all are wanted, where other figures count, or where nothing is ever off."""
+    query = Query(PARTS["flange"], KITS["plate"], tolerance=TOLERANCE, best=3)
+    assert can_limit_errors(query) and not can_limit_errors(changed(query))
+
+
+@pytest.mark.parametrize("clamps", [1, 2])
+def test_nothing_is_sought_on_a_round_part(clamps: int) -> None:
+    """All lines of action pass its centre; the reason is said as ever."""
+    disc = Workpiece("disc", [np.array([(-30.0, 0.0, 1.0), (30.0, 0.0, 1.0)])])
+    result = answer(Query(disc, Plate(pitch=10, peg_radius=3, clamps=clamps), best=3))
+    assert len(result) == 0 == result.statistics["contacts_examined"] and result.complete
+    assert result.reasons and ("about one centre" in result.reasons[0] or clamps == 2)
