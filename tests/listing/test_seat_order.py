@@ -28,7 +28,7 @@ from workhold.listing.ranking import is_worse, order_keys
 from workhold.model.quality import FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION
 from workhold.model.requirements import Load, Restrictions, Tolerance
 from workhold.model.search_report import best_note
-from workhold.search import lattice_shares, shares
+from workhold.search import design, lattice_shares, shares
 from workhold.verification import verify_file
 
 OF_LOADS = {FIGURES[LOAD_REACTION].key, FIGURES[JAW_FORCE_NEEDED].key}
@@ -165,6 +165,7 @@ def test_no_fixture_ranks_before_the_bound_of_its_locators(monkeypatch: pytest.M
 def contacts_of(query: Query, monkeypatch: pytest.MonkeyPatch) -> tuple[list[Any], list[Any]]:
     """Contacts of three locators and a clamp of each direction, and the searches that found them."""
     monkeypatch.setattr(shares, "SQUARE_FIRST", inf)
+    monkeypatch.setattr(design, "LIMITED_FROM", inf)
     found: list[Any] = []
     ordered = lattice_shares.ordered_groups
 

@@ -85,9 +85,9 @@ def test_the_margin_to_reach_never_exceeds_that_of_the_last_kept(monkeypatch: py
     told: list[float] = []
     limits_from = ToolkitSearch.limits_from
 
-    def watched(self: ToolkitSearch, margin: float) -> np.ndarray:
+    def watched(self: ToolkitSearch, margin: float, most: float) -> np.ndarray:
         told.append(margin)
-        return limits_from(self, margin)
+        return limits_from(self, margin, most)
 
     monkeypatch.setattr(ToolkitSearch, "limits_from", watched)
     best = design(

@@ -42,6 +42,7 @@ from workhold.kernels.base.tables import (
     NearSpots,
     Precision,
 )
+from workhold.kernels.contact.record import RECORD_LENGTH
 from workhold.kernels.curves.block_work import CONTACTS, CROSSED, PAIRS, STATISTICS, STOPPED
 from workhold.kernels.curves.sliding_pairs import sliding_fixtures
 from workhold.kernels.curves.three_and_one import three_and_one_cells
@@ -292,9 +293,8 @@ class ToolkitSearch:
         workpiece in degrees, they find all fixtures in these, and some near them. So they do with ``first``,
         and all others with ``rest`` as well.
         """
-        if not self.counting and is_round(self.problem):
-            # All lines of action pass the centre, so nothing keeps the part from turning.
-            return []
+        # All lines of action pass a round part's centre, so nothing keeps it from turning.
+        is_idle = not self.counting and is_round(self.problem)
         # In a cell heights should change by no more than part of a pitch, so that most pairs of pieces cannot
         # cross.
         cells = int(
@@ -314,6 +314,9 @@ class ToolkitSearch:
             wanted = may_lie_at(edges, self.problem.restrictions.angles, half_turns, 90.0 * frame.quarters)
             if within:
                 wanted &= may_lie_at(edges, within, half_turns, 90.0 * frame.quarters)
+            if is_idle:
+                blocks.append(Block(lambda needed: np.zeros((0, RECORD_LENGTH)), 1.0, int(wanted.sum())))
+                continue
             sliding_pairs, crossing = self.sliding_pair_cells(half_turns, edges), wanted
             if first:
                 is_first = may_lie_at(edges, first, half_turns, 90.0 * frame.quarters)

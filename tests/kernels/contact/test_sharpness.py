@@ -14,10 +14,12 @@ import pytest
 from contact_examples import held, limits
 from rounding import Rounded, error_of
 from sharpness import Constant, changed, check_sharpness
+from workhold.contact.curves import EVERYWHERE
 from workhold.conventions import GAP_SLACK
 from workhold.kernels.base.tables import Features
 from workhold.kernels.contact import rules
 from workhold.kernels.curves import moving_pegs
+from workhold.search.toolkit_search import ANY_ERROR
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 Kernel = Callable[..., Any]
@@ -102,7 +104,7 @@ def at_the_edge(rule: str) -> Callable[[Random, Callable[..., Kernel]], float]:
         names = {**FREE, "LEAST_CLAMPING": edges["clamp"] * (1 - 1e-9)} if rule == "clamp" else FREE
         least = gap + GAP_SLACK - 1e-12 if rule == "gap" else -1e9
         asked = limits(contacts.length, least, 0.0)
-        features = Features(contacts.rows, contacts.rows, (0, 4), (0, 4))
+        features = Features(contacts.rows, contacts.rows, (0, 4), (0, 4), ANY_ERROR, EVERYWHERE)
         kernel = changed(form, **names)
         worst = 0.0
         for _ in range(8):

@@ -16,6 +16,7 @@ from chord_examples import arc_row, line_row
 from contact_examples import limits
 from exact_chords import exactly
 from sharpness import Constant, changed, check_sharpness
+from workhold.contact.curves import EVERYWHERE
 from workhold.kernels.base.feature import FEATURE_LENGTH, SEGMENT_LENGTH
 from workhold.kernels.base.tables import (
     CURVE_INTEGERS,
@@ -31,6 +32,7 @@ from workhold.kernels.chord.stretches import STRETCH_LENGTH
 from workhold.kernels.contact.record import RECORD_LENGTH
 from workhold.kernels.curves import moving_pegs, roots, sliding_pairs
 from workhold.kernels.curves.block_work import STATISTICS, block_work
+from workhold.search.toolkit_search import ANY_ERROR
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 Kernel = Callable[..., Any]
@@ -122,7 +124,7 @@ def moving_peg_off(name: str) -> Callable[[Random, Kernel], float]:
         rows = np.zeros((4, FEATURE_LENGTH))
         rows[:, :SEGMENT_LENGTH] = line_row(0, 0, 1.0, length)
         form = changed(kernel, row_meets=meets, may_close=closes)
-        features = Features(rows[:, :SEGMENT_LENGTH], rows, (0, 4), (0, 4))
+        features = Features(rows[:, :SEGMENT_LENGTH], rows, (0, 4), (0, 4), ANY_ERROR, EVERYWHERE)
         curves = Curves(
             np.zeros((0, CURVE_INTEGERS), np.int64),
             np.zeros((0, CURVE_REALS)),
