@@ -20,7 +20,14 @@ from workhold.listing.placing import placed
 from workhold.listing.ranking import PER_MM, measured, order_keys, usual_errors
 from workhold.proof.deciding import Course
 from workhold.search import design as designing
-from workhold.search.error_limits import LocatorSpots, can_limit_errors, is_enough, next_limit, precision_of
+from workhold.search.error_limits import (
+    LocatorSpots,
+    can_limit_errors,
+    is_enough,
+    keys_beyond,
+    next_limit,
+    precision_of,
+)
 from workhold.search.shares import one_clamp
 from workhold.search.toolkit_search import ToolkitSearch, with_limit
 
@@ -179,6 +186,12 @@ def test_the_next_limit_is_no_larger_than_it_must_be() -> None:
     assert is_enough(1.2 * last, keys, query) and is_enough(inf, keys, query)
     assert not is_enough(least, keys, query)
     assert least < next_limit(least, keys, query, 1) <= 1.1001 * last
+    # Nothing beyond a limit has less than the least keys of its class of angles.
+    bound, limit = keys_beyond(1.2 * least, query), 1.2 * least * PER_MM
+    beyond = keys.take((keys.error > limit) & keys.is_fine)
+    assert len(beyond) > 10
+    for row in beyond.rest:
+        assert any(tuple(least_row) <= tuple(row) for least_row in bound.rest if least_row[0] == row[0])
     few = keys.take(np.flatnonzero(keys.is_fine)[:4])
     assert 1.0 < next_limit(1.0, few, query, 1) < inf == next_limit(1.0, few, query, 99)
 

@@ -44,7 +44,15 @@ from workhold.statics.effective_error import faces_unasked_for
 from workhold.statics.judging import Judging
 from workhold.statics.quality import extremes, face_sizes, main_direction
 
-__all__ = ["ErrorLimit", "LocatorSpots", "can_limit_errors", "is_enough", "next_limit", "precision_of"]
+__all__ = [
+    "ErrorLimit",
+    "LocatorSpots",
+    "can_limit_errors",
+    "is_enough",
+    "keys_beyond",
+    "next_limit",
+    "precision_of",
+]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
