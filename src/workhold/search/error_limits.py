@@ -20,10 +20,10 @@ from collections.abc import Sequence
 from math import hypot, inf, pi
 
 import numpy as np
-from attrs import evolve, field, frozen
+from attrs import evolve, frozen
 from numpy.typing import NDArray
 
-from workhold.contact.curves import EVERYWHERE, loosened
+from workhold.contact.curves import loosened
 from workhold.contact.problem import Problem
 from workhold.conventions import SQUARE_TILT
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS, SEGMENT_LENGTH, SIGN, X, Y
@@ -87,24 +87,20 @@ class ErrorLimit:
 
     Parameters
     ----------
-    most : in mm; infinite for none.
     precision : for the kernels.
     square, aslant : which two spots locators may touch square to the drawing, and elsewhere.
     boxes, ruled_out : how many triples of spots were looked at, and how many the bound ruled out.
     """
 
-    most: float
     precision: Precision
-    square: NearSpots = EVERYWHERE
-    aslant: NearSpots = EVERYWHERE
-    boxes: int = 0
-    ruled_out: int = 0
+    square: NearSpots
+    aslant: NearSpots
+    boxes: int
+    ruled_out: int
 
     @property
     def statistics(self) -> dict[str, int]:
         """Counts for the account of the search."""
-        if self.most == inf:
-            return {}
         return {"boxes": self.boxes, "boxes_ruled_out": self.ruled_out}
 
 
@@ -114,19 +110,16 @@ class LocatorSpots:
 
     Parameters
     ----------
-    problem : what is searched.
     spots : (S, 7), see ``kernels.contact.location_bounds``, the coarsest first.
     roots : how many of them are the coarsest.
     starts : (F + 1,) numbers of the finest ones of each feature.
     precision : without a limit.
     """
 
-    problem: Problem
     spots: Array
     roots: int
     starts: IntArray
     precision: Precision
-    joined: dict[float, tuple[NearSpots, IntArray]] = field(factory=dict, init=False)
 
     @classmethod
     def of(cls, problem: Problem) -> LocatorSpots:
@@ -141,30 +134,21 @@ class LocatorSpots:
         ]
         starts = np.cumsum([0, *(len(levels[-1]) for levels in cut)])
         roots = sum(len(levels[0]) for levels in cut)
-        return cls(problem, joined_spots(cut, starts), roots, starts, precision_of(problem))
+        return cls(joined_spots(cut, starts), roots, starts, precision_of(problem))
 
     def limit(self, most: float) -> ErrorLimit:
-        """A limit of the effective error in mm; infinite for none."""
-        precision = with_limit(self.precision, most)
-        if most == inf:
-            return ErrorLimit(most, precision)
+        """A limit of the effective error in mm."""
         (square, one), (aslant, other) = self.near(most), self.near(most / ASLANT)
         boxes, ruled_out = (one + other).tolist()
-        return ErrorLimit(most, precision, square, aslant, boxes, ruled_out)
+        return ErrorLimit(with_limit(self.precision, most), square, aslant, boxes, ruled_out)
 
     def near(self, most: float) -> tuple[NearSpots, IntArray]:
         """Which two spots locators may touch up to an effective error in mm, and counts of boxes."""
-        if most not in self.joined:
-            count, counts = int(self.starts[-1]), np.zeros(2, np.int64)
-            keeps_triples = count <= MOST_TRIPLED
-            near = NearSpots(
-                self.starts,
-                np.zeros((count, count), np.int8),
-                np.zeros((count * keeps_triples,) * 3, np.int8),
-            )
-            join_near_spots(self.spots, self.roots, most, self.precision, near, counts)
-            self.joined[most] = near, counts
-        return self.joined[most]
+        count, counts = int(self.starts[-1]), np.zeros(2, np.int64)
+        kept = count if count <= MOST_TRIPLED else 0
+        near = NearSpots(self.starts, np.zeros((count, count), np.int8), np.zeros((kept,) * 3, np.int8))
+        join_near_spots(self.spots, self.roots, most, self.precision, near, counts)
+        return near, counts
 
     @property
     def first(self) -> float:
