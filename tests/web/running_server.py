@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import asyncio
 import threading
 import time
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Coroutine, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, TypeVar
 
 import httpx
 import pytest
@@ -20,6 +22,7 @@ from workhold.web.origins import Origins
 from workhold.web.serve import Server, bound_socket, make_server
 from workhold.web.state import ServerState
 
+T = TypeVar("T")
 # Seconds to wait for what comes at once on a machine that has nothing else to do.
 PATIENCE = 120.0
 # Kernels may have to be compiled first.
@@ -33,6 +36,12 @@ LONG = {
     "workpiece": {"name": "8Handle", "loops": [loop.tolist() for loop in load("8Handle").loops]},
     "toolkit": {"pitch": [3, 3], "columns": 7, "peg_radius": 1.4},
 }
+
+
+def run_alone(play: Coroutine[Any, Any, T]) -> T:
+    """What a coroutine returns; in a thread of its own, since the browser's tests keep a loop running in this one."""
+    with ThreadPoolExecutor(1) as thread:
+        return thread.submit(asyncio.run, play).result()
 
 
 def request(**changes: Any) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from running_server import run_alone
 
 from workhold.files.step.part_shape import PartShape
 from workhold.web import jobs as kept_jobs
@@ -149,7 +150,7 @@ def test_a_job_is_used_until_its_end_and_nothing_is_kept_of_one_that_was_deleted
         await jobs.run(made)
         return made
 
-    made = asyncio.run(whole())
+    made = run_alone(whole())
     assert made.state == "done" and made.ended is not None and made.used == made.ended
     assert made.family is (None if is_deleted else family)
 
@@ -170,6 +171,6 @@ def test_a_job_that_is_left_is_cancelled_unless_somebody_watches_it(jobs: Jobs) 
         leaving.cancel()
         return is_cancelled
 
-    assert not asyncio.run(whole(True, 50.0))
-    assert not asyncio.run(whole(False, -50.0))
-    assert asyncio.run(whole(False, 50.0))
+    assert not run_alone(whole(True, 50.0))
+    assert not run_alone(whole(False, -50.0))
+    assert run_alone(whole(False, 50.0))

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import asyncio
 import socket
-from collections.abc import Coroutine, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Iterator
 from contextlib import ExitStack
 from itertools import pairwise
 from typing import Any, TypeVar
@@ -14,7 +12,7 @@ import httpx
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from running_server import LONG, PATIENCE, RunningServer, arriving, request, running_server
+from running_server import LONG, PATIENCE, RunningServer, arriving, request, run_alone, running_server
 
 from workhold.cli.main import app
 from workhold.web import serve
@@ -24,12 +22,6 @@ from workhold.web.pool import BusyError, Pool, PoolTask
 T = TypeVar("T")
 OTHER = "127.0.0.2"
 FEW = {"client_uploads": 2, "uploads": 6, "connections": 40, "client_connections": 12}
-
-
-def alone(play: Coroutine[Any, Any, T]) -> T:
-    """What a coroutine returns; in a thread of its own, since the browser's tests keep a loop running in this one."""
-    with ThreadPoolExecutor(1) as thread:
-        return thread.submit(asyncio.run, play).result()
 
 
 def order_of_turns(clients: list[str], size: int) -> list[str]:
@@ -50,7 +42,7 @@ def order_of_turns(clients: list[str], size: int) -> list[str]:
                 pool.free(running.pop(0))
         return order
 
-    return alone(play())
+    return run_alone(play())
 
 
 @given(st.lists(st.sampled_from("abc"), min_size=1, max_size=30), st.integers(1, 4))
@@ -81,7 +73,7 @@ def test_nobody_has_all_workers() -> None:
         pool.free(mine[0])
         assert (await pool.next_task()).client == "greedy"
 
-    alone(play())
+    run_alone(play())
 
 
 def test_some_places_in_the_queue_are_kept_from_each_client() -> None:
@@ -96,7 +88,7 @@ def test_some_places_in_the_queue_are_kept_from_each_client() -> None:
             pool.refuse_more("greedy")
         pool.refuse_more("other")
 
-    alone(play())
+    run_alone(play())
 
 
 @pytest.fixture(scope="module")
