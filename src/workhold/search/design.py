@@ -48,6 +48,7 @@ from workhold.search.error_limits import (
     next_limit,
     precision_of,
 )
+from workhold.search.estimate import estimated_fixtures
 from workhold.search.lattice_shares import LatticeShares, problems_of
 from workhold.search.seated import Sink, seated_answer
 from workhold.search.shares import (
@@ -399,10 +400,11 @@ class Explored:
     Parameters
     ----------
     name : what it is called.
-    found : fixtures of each arrangement; empty for a toolkit that cannot be.
+    found : fixtures of each arrangement; empty for a toolkit that cannot be, and where nobody counted them.
     figures : of the first fixture, the one to set up; empty when there is none.
     fit : whether that is a fixture for a workshop.
     held : the share of the part's length that is between its outermost contacts, from 0 to 1.
+    about : how many fixtures there are, about, two digits of it, where they are too many to count.
     reason : why there is no fixture, or why the toolkit cannot be; empty otherwise.
     """
 
@@ -412,11 +414,12 @@ class Explored:
     reason: str = ""
     fit: bool = False
     held: float = 0.0
+    about: int | None = None
 
     @property
     def fixtures(self) -> int:
-        """How many fixtures there are."""
-        return sum(self.found.values())
+        """How many fixtures there are, or about how many."""
+        return sum(self.found.values()) if self.about is None else self.about
 
 
 def explore(
@@ -435,7 +438,9 @@ def explore(
         try:
             if isinstance(query, InputError):
                 raise query
-            result = answer(query, cancel=cancel)
+            about = estimated_fixtures(query, thread_count(None), cancel) if query.best is None else None
+            # Where there are many, the first is enough.
+            result = answer(query if about is None else evolve(query, best=1), cancel=cancel)
         except InputError as error:
             yield Explored(name, {}, {}, str(error))
             continue
@@ -445,7 +450,10 @@ def explore(
         figures = dict(result[0].quality) if len(result) else {}
         fit = bool(figures) and not unfit(result.table.quality[:1], result.query.tolerance)[0]
         held = held_share(result[0], result.workpiece) if len(result) else 0.0
-        yield Explored(name, dict(result.found), figures, reason, fit, held)
+        if about is not None and len(result):
+            yield Explored(name, {}, figures, reason, fit, held, int(float(f"{about:.1e}")))
+        else:
+            yield Explored(name, dict(result.found), figures, reason, fit, held)
 
 
 def held_share(fixture: Fixture, workpiece: Workpiece) -> float:

@@ -129,6 +129,15 @@ class LatticeShares:
         with ThreadPoolExecutor(max_workers=threads) as pool:
             yield cls(searches, seats, blocks, ranges, bound, pool, threads, cancel)
 
+    @classmethod
+    @contextmanager
+    def made(
+        cls, searches: Sequence[ToolkitSearch], collector: ClampedSeats, threads: int, cancel: Event | None
+    ) -> Iterator[LatticeShares]:
+        """No shares, for seats of contacts that somebody else finds."""
+        with ThreadPoolExecutor(max_workers=threads) as pool:
+            yield cls(searches, collector, (), (), None, pool, threads, cancel)
+
     @property
     def shares(self) -> int:
         """How many shares there are."""

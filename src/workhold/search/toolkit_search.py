@@ -70,6 +70,8 @@ KERNELS: dict[tuple[int, ...], tuple[Callable[..., Array], float]] = {
     (2, 2): (two_and_two_cells, 1.0),
     (3, 1): (three_and_one_cells, 0.5),
 }
+# What slides finds about so many times as many records for the same cost as what crosses.
+SLIDING_DENSE = 25.0
 # Cells of a half turn: so many for each pitch that L of the wrenches holds, within limits.
 CELLS_PER_PITCH = 10.0
 FEWEST_CELLS, MOST_CELLS = 96, 1024
@@ -303,7 +305,8 @@ class ToolkitSearch:
                 MOST_CELLS,
             )
         )
-        together = int(min(max(PAIRS_PER_BLOCK / max(self.alive, 1.0) ** 2, 1.0), cells // least))
+        most = max(cells // least, 1)
+        together = int(min(max(PAIRS_PER_BLOCK / max(self.alive, 1.0) ** 2, 1.0), most))
         blocks: list[Block] = []
         frame = self.frame
         for arrangement in frame.toolkit.arrangements:
@@ -363,7 +366,7 @@ class ToolkitSearch:
         """The crossings of some neighbouring cells, in which there are about so many curves."""
         kernel, weight = KERNELS[arrangement.pegs]
         work = partial(self.run, partial(kernel, edges), float(edges[0]), float(edges[-1]), self.tally())
-        return Block(work, 1.0 + weight * members**2, len(edges) - 1)
+        return Block(work, 1.0 + weight * members**2, len(edges) - 1, float(edges[0]))
 
     def sliding_pair_block(
         self, arrangement: Arrangement, edges: Array, cells: list[int], sliding_pairs: list[NDArray[np.int64]]
@@ -383,7 +386,11 @@ class ToolkitSearch:
         members = member_counts(self.table, edges[cells], edges[np.add(cells, 1)])
         cost = float(members @ np.array([len(sliding_pairs[cell]) for cell in cells]))
         return Block(
-            lambda needed: np.concatenate([part(needed) for part in parts]), len(cells) + cost, len(cells)
+            lambda needed: np.concatenate([part(needed) for part in parts]),
+            len(cells) + cost,
+            len(cells),
+            float(edges[cells[0]]),
+            SLIDING_DENSE,
         )
 
     def tally(self) -> NDArray[np.int64]:
