@@ -3,14 +3,14 @@
 Cells of orientation are drawn with a chance that grows with the work in them (Horvitz and Thompson 1952, *A
 Generalization of Sampling Without Replacement From a Finite Universe*). Each cell is searched as always, and
 what it holds counts as often as its chance is small. Fixtures lie where there is work, so a few per cent of
-the work tell the number within some tenths of it. The draw is systematic: the same query has the same
+the work show the number within some tenths of it. The draw is systematic: the same query has the same
 estimate.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import degrees, pi, tau
+from math import degrees, pi, sqrt, tau
 from threading import Event
 
 import numpy as np
@@ -27,7 +27,7 @@ from workhold.listing.seats import ClampedSeats
 from workhold.model.query import Query
 from workhold.search.cells import Block, run_blocks
 from workhold.search.lattice_shares import LatticeShares, searches_of
-from workhold.search.toolkit_search import MOST_CELLS, ToolkitSearch
+from workhold.search.toolkit_search import MOST_CELLS, ToolkitSearch, one_in
 
 __all__ = ["LISTED", "MANY", "best_where_many", "estimated_fixtures"]
 
@@ -39,8 +39,8 @@ MANY, LISTED = 200_000, 1_000
 # Searches that cost less have too few fixtures to ask, see ``cells.Block``.
 FEW = 4e6
 # Work that is done for an estimate with one clamp and with two, and the fewest cells that are drawn for it.
-# Of cells for two clamps, more add little.
-WORK, WORK_OF_TWO = 6e6, 2e6
+# Of cells for two clamps, more add little. So much more work is done with one clamp where cells hold more.
+WORK, WORK_OF_TWO, MOST_WORK = 6e6, 2e6, 3e7
 FEWEST_DRAWN, FEWEST_OF_TWO, MOST_OF_TWO = 48, 8, 32
 # Records that are decided for an estimate, and contacts of two clamps in one cell.
 DECIDED, CONTACTS_DECIDED = 4000, 3000
@@ -51,7 +51,7 @@ BEGIN = 0.618
 def estimated_fixtures(query: Query, threads: int, cancel: Event | None = None) -> int | None:
     """How many fixtures a query has, about.
 
-    None where they are surely few, where nobody can tell without a whole search, and once ``cancel`` is set.
+    None where they are surely few, that nobody knows without a whole search, and once ``cancel`` is set.
     """
     if WALL_END in query.toolkit.contacts or query.seating is not None:
         return None
@@ -82,8 +82,11 @@ def estimated_of_a_way(query: Query, threads: int, cancel: Event | None) -> int 
     costs = np.array([block.cost for block in blocks])
     if costs.sum() < FEW:
         return None
-    finds = costs * [block.dense for block in blocks]
-    drawn, chances = drawn_by(finds, max(number_for(WORK, costs, finds), FEWEST_DRAWN))
+    dense = np.array([block.dense for block in blocks])
+    drawn, chances = drawn_by(costs * dense, max(number_for(WORK, costs, costs * dense), FEWEST_DRAWN))
+    # Where cells hold too much, so do chord curves: what crosses is found by two of them, what slides by one.
+    search.every = max(int(sqrt(costs[drawn].sum() / MOST_WORK)), 1)
+    chances = chances / np.where(dense[drawn] > 1.0, search.every, search.every**2)
     records, _ = run_blocks([blocks[k] for k in drawn], threads, None, cancel, stop=search.stop)
     if len(records) < len(drawn):
         return None
@@ -162,10 +165,8 @@ def thinned(contacts: PackedContacts, problem: Problem, every: int) -> Array:
     for records in contacts.parts():
         holes, theta, *_ = seat_numbers(records, problem)
         # Seats with the same holes and nearly the same orientation are taken together.
-        mixed = (
-            holes * 0x9E3779B1 + np.round(theta / (100.0 * SAME_POSE)).astype(np.int64) * 0x85EBCA6B
-        ) >> 7
-        parts.append(records[mixed % every == 0])
+        seats = holes * 0x85EBCA6B + np.round(theta / (100.0 * SAME_POSE)).astype(np.int64)
+        parts.append(records[one_in(seats, every)])
     return np.concatenate(parts)
 
 

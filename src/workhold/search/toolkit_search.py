@@ -195,6 +195,12 @@ def with_limit(precision: Precision, most: float) -> Precision:
     return precision._replace(most=most, most_aslant=most / ASLANT)
 
 
+def one_in(numbers: NDArray[np.int64], many: int) -> NDArray[np.bool_]:
+    """Which numbers (N,) are among one in so many, as if drawn, and always the same."""
+    mixed = numbers.astype(np.uint64) * np.uint64(0x9E3779B97F4A7C15)
+    return np.asarray((mixed >> np.uint64(33)) % np.uint64(many) == 0)
+
+
 def is_round(problem: Problem) -> bool:
     """Whether every face that a peg could touch is an arc about one centre."""
     arcs = problem.rows[:, IS_ARC] != 0.0
@@ -213,6 +219,7 @@ class ToolkitSearch:
     precision, near : bound location errors, and places of locators, of what is of interest.
     counting : count all simultaneous contacts instead of looking for fixtures only.
     most_listed : of these so many are listed by each block, whatever the rules say of them.
+    every : of chord curves one in so many is looked at, for an estimate.
     stats : (blocks, 5) statistics the kernels add to, one row for each block so that threads never share one.
     """
 
@@ -223,6 +230,7 @@ class ToolkitSearch:
     near: NearSpots = EVERYWHERE
     counting: bool = False
     most_listed: int = 0
+    every: int = 1
     stats: list[NDArray[np.int64]] = field(factory=list, init=False)
 
     @classmethod
@@ -413,6 +421,8 @@ class ToolkitSearch:
             features = features._replace(precision=with_limit(self.precision, most))
         limits = self.limits_from(needed.margin, features.precision.most)
         members = members_of_cell(self.table, low, high)
+        if self.every > 1:
+            members = members[one_in(members, self.every)]
         return kernel(members, features, self.table.curves, self.frame.lattice, limits, self.counting, stats)
 
     def limits_from(self, margin: float, most: float) -> Limits:
