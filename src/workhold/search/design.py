@@ -49,10 +49,17 @@ from workhold.search.error_limits import (
     precision_of,
 )
 from workhold.search.estimate import estimated_fixtures
-from workhold.search.lattice_shares import LatticeShares, problems_of
+from workhold.search.lattice_shares import (
+    LatticeShares,
+    blocks_of_search,
+    problems_of,
+    searches_of,
+    ways_in,
+)
 from workhold.search.seated import Sink, seated_answer
 from workhold.search.shares import (
     LIMITED_FROM,
+    OF_TWO,
     Preview,
     Previews,
     answer_in_shares,
@@ -195,7 +202,7 @@ def answer(
         from workhold.search.wall_shares import WallShares
 
         return deliver(answer_in_shares(WallShares.of(query, cancel), progress, cancel), sink)
-    if can_limit_errors(query) and is_large(query):
+    if can_limit_errors(query) and is_large(query, workers, cancel):
         result = best_answer(query, workers, progress, cancel, preview)
         if result is not None:
             return deliver(result, sink)
@@ -213,7 +220,7 @@ def answer(
     return deliver(joined_ways(results, query), sink)
 
 
-def is_large(query: Query) -> bool:
+def is_large(query: Query, threads: int, cancel: Event | None) -> bool:
     """Whether so much is to be searched that limits of the location error are worth their while."""
     if any(one.pegs[0] < 3 for one in query.toolkit.arrangements if one.name in query.arrangements):
         # Of two pegs that stand still nobody knows where they touch for a small error.
@@ -221,7 +228,15 @@ def is_large(query: Query) -> bool:
     problem = Problem.of(one_clamp(query, query.toolkit.ways[0]))
     first, end = problem.standing
     steps = lattice_steps((problem.frame.standing,), problem.diameter).steps
-    return len(steps) * (end - first) ** 2 > LIMITED_FROM
+    # Chords that the lattice may join; of two each a search looks at about one pair in a hundred.
+    pairs = float(len(steps) * (end - first) ** 2) ** 2
+    if pairs / 10.0 < LIMITED_FROM or pairs / 1000.0 > LIMITED_FROM:
+        return pairs / 10.0 >= LIMITED_FROM
+    if query.toolkit.travels > 1:
+        return ways_in(map(blocks_of_search, searches_of(query, threads, cancel))) > OF_TWO * LIMITED_FROM
+    ways = [Problem.of(evolve(query, toolkit=way)) for way in query.toolkit.ways]
+    searches = [ToolkitSearch.of(way, threads=threads, cancel=cancel) for way in ways]
+    return ways_in(search.blocks(query.arrangements) for search in searches) > LIMITED_FROM
 
 
 def best_answer(
