@@ -277,3 +277,16 @@ def test_zones_and_faces_to_avoid_are_both_named_where_they_leave_nothing() -> N
         with pytest.raises(InputError, match=words or r"stand: make them smaller\.$"):
             answer(Query(PLAIN_PLATE, WIDE, restrictions=Restrictions(avoid=avoid, zones=zones)))
     assert isinstance(answer(Query(PLAIN_PLATE, WIDE, restrictions=Restrictions(zones=(side,)))), Result)
+
+
+def test_a_round_part_is_blamed_for_being_round() -> None:
+    """Contacts of it are not counted, as nothing keeps it from turning; where holes are too far apart, these are."""
+    disc = Workpiece.from_loops("disc", [[[-40, 0, 1], [40, 0, 1]]])
+    why = explain(Query(disc, Plate(pitch=20, peg_radius=3)))
+    assert why.contacts == 0 and why.no_contacts == no_fixture_notes(Plate(pitch=20, peg_radius=3).wording)[0]
+    far = explain(Query(load("widget"), Vise(pitch=300, columns=1, peg_radius=3)))
+    assert (
+        far.contacts == 0
+        and far.no_contacts == "No four pegs of the two jaws can touch the part at the same time."
+    )
+    assert explained(PLAIN, angles=((1.0, 1.001),)).no_contacts == ""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
@@ -123,19 +123,21 @@ def explain_none(
     from workhold.search.explaining import explain
 
     explanation = explain(result.query, threads, unit)
-    print_explanation(explanation, result.query.toolkit, unit, stream)
+    print_explanation(explanation, result.query.toolkit, unit, stream, result.notes)
     if folder is not None and explanation.nearest is not None:
         svg, png = draw_one(explanation.nearest.fixture, result, folder, NEAREST_MISS, "Nearest miss", unit)
         print_tables(f"Drawn: the nearest miss in {svg} and {png.name}.", stream=stream)
 
 
-def print_explanation(explanation: Explanation, toolkit: Toolkit, unit: Unit, stream: TextIO) -> None:
-    """Prints the explanation."""
+def print_explanation(
+    explanation: Explanation, toolkit: Toolkit, unit: Unit, stream: TextIO, said: Sequence[str] = ()
+) -> None:
+    """Prints the explanation, without what was said before."""
     from workhold.cli.tables import fixture_tables
 
     print_tables("", stream=stream)
     if explanation.contacts == 0:
-        print_tables(f"No {toolkit.wording.four} can touch the part at the same time.", stream=stream)
+        print_tables(*(words for words in [explanation.no_contacts] if words not in said), stream=stream)
     else:
         table = Table(("rule", ">sets of four contacts", ">removed", ">left"))
         for removal in explanation.removals:

@@ -164,12 +164,14 @@ class Explanation:
     removals : what each rule took away, in the order they were asked; the last one left nothing.
     nearest : the nearest miss, if four pegs can touch the part at all.
     helps : changes that were tried and with which there are fixtures, the most first.
+    no_contacts : why there are no such sets; empty where there are.
     """
 
     contacts: int
     removals: tuple[Removal, ...]
     nearest: NearestMiss | None
     helps: tuple[Help, ...]
+    no_contacts: str = ""
 
     @property
     def last_rule(self) -> str | None:

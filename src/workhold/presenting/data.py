@@ -215,6 +215,7 @@ def explanation_data(explanation: Explanation, toolkit: Toolkit) -> dict[str, An
     nearest = explanation.nearest
     return {
         "contacts": explanation.contacts,
+        "no_contacts": explanation.no_contacts,
         "removals": [asdict(removal) for removal in explanation.removals],
         "last_rule": explanation.last_rule,
         "taken_by": list(explanation.taken_by),

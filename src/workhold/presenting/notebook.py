@@ -283,9 +283,9 @@ class WhyNone:
     @property
     def words(self) -> str:
         """The sentence that says which rule took the last contacts away, or that there are none."""
-        last, toolkit = self.explanation.last_rule, self.query.toolkit
+        last = self.explanation.last_rule
         if not self.explanation.contacts or last is None:
-            return f"No {toolkit.wording.four} can touch the part at the same time."
+            return self.explanation.no_contacts
         return f"The last contacts were removed by: {last}. {self.explanation.asked_words}".rstrip()
 
     def __repr__(self) -> str:

@@ -23,7 +23,7 @@ from workhold.model.quality import WARNINGS
 from workhold.model.query import Query
 from workhold.model.requirements import Restrictions
 from workhold.model.result import Result
-from workhold.model.search_report import Explanation, Help, NearestMiss, Removal
+from workhold.model.search_report import Explanation, Help, NearestMiss, Removal, no_fixture_notes
 from workhold.model.workpiece import Workpiece
 from workhold.search.broken_rules import (
     SECOND_CLAMP,
@@ -35,6 +35,7 @@ from workhold.search.broken_rules import (
 )
 from workhold.search.design import answer
 from workhold.search.flush_search import FlushSearch
+from workhold.search.toolkit_search import is_round
 from workhold.search.wall_search import WallSearch
 from workhold.search.wall_shares import LatticePairSearch
 from workhold.units import MILLIMETRE, Unit
@@ -165,8 +166,17 @@ def explain(query: Query, threads: int | None = None, unit: Unit = MILLIMETRE) -
         found = [removals_beside_wall(way, alone) for way in ways]
     else:
         found = [removals_of(Problem.of(way), threads, unit, alone) for way in ways]
-    together = Removals.together(found)
-    return Explanation(together.first, together.removals, together.nearest, helps(query, threads, unit))
+    together, helped = Removals.together(found), helps(query, threads, unit)
+    nothing = "" if together.first else no_contacts(ways)
+    return Explanation(together.first, together.removals, together.nearest, helped, nothing)
+
+
+def no_contacts(ways: Sequence[Query]) -> str:
+    """Why nothing touches a part at the same time in any way of a toolkit."""
+    wording = ways[0].toolkit.wording
+    if WALL_END not in ways[0].toolkit.contacts and all(is_round(Problem.of(way)) for way in ways):
+        return no_fixture_notes(wording)[0]
+    return f"No {wording.four} can touch the part at the same time."
 
 
 def helps(query: Query, threads: int | None, unit: Unit) -> tuple[Help, ...]:

@@ -7,7 +7,7 @@ import { heightHelp } from "./height-help.js";
 import { showMiss } from "./stage-panel.js";
 import { change, on, state } from "./state.js";
 import { openComparison } from "./comparison-dialog.js";
-import { kindOf, withFields } from "./toolkits.js";
+import { withFields } from "./toolkits.js";
 import { countText } from "./units.js";
 
 let asked = null;
@@ -44,10 +44,10 @@ export async function explain(job) {
 }
 
 /** Write the explanation. */
-function write(box, { contacts, removals, nearest, helps, asked_words }, heights) {
+function write(box, { contacts, no_contacts, removals, nearest, helps, asked_words }, heights) {
   const parts = [make("p", {}, contacts
     ? `Four pegs can touch the part at the same time in ${countText(contacts)} ways. Each rule takes some of them away:`
-    : `Four pegs of this ${kindOf(state.toolkit).noun} cannot touch the part at the same time in any way.`)];
+    : no_contacts)];
   if (removals.length) {
     const lines = removals.map((removal, k) =>
       make(k === removals.length - 1 ? "tr.last" : "tr", {},
