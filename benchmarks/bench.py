@@ -17,6 +17,7 @@ import batch_simulation
 import floor
 import growth
 import in_space
+import large
 import many
 import memory
 import processes
@@ -54,6 +55,7 @@ def main() -> None:
         lambda quick: algebra.run(quick, options.budget),
         memory.run,
         many.run,
+        large.run,
         toolkits.run,
         survey.run,
         pruning.run,
