@@ -22,7 +22,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_PUSH, LEAST_SEAT, LEAST_SPAN
+from workhold.conventions import (
+    GAP_SLACK,
+    LEAST_CLAMPING,
+    LEAST_CLOSURE,
+    LEAST_PUSH,
+    LEAST_SEAT,
+    LEAST_SPAN,
+    PARALLEL,
+)
 from workhold.kernels.base.compiling import Array, IntArray, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.base.tables import COLUMN_STEP, ROW_STEP, Features, Limits
@@ -102,6 +110,28 @@ def is_within(row: Array, x: float, y: float, margin: float, radius: float) -> b
 
 
 @inner
+def hold_along_lines(pegs: Array, count: int, rows: Array) -> bool:
+    """Whether three of so many pegs, the first ones, touch parallel lines.
+
+    Their three forces then lie in one direction, and nothing takes up the fourth.
+    """
+    for k in range(count):
+        three = True
+        for i in range(count):
+            a = rows[int(pegs[i, PEG_FEATURE])]
+            for j in range(i):
+                # Of four pegs one is left out; of three none.
+                if count == 4 and (i == k or j == k):
+                    continue
+                b = rows[int(pegs[j, PEG_FEATURE])]
+                three = three and a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0
+                three = three and abs(cross(a[AXIS_X], a[AXIS_Y], b[AXIS_X], b[AXIS_Y])) <= PARALLEL
+        if three:
+            return True
+    return False
+
+
+@inner
 def is_fixture(
     pegs: Array,
     standing: float,
@@ -155,6 +185,8 @@ def is_fixture(
                 first_moving = along
     separation = first_moving - first_standing
     if leftmost_moving - rightmost_standing < limits.gap - GAP_SLACK - 2.0 * (radius + length * reach):
+        return (1, separation)
+    if hold_along_lines(pegs, 4 if limits.pairing == 0.0 else 3, rows):
         return (1, separation)
     size = minors(points, normals, length, null)
     band = minor_band(swing, radius, length)
