@@ -28,6 +28,7 @@ __all__ = [
     "Found",
     "ONE_HEIGHT",
     "Point3",
+    "arc_over",
     "bisected",
     "crossing",
     "curve_of",
