@@ -506,3 +506,34 @@ def test_a_slot_that_all_but_touches_a_hole(aside: float) -> None:
         hole = loop_segments(drawing.loops[1])
         assert all(segment.radius == pytest.approx(1.7, abs=1e-6) for segment in hole)
         assert sum(segment.length for segment in hole) == pytest.approx(2 * pi * 1.7, abs=1e-3)
+
+
+@pytest.mark.parametrize("radius", [0.7, 1.5, 3.0, 5.5])
+@pytest.mark.parametrize("turn", [0.0, 37.3])
+def test_a_small_bore_across_a_shaft_is_not_pressed_on(radius: float, turn: float) -> None:
+    """Its short rims lie on the shaft's circle, and not on the circles that fit them best."""
+    solid = standing(
+        placed(cut(cylinder(20, 40, (0, 0, 0)), cylinder(radius, 60, (-30, 0, 20), (1, 0, 0))), turn)
+    )
+    outline = solid.outline(30.0)
+    assert list(band_faults(solid.shape, outline)) == []
+    beside = [band for band in outline.bands if band and band[1] < 25]
+    assert beside == [(0.0, pytest.approx(20 - radius, abs=1e-6))] * len(beside) and len(beside) >= 2
+    # Pegs that end below it know nothing of it.
+    for height in (20 - radius - 0.6, 20 - radius - 0.5):
+        assert set(solid.outline(height).bands) == {(0.0, height)}
+
+
+def test_an_edge_of_a_wall_runs_along_the_wall() -> None:
+    """Of every bore across a shaft, however short its rims: on one line or circle with all other edges of the wall."""
+    bores = [cylinder(0.4 + 0.3 * k, 60, (-30, 0, 5 + 5 * k), (1, 0.2 * k, 0)) for k in range(6)]
+    solid = standing(cut(cylinder(20, 40, (0, 0, 0)), *bores))
+    arcs = [
+        edge.segment
+        for edge in solid.edges
+        if solid.faces[edge.face].lie == "upright" and edge.segment is not None
+    ]
+    assert len(arcs) == 14 and all(isinstance(one, Arc) for one in arcs)
+    for one in arcs:
+        assert isinstance(one, Arc)
+        assert (*one.center, one.radius) == pytest.approx((0.0, 0.0, 20.0), abs=1e-9)
