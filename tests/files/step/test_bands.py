@@ -537,3 +537,20 @@ def test_an_edge_of_a_wall_runs_along_the_wall() -> None:
     for one in arcs:
         assert isinstance(one, Arc)
         assert (*one.center, one.radius) == pytest.approx((0.0, 0.0, 20.0), abs=1e-9)
+
+
+@pytest.mark.parametrize("below", [5.0, 0.1, 5e-3, 3e-3, 1e-3, 1e-4, 1e-5])
+def test_a_tunnel_is_open_up_to_its_crown(below: float) -> None:
+    """Where it is cut just below that, the two sides rise by next to nothing from the cut."""
+    bored = standing(placed(cut(box(70, 40, 30), across(28, 0, 18)), 37.3))
+    high = 18.0 - below
+    area, _, _, _ = measures(bored.outline(high - 0.5))
+    assert area == pytest.approx(40 * (70 - 2 * sqrt(18**2 - high**2)), abs=2e-4)
+
+
+@pytest.mark.parametrize("rise", [0.1, 0.01, 0.002])
+def test_an_underside_that_hardly_rises_is_cut_where_pegs_end(rise: float) -> None:
+    """What lies beyond the cut is over the pegs, however little."""
+    wedge = standing(cut(box(60, 40, 40), tilted((0, 0, 0), (rise, 0, -1), (1, 0, rise))))
+    area, _, _, _ = measures(wedge.outline(24 * rise, 6 * rise, least_band=1e-3))
+    assert area == pytest.approx(40 * 30, abs=1e-3)
