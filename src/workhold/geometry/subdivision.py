@@ -418,17 +418,21 @@ class BorderPiece:
         return (sin(quarter) / cos(quarter)) * (1.0 if self.forward else -1.0)
 
 
-def border_pieces(carriers: Sequence[CutCarrier], inside: Inside) -> list[BorderPiece]:
+def border_pieces(carriers: Sequence[CutCarrier], inside: Inside, share: float = 0.5) -> list[BorderPiece]:
     """Pieces with a region on one side only.
 
     Parameters
     ----------
     carriers : see :func:`subdivide`; they hold the region's whole border.
     inside : which of some points (x, y) that lie on no carrier belong to the region.
+    share : where along a piece its two sides are looked at, where nothing else is near.
     """
     known = Carriers.of(carriers)
     every = [BorderPiece(carrier, low, high, True) for carrier in carriers for low, high in carrier.pieces()]
-    middles = np.array([piece.middle for piece in every]).reshape(-1, 2)
+    shares = [piece.low + share * (piece.high - piece.low) for piece in every]
+    middles = np.array([piece.carrier.at(place) for piece, place in zip(every, shares, strict=True)]).reshape(
+        -1, 2
+    )
     crowded = {
         number
         for number, other in known.near(middles, 2 * BESIDE)
@@ -439,7 +443,7 @@ def border_pieces(carriers: Sequence[CutCarrier], inside: Inside) -> list[Border
     thin = {number: every[number] for number, (_, clearance) in clear.items() if clearance <= THIN}
     places = []
     for number, piece in enumerate(every):
-        position, clearance = clear.get(number, ((piece.low + piece.high) / 2, inf))
+        position, clearance = clear.get(number, (shares[number], inf))
         places.append((piece.carrier, position, min(beside_of(piece), clearance / 2)))
     found = [
         evolve(piece, forward=left) if left != right else None

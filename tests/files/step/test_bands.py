@@ -554,3 +554,22 @@ def test_an_underside_that_hardly_rises_is_cut_where_pegs_end(rise: float) -> No
     wedge = standing(cut(box(60, 40, 40), tilted((0, 0, 0), (rise, 0, -1), (1, 0, rise))))
     area, _, _, _ = measures(wedge.outline(24 * rise, 6 * rise, least_band=1e-3))
     assert area == pytest.approx(40 * 30, abs=1e-3)
+
+
+@pytest.mark.parametrize("aslant", [0.0, 0.4, 1.0])
+@pytest.mark.parametrize("height", [10.0, 10.0 - 1e-9, 10.0 + 1e-9])
+def test_pegs_may_end_level_with_the_crown_of_a_tunnel(aslant: float, height: float) -> None:
+    """Over the crown nothing is left to touch, but beside it there is, from the tunnel's wall up."""
+    bored = standing(cut(box(70, 50, 30), cylinder(10, 120, (20, -10, 0), (aslant, 1, 0))))
+    outline = bored.outline(height)
+    assert list(band_faults(bored.shape, outline, count=7)) == []
+    assert measures(outline)[2] == pytest.approx(measures(bored.outline(height + 1e-3))[2], abs=0.05)
+
+
+@pytest.mark.parametrize("aslant", [0.0, 0.4])
+@pytest.mark.parametrize("above", [1e-6, 3e-6, 8e-6, 1.2e-5])
+def test_what_bridges_a_tunnel_may_be_as_thin_as_rounding(aslant: float, above: float) -> None:
+    """Over the middle of the opening too little of it to be seen lies below the end of the pegs, and more beside."""
+    bored = standing(cut(box(70, 50, 30), cylinder(10, 120, (20, -10, 0), (aslant, 1, 0))))
+    area, border, _, _ = measures(bored.outline(9.5 + above))
+    assert (area, border) == pytest.approx((70 * 50, 2 * (70 + 50)), abs=1e-6)

@@ -102,16 +102,19 @@ class WallEdge:
         steep = frozenset(k for k, one in enumerate(edge.parameters.tolist()) if one in upright)
         return cls(edge, segment, tuple(branches_of(along(segment, edge.points), steep)), steep)
 
-    def cuts(self, high: float) -> Iterator[Point]:
-        """Points at which an outline is to be cut: ends of branches, and where the edge passes a height.
+    def cuts(self, low: float, high: float) -> Iterator[Point]:
+        """Points at which an outline is to be cut: ends of branches, and where the edge passes or only just reaches
+        an end of the heights of pegs.
 
-        Where it passes the lower end of the heights of pegs the outline is cut in any case.
+        Where it passes the lower end the outline is cut in any case.
         """
         points = self.edge.points
         if self.is_level:
             return
         yield from ((float(points[k, 0]), float(points[k, 1])) for one in self.branches for k in one)
         yield from self.edge.crossings(high)
+        away = np.abs(points[:, 2:] - (low, high)).min(axis=1)
+        yield from ((float(x), float(y)) for x, y in points[away <= LEAST_GAP, :2])
 
 
 def along(segment: Segment, points: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -601,7 +604,7 @@ class Walls:
 
     def cuts(self) -> list[tuple[Segment, Point]]:
         """Points at which an outline is to be cut, because the runs there may change."""
-        return [(one.segment, point) for one in self.upright for point in one.cuts(self.high)]
+        return [(one.segment, point) for one in self.upright for point in one.cuts(self.low, self.high)]
 
     def ends(self) -> Iterator[tuple[Segment, Point]]:
         """Where level edges end: a subdivision that has the edges themselves is cut there."""
