@@ -573,3 +573,13 @@ def test_what_bridges_a_tunnel_may_be_as_thin_as_rounding(aslant: float, above: 
     bored = standing(cut(box(70, 50, 30), cylinder(10, 120, (20, -10, 0), (aslant, 1, 0))))
     area, border, _, _ = measures(bored.outline(9.5 + above))
     assert (area, border) == pytest.approx((70 * 50, 2 * (70 + 50)), abs=1e-6)
+
+
+@pytest.mark.parametrize("off", [0.0, *(s * k for k in (1e-6, 2e-6, 5e-6, 8e-6, 2e-5) for s in (1, -1))])
+def test_pegs_may_end_next_to_a_corner_of_a_slope(off: float) -> None:
+    """Its height is that of a corner to five digits: the sides of the cut are too near to the edge to be seen."""
+    ridge = cut(sloped(box(60, 40, 40), 14, 0.5), tilted((60, 0, 22), (0.4, 0, 1), (-1, 0, 0.4)))
+    solid = standing(along(cut(ridge, cylinder(8, 80, (31, 20, -5))), "-z"))
+    (corner,) = {round(z, 9) for face in solid.faces for z in (face.low, face.high) if 15 < z < 20}
+    area, _, _, _ = measures(solid.outline(corner + off - 0.5))
+    assert area == pytest.approx(60 * 40 - 64 * pi, abs=5e-3)

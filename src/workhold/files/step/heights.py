@@ -267,8 +267,18 @@ class StandingSolid:
             except InputError as error:
                 # The middle may be the one place of a piece at which too little of the solid is left to be seen.
                 refusal = refusal or error
-        assert refusal is not None
-        raise refusal
+        # A cut this near to a corner has sides too narrow to be looked at, and is one with the cut through it.
+        away = np.abs(self.corners - high)
+        corner = float(self.corners[away.argmin()])
+        if not silhouette and 0.0 < abs(corner - high) <= SAME_HEIGHT:
+            return self.border(low, corner, walls)
+        raise refusal or InputError("the outline does not close")
+
+    @cached_property
+    def corners(self) -> NDArray[np.float64]:
+        """The z in mm of all places at which an edge ends, or is highest or lowest."""
+        ends = [(*edge.points[[0, -1], 2].tolist(), edge.low, edge.high) for edge in self.edges]
+        return np.unique(np.array(ends, np.float64))
 
     def closed(self, pieces: Sequence[BorderPiece], curves: ProjectedCurves) -> list[list[BorderPiece]]:
         """The loops of a border's pieces.
