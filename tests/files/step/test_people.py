@@ -121,7 +121,7 @@ def test_lying_shaft_is_its_silhouette_from_its_axis_up(gap: float) -> None:
     assert (area, border) == pytest.approx(whole[:2], abs=2e-5)
 
 
-@pytest.mark.parametrize("gap", [0.01, 0.1, 2.0])
+@pytest.mark.parametrize("gap", [0.005, 0.007, 0.01, 0.1, 2.0])
 def test_lying_shaft_is_refused_below_its_axis(gap: float) -> None:
     """There the cuts of its fillets are the border, also where they run near beside the folds."""
     (solid,) = read_solids((DATA / "lying_shaft_fillets.step").read_bytes())
