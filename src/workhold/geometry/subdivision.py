@@ -418,33 +418,32 @@ class BorderPiece:
         return (sin(quarter) / cos(quarter)) * (1.0 if self.forward else -1.0)
 
 
-def border_pieces(carriers: Sequence[CutCarrier], inside: Inside, share: float = 0.5) -> list[BorderPiece]:
+def border_pieces(
+    carriers: Sequence[CutCarrier], inside: Inside, beside: float = BESIDE
+) -> list[BorderPiece]:
     """Pieces with a region on one side only.
 
     Parameters
     ----------
     carriers : see :func:`subdivide`; they hold the region's whole border.
     inside : which of some points (x, y) that lie on no carrier belong to the region.
-    share : where along a piece its two sides are looked at, where nothing else is near.
+    beside : how far beside a piece its two sides are looked at, in mm, where nothing else is near.
     """
     known = Carriers.of(carriers)
     every = [BorderPiece(carrier, low, high, True) for carrier in carriers for low, high in carrier.pieces()]
-    shares = [piece.low + share * (piece.high - piece.low) for piece in every]
-    middles = np.array([piece.carrier.at(place) for piece, place in zip(every, shares, strict=True)]).reshape(
-        -1, 2
-    )
+    middles = np.array([piece.middle for piece in every]).reshape(-1, 2)
     crowded = {
         number
-        for number, other in known.near(middles, 2 * BESIDE)
+        for number, other in known.near(middles, 2 * beside)
         if other is not every[number].carrier
-        and known.distance(other, (float(middles[number, 0]), float(middles[number, 1]))) <= 2 * BESIDE
+        and known.distance(other, (float(middles[number, 0]), float(middles[number, 1]))) <= 2 * beside
     }
-    clear = clearest({number: every[number] for number in sorted(crowded)}, known)
+    clear = clearest({number: every[number] for number in sorted(crowded)}, known, beside)
     thin = {number: every[number] for number, (_, clearance) in clear.items() if clearance <= THIN}
     places = []
     for number, piece in enumerate(every):
-        position, clearance = clear.get(number, (shares[number], inf))
-        places.append((piece.carrier, position, min(beside_of(piece), clearance / 2)))
+        position, clearance = clear.get(number, ((piece.low + piece.high) / 2, inf))
+        places.append((piece.carrier, position, min(beside_of(piece, beside), clearance / 2)))
     found = [
         evolve(piece, forward=left) if left != right else None
         for piece, (left, right) in zip(every, sides(places, inside), strict=True)
@@ -452,7 +451,7 @@ def border_pieces(carriers: Sequence[CutCarrier], inside: Inside, share: float =
     for group in twins(thin):
         first = thin[group[0]]
         position = (first.low + first.high) / 2
-        ((left, right),) = sides([(first.carrier, position, beside_of(first))], inside)
+        ((left, right),) = sides([(first.carrier, position, beside_of(first, beside))], inside)
         for number in group:
             found[number] = None
         if left != right:
@@ -484,13 +483,15 @@ def sides(places: Sequence[tuple[CutCarrier, float, float]], inside: Inside) -> 
     return list(zip(found[0::2], found[1::2], strict=True))
 
 
-def clearest(pieces: Mapping[int, BorderPiece], carriers: Carriers) -> dict[int, tuple[float, float]]:
+def clearest(
+    pieces: Mapping[int, BorderPiece], carriers: Carriers, beside: float
+) -> dict[int, tuple[float, float]]:
     """By a piece's number its first position that is clear enough, else that with the most clearance.
 
     With it the clearance in mm, as far as it is looked at.
     """
     found: dict[int, tuple[float, float]] = {}
-    enough = {number: 2 * beside_of(piece) for number, piece in pieces.items()}
+    enough = {number: 2 * beside_of(piece, beside) for number, piece in pieces.items()}
     left = list(pieces)
     for share in SHARES:
         if not left:
@@ -500,7 +501,7 @@ def clearest(pieces: Mapping[int, BorderPiece], carriers: Carriers) -> dict[int,
         points = [piece.carrier.at(place) for piece, place in zip(own, places, strict=True)]
         clearances = [enough[number] for number in left]
         # No piece asks for more than twice what is looked at beside it.
-        for row, other in carriers.near(np.array(points), 2 * BESIDE):
+        for row, other in carriers.near(np.array(points), 2 * beside):
             if other is not own[row].carrier:
                 clearances[row] = min(clearances[row], carriers.distance(other, points[row]))
         for number, place, clearance in zip(left, places, clearances, strict=True):
@@ -510,9 +511,9 @@ def clearest(pieces: Mapping[int, BorderPiece], carriers: Carriers) -> dict[int,
     return found
 
 
-def beside_of(piece: BorderPiece) -> float:
+def beside_of(piece: BorderPiece, beside: float) -> float:
     """How far beside a piece its two sides are looked at, in mm, where nothing is near."""
-    return min(BESIDE, BESIDE_SHARE * piece.length)
+    return min(beside, BESIDE_SHARE * piece.length)
 
 
 def twins(pieces: Mapping[int, BorderPiece]) -> list[list[int]]:

@@ -63,8 +63,6 @@ __all__ = [
 
 # What is kept free above the pegs, and the shortest band that may be touched, both in mm.
 HEAD_ROOM, LEAST_BAND = 0.5, 1.0
-# Where along a piece its sides are looked at, as shares of it, from one to the next as long as a border does not close.
-LOOKED = (0.5, 0.37, 0.71)
 
 
 @define(frozen=True, slots=False, eq=False)
@@ -255,24 +253,19 @@ class StandingSolid:
             curves = projected_curves(self.faces, self.edges, low, high, self.folds_of)
             refuse_others(curves.others, self.faces, inside, PlainCurves.of(curves.segments))
         carriers = subdivide(curves.segments, (*curves.cuts, *more))
-        refusal: InputError | None = None
-        for share in LOOKED[:1] if curves.others else LOOKED:
-            pieces = border_pieces(carriers, inside, share)
-            if not pieces:
-                raise InputError(
-                    f"nothing of the solid lies between the heights {max(low, 0):g} and {high:g} mm."
-                )
-            try:
-                return self.closed(pieces, curves)
-            except InputError as error:
-                # The middle may be the one place of a piece at which too little of the solid is left to be seen.
-                refusal = refusal or error
-        # A cut this near to a corner has sides too narrow to be looked at, and is one with the cut through it.
-        away = np.abs(self.corners - high)
-        corner = float(self.corners[away.argmin()])
-        if not silhouette and 0.0 < abs(corner - high) <= SAME_HEIGHT:
-            return self.border(low, corner, walls)
-        raise refusal or InputError("the outline does not close")
+        pieces = border_pieces(carriers, inside)
+        if not pieces:
+            raise InputError(
+                f"nothing of the solid lies between the heights {max(low, 0):g} and {high:g} mm."
+            )
+        try:
+            return self.closed(pieces, curves)
+        except InputError:
+            # A cut this near to a corner has sides too narrow to be looked at, and is one with the cut through it.
+            corner = float(self.corners[np.abs(self.corners - high).argmin()])
+            if curves.others or silhouette or not 0.0 < abs(corner - high) <= SAME_HEIGHT:
+                raise
+        return self.border(low, corner, walls)
 
     @cached_property
     def corners(self) -> NDArray[np.float64]:
