@@ -190,13 +190,23 @@ class Budget:
             Where there are more than the limit, or time is up.
         """
         self.elements += elements
+        self.foresee(0)
+        self.work(elements)
+
+    def foresee(self, elements: int) -> None:
+        """Refuses elements that the reader is about to go through, where they are more than it may.
+
+        Raises
+        ------
+        InputError
+            Then.
+        """
         most = self.limits.most_elements
-        if most is not None and self.elements > most:
+        if most is not None and self.elements + elements > most:
             raise OverBudgetError(
                 f"the file has more than the {most:,} {self.limits.elements} that {self.limits.what} may "
                 f"have: {self.limits.remedy}."
             )
-        self.work(elements)
 
     def count_letters(self, letters: int, label: str) -> None:
         """Counts letters of a text that is part of a file.

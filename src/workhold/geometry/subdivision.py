@@ -46,8 +46,9 @@ ONE = 1e-6
 SHORT = 1e-5
 # mm. Largest gap between the ends of neighbouring pieces of a border.
 REACH = 1e-4
-# How far beside a piece its two sides are looked at, in mm, and as a share of the piece.
-BESIDE, BESIDE_SHARE = 4e-4, 0.1
+# How far beside a piece its two sides are looked at, in mm, and as a share of the piece: far enough that what rises
+# by 0.001 for 1 and ends at the piece is there.
+BESIDE, BESIDE_SHARE = 2e-2, 0.1
 # Where along a piece that may be, as shares of it: the first where nothing is near, or where it is farthest.
 SHARES = (0.5, 0.25, 0.75, 0.375, 0.625, 0.125, 0.875, 0.03, 0.97)
 # mm. Pieces that run no farther apart are twins, if their ends are no farther from each other than the second.
@@ -417,29 +418,32 @@ class BorderPiece:
         return (sin(quarter) / cos(quarter)) * (1.0 if self.forward else -1.0)
 
 
-def border_pieces(carriers: Sequence[CutCarrier], inside: Inside) -> list[BorderPiece]:
+def border_pieces(
+    carriers: Sequence[CutCarrier], inside: Inside, beside: float = BESIDE
+) -> list[BorderPiece]:
     """Pieces with a region on one side only.
 
     Parameters
     ----------
     carriers : see :func:`subdivide`; they hold the region's whole border.
     inside : which of some points (x, y) that lie on no carrier belong to the region.
+    beside : how far beside a piece its two sides are looked at, in mm, where nothing else is near.
     """
     known = Carriers.of(carriers)
     every = [BorderPiece(carrier, low, high, True) for carrier in carriers for low, high in carrier.pieces()]
     middles = np.array([piece.middle for piece in every]).reshape(-1, 2)
     crowded = {
         number
-        for number, other in known.near(middles, 2 * BESIDE)
+        for number, other in known.near(middles, 2 * beside)
         if other is not every[number].carrier
-        and known.distance(other, (float(middles[number, 0]), float(middles[number, 1]))) <= 2 * BESIDE
+        and known.distance(other, (float(middles[number, 0]), float(middles[number, 1]))) <= 2 * beside
     }
-    clear = clearest({number: every[number] for number in sorted(crowded)}, known)
+    clear = clearest({number: every[number] for number in sorted(crowded)}, known, beside)
     thin = {number: every[number] for number, (_, clearance) in clear.items() if clearance <= THIN}
     places = []
     for number, piece in enumerate(every):
         position, clearance = clear.get(number, ((piece.low + piece.high) / 2, inf))
-        places.append((piece.carrier, position, min(beside_of(piece), clearance / 2)))
+        places.append((piece.carrier, position, min(beside_of(piece, beside), clearance / 2)))
     found = [
         evolve(piece, forward=left) if left != right else None
         for piece, (left, right) in zip(every, sides(places, inside), strict=True)
@@ -447,7 +451,7 @@ def border_pieces(carriers: Sequence[CutCarrier], inside: Inside) -> list[Border
     for group in twins(thin):
         first = thin[group[0]]
         position = (first.low + first.high) / 2
-        ((left, right),) = sides([(first.carrier, position, beside_of(first))], inside)
+        ((left, right),) = sides([(first.carrier, position, beside_of(first, beside))], inside)
         for number in group:
             found[number] = None
         if left != right:
@@ -479,13 +483,15 @@ def sides(places: Sequence[tuple[CutCarrier, float, float]], inside: Inside) -> 
     return list(zip(found[0::2], found[1::2], strict=True))
 
 
-def clearest(pieces: Mapping[int, BorderPiece], carriers: Carriers) -> dict[int, tuple[float, float]]:
+def clearest(
+    pieces: Mapping[int, BorderPiece], carriers: Carriers, beside: float
+) -> dict[int, tuple[float, float]]:
     """By a piece's number its first position that is clear enough, else that with the most clearance.
 
     With it the clearance in mm, as far as it is looked at.
     """
     found: dict[int, tuple[float, float]] = {}
-    enough = {number: 2 * beside_of(piece) for number, piece in pieces.items()}
+    enough = {number: 2 * beside_of(piece, beside) for number, piece in pieces.items()}
     left = list(pieces)
     for share in SHARES:
         if not left:
@@ -495,7 +501,7 @@ def clearest(pieces: Mapping[int, BorderPiece], carriers: Carriers) -> dict[int,
         points = [piece.carrier.at(place) for piece, place in zip(own, places, strict=True)]
         clearances = [enough[number] for number in left]
         # No piece asks for more than twice what is looked at beside it.
-        for row, other in carriers.near(np.array(points), 2 * BESIDE):
+        for row, other in carriers.near(np.array(points), 2 * beside):
             if other is not own[row].carrier:
                 clearances[row] = min(clearances[row], carriers.distance(other, points[row]))
         for number, place, clearance in zip(left, places, clearances, strict=True):
@@ -505,9 +511,9 @@ def clearest(pieces: Mapping[int, BorderPiece], carriers: Carriers) -> dict[int,
     return found
 
 
-def beside_of(piece: BorderPiece) -> float:
+def beside_of(piece: BorderPiece, beside: float) -> float:
     """How far beside a piece its two sides are looked at, in mm, where nothing is near."""
-    return min(BESIDE, BESIDE_SHARE * piece.length)
+    return min(beside, BESIDE_SHARE * piece.length)
 
 
 def twins(pieces: Mapping[int, BorderPiece]) -> list[list[int]]:

@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 import warnings
 from pathlib import Path
+from typing import Any
 
 import pytest
 from attrs import evolve
 
 from workhold.errors import InputError
 from workhold.files.budget import LIMITS
+from workhold.files.dxf.walk import BlockNesting, DxfWalk
 from workhold.files.part.load import read_workpiece
 from workhold.files.part.survey import drawn_layers, survey
 from workhold.geometry import loop as loop_module
@@ -45,6 +47,41 @@ def test_a_unit_that_is_no_number_is_asked_for(tmp_path: Path, unit: str) -> Non
         read_workpiece(path)
     assert read_workpiece(path, unit="mm").workpiece.bounds[2] == 60.0
     assert survey(path).asked == ("unit",)
+
+
+@pytest.mark.parametrize("unit", ["1e400", "1x", "4,5"])
+def test_a_unit_is_not_what_a_repair_makes_of_it(tmp_path: Path, unit: str) -> None:
+    """The library takes the digits with which a number begins, and so inches for 1e400."""
+    path = drawing(tmp_path / "damaged.dxf", unit=f"70\n{unit}")
+    with pytest.raises(InputError, match=rf"unit is not one for parts \(\$INSUNITS {unit}\)"):
+        read_workpiece(path)
+
+
+def test_blocks_that_double_are_foreseen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A thousand million plates in thirty blocks are refused before they are written out."""
+
+    def block(name: str, inner: str) -> str:
+        return f"0\nBLOCK\n8\n0\n2\n{name}\n70\n0\n10\n0\n20\n0\n{inner}0\nENDBLK\n8\n0\n"
+
+    def insert(name: str) -> str:
+        return f"0\nINSERT\n8\n0\n2\n{name}\n10\n0\n20\n0\n"
+
+    blocks = block("B0", "".join(line(*ends) for ends in PLATE))
+    blocks += "".join(block(f"B{k}", 2 * insert(f"B{k - 1}")) for k in range(1, 31))
+    visited: list[str] = []
+    visit = DxfWalk.visit
+
+    def counted(self: DxfWalk, entity: Any, nest: BlockNesting) -> None:
+        visited.append(entity.dxftype())
+        visit(self, entity, nest)
+
+    monkeypatch.setattr(DxfWalk, "visit", counted)
+    path = drawing(tmp_path / "blocks.dxf", insert("B30"), blocks=blocks)
+    with pytest.raises(InputError, match=r"more than the 100,000 entities .* written out"):
+        read_workpiece(path)
+    assert len(visited) < 5
+    path = drawing(tmp_path / "few.dxf", insert("B0"), blocks=blocks)
+    assert len(read_workpiece(path).workpiece.segments) == 4
 
 
 @pytest.mark.parametrize("number", ["nan", "1e400", "1e300"])

@@ -506,3 +506,80 @@ def test_a_slot_that_all_but_touches_a_hole(aside: float) -> None:
         hole = loop_segments(drawing.loops[1])
         assert all(segment.radius == pytest.approx(1.7, abs=1e-6) for segment in hole)
         assert sum(segment.length for segment in hole) == pytest.approx(2 * pi * 1.7, abs=1e-3)
+
+
+@pytest.mark.parametrize("radius", [0.7, 1.5, 3.0, 5.5])
+@pytest.mark.parametrize("turn", [0.0, 37.3])
+def test_a_small_bore_across_a_shaft_is_not_pressed_on(radius: float, turn: float) -> None:
+    """Its short rims lie on the shaft's circle, and not on the circles that fit them best."""
+    solid = standing(
+        placed(cut(cylinder(20, 40, (0, 0, 0)), cylinder(radius, 60, (-30, 0, 20), (1, 0, 0))), turn)
+    )
+    outline = solid.outline(30.0)
+    assert list(band_faults(solid.shape, outline)) == []
+    beside = [band for band in outline.bands if band and band[1] < 25]
+    assert beside == [(0.0, pytest.approx(20 - radius, abs=1e-6))] * len(beside) and len(beside) >= 2
+    # Pegs that end below it know nothing of it.
+    for height in (20 - radius - 0.6, 20 - radius - 0.5):
+        assert set(solid.outline(height).bands) == {(0.0, height)}
+
+
+def test_an_edge_of_a_wall_runs_along_the_wall() -> None:
+    """Of every bore across a shaft, however short its rims: on one line or circle with all other edges of the wall."""
+    bores = [cylinder(0.4 + 0.3 * k, 60, (-30, 0, 5 + 5 * k), (1, 0.2 * k, 0)) for k in range(6)]
+    solid = standing(cut(cylinder(20, 40, (0, 0, 0)), *bores))
+    arcs = [
+        edge.segment
+        for edge in solid.edges
+        if solid.faces[edge.face].lie == "upright" and edge.segment is not None
+    ]
+    assert len(arcs) == 14 and all(isinstance(one, Arc) for one in arcs)
+    for one in arcs:
+        assert isinstance(one, Arc)
+        assert (*one.center, one.radius) == pytest.approx((0.0, 0.0, 20.0), abs=1e-9)
+
+
+@pytest.mark.parametrize("below", [5.0, 0.1, 5e-3, 3e-3, 1e-3, 1e-4, 1e-5])
+def test_a_tunnel_is_open_up_to_its_crown(below: float) -> None:
+    """Where it is cut just below that, the two sides rise by next to nothing from the cut."""
+    bored = standing(placed(cut(box(70, 40, 30), across(28, 0, 18)), 37.3))
+    high = 18.0 - below
+    area, _, _, _ = measures(bored.outline(high - 0.5))
+    assert area == pytest.approx(40 * (70 - 2 * sqrt(18**2 - high**2)), abs=2e-4)
+
+
+@pytest.mark.parametrize("rise", [0.1, 0.01, 0.002])
+def test_an_underside_that_hardly_rises_is_cut_where_pegs_end(rise: float) -> None:
+    """What lies beyond the cut is over the pegs, however little."""
+    wedge = standing(cut(box(60, 40, 40), tilted((0, 0, 0), (rise, 0, -1), (1, 0, rise))))
+    area, _, _, _ = measures(wedge.outline(24 * rise, 6 * rise, least_band=1e-3))
+    assert area == pytest.approx(40 * 30, abs=1e-3)
+
+
+@pytest.mark.parametrize("aslant", [0.0, 0.4, 1.0])
+@pytest.mark.parametrize("height", [10.0, 10.0 - 1e-9, 10.0 + 1e-9])
+def test_pegs_may_end_level_with_the_crown_of_a_tunnel(aslant: float, height: float) -> None:
+    """Over the crown nothing is left to touch, but beside it there is, from the tunnel's wall up."""
+    bored = standing(cut(box(70, 50, 30), cylinder(10, 120, (20, -10, 0), (aslant, 1, 0))))
+    outline = bored.outline(height)
+    assert list(band_faults(bored.shape, outline, count=7)) == []
+    assert measures(outline)[2] == pytest.approx(measures(bored.outline(height + 1e-3))[2], abs=0.05)
+
+
+@pytest.mark.parametrize("aslant", [0.0, 0.4])
+@pytest.mark.parametrize("above", [1e-6, 3e-6, 8e-6, 1.2e-5])
+def test_what_bridges_a_tunnel_may_be_as_thin_as_rounding(aslant: float, above: float) -> None:
+    """Over the middle of the opening too little of it to be seen lies below the end of the pegs, and more beside."""
+    bored = standing(cut(box(70, 50, 30), cylinder(10, 120, (20, -10, 0), (aslant, 1, 0))))
+    area, border, _, _ = measures(bored.outline(9.5 + above))
+    assert (area, border) == pytest.approx((70 * 50, 2 * (70 + 50)), abs=1e-6)
+
+
+@pytest.mark.parametrize("off", [0.0, *(s * k for k in (1e-6, 2e-6, 5e-6, 8e-6, 2e-5) for s in (1, -1))])
+def test_pegs_may_end_next_to_a_corner_of_a_slope(off: float) -> None:
+    """Its height is that of a corner to five digits: the sides of the cut are too near to the edge to be seen."""
+    ridge = cut(sloped(box(60, 40, 40), 14, 0.5), tilted((60, 0, 22), (0.4, 0, 1), (-1, 0, 0.4)))
+    solid = standing(along(cut(ridge, cylinder(8, 80, (31, 20, -5))), "-z"))
+    (corner,) = {round(z, 9) for face in solid.faces for z in (face.low, face.high) if 15 < z < 20}
+    area, _, _, _ = measures(solid.outline(corner + off - 0.5))
+    assert area == pytest.approx(60 * 40 - 64 * pi, abs=5e-3)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import random
 from pathlib import Path
+from xml.etree.ElementTree import Element
 
 import pytest
 from attrs import evolve
@@ -16,6 +17,7 @@ from workhold.files.part.load import read_workpiece
 from workhold.files.svg import document, shapes
 from workhold.files.svg.document import tokens_of
 from workhold.files.svg.reader import read_svg
+from workhold.files.svg.walk import ElementNesting, SvgWalk
 
 HEAD = '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="100mm" viewBox="0 0 100 100">'
 RECT = '<rect width="5" height="5"/>'
@@ -185,6 +187,42 @@ def test_uses_and_groups_together_are_as_deep_as_a_drawing_may_be() -> None:
     chain += "".join(f'<symbol id="g{k}"><use href="#g{k - 1}"/></symbol>' for k in range(60, 300))
     with pytest.raises(InputError, match="nested more than 200 levels"):
         drawing(f'<defs>{chain}</defs><use href="#g299"/>')
+
+
+@pytest.mark.parametrize("way", ["g", "symbol", "a"])
+def test_uses_that_double_are_foreseen(way: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A million million rectangles in forty lines are refused before they are written out."""
+    visited: list[str] = []
+    visit = SvgWalk.visit
+
+    def counted(self: SvgWalk, element: Element, nest: ElementNesting) -> None:
+        visited.append(element.tag)
+        visit(self, element, nest)
+
+    monkeypatch.setattr(SvgWalk, "visit", counted)
+    chain = f'<{way} id="g0"><rect width="9" height="9"/></{way}>'
+    for k in range(1, 40):
+        chain += f'<{way} id="g{k}"><use href="#g{k - 1}"/><use href="#g{k - 1}"/></{way}>'
+    with pytest.raises(InputError, match=r"more than the 250,000 elements .* written out"):
+        drawing(f'<defs>{chain}</defs><use href="#g39"/>')
+    assert len(visited) < 10
+
+
+@pytest.mark.parametrize(
+    "off", ['display="none"', 'style="display:none"', 'systemLanguage="de"', 'opacity="0"']
+)
+def test_uses_that_are_switched_off_are_not_foreseen(off: str) -> None:
+    """What is not shown counts once, however much there is of it."""
+    chain = '<g id="g0"><rect width="9" height="9"/></g><rect id="r" width="60" height="40"/>'
+    for k in range(1, 40):
+        chain += f'<g id="g{k}"><use href="#g{k - 1}"/><use href="#g{k - 1}"/></g>'
+    body = f'<g {off}><use href="#g39"/></g>'
+    try:
+        found = drawing(f'<defs>{chain}<g id="all">{body}<use href="#r"/></g></defs><use href="#all"/>')
+    except InputError as error:
+        assert "systemLanguage" in off and "in some languages only" in str(error)
+    else:
+        assert len(found.chains) == 1
 
 
 def test_names_of_uses_stay_short() -> None:

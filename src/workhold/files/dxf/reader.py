@@ -166,6 +166,8 @@ def damaged(error: Exception) -> InputError:
     return InputError(f"the DXF file is damaged ({reason}): open it in a CAD program and export it again.")
 
 
+# What a text file says its unit is.
+INSUNITS_WRITTEN = re.compile(rb"\$INSUNITS[ \t]*\r?\n[ \t]*70[ \t]*\r?\n([^\r\n]*)")
 # Where an entity, a vertex of an old polyline or an entry of a table begins.
 BEGINS = re.compile(rb"\n[ \t]*0[ \t]*\r?\n[ \t]*[A-Z]")
 # Bytes of a file that has too few entities to be worth a look, and of each tag of a binary one.
@@ -199,6 +201,9 @@ def one_line(error: Exception) -> str:
 
 def unit_code(document: Any, content: bytes) -> int | str:
     """The $INSUNITS of a document; 0 for none."""
+    if written := INSUNITS_WRITTEN.search(content):
+        # Of a number that is none the library's repair takes the digits with which it begins.
+        return code_said(written[1].decode("ascii", "replace").strip())
     # Into a file without a header ezdxf writes one of its own, with metres in it.
     return code_said(document.header.get("$INSUNITS", 0)) if b"$INSUNITS" in content else 0
 

@@ -68,6 +68,8 @@ class DxfWalk:
         self.hidden: Counter[str] = Counter()
         self.ignored: Counter[str] = Counter()
         self.missing_blocks: Counter[str] = Counter()
+        # How many entities a block is, those of blocks in it written out, once that was asked.
+        self.sizes: dict[str, int] = {}
         self.level: tuple[float, str] | None = None
         self.hidden_layers = {
             layer.dxf.name.casefold()
@@ -199,6 +201,7 @@ class DxfWalk:
         try:
             # An empty block costs something too.
             self.budget.spend(rows * columns)
+            self.budget.foresee(rows * columns * self.written_out(name, block))
         except OverBudgetError as error:
             if rows * columns == 1:
                 raise
@@ -216,6 +219,22 @@ class DxfWalk:
                 raise InputError(f"{label} has a scale of zero: correct it.")
             with self.budget.nested(label):
                 self.visit_all(block, evolve(inner, placement=placement))
+
+    def written_out(self, name: str, block: Any, depth: int = 0) -> int:
+        """How many entities are visited at least where a block is inserted; inserts double it from one to the next."""
+        key = name.casefold()
+        if key in self.sizes or depth > (self.budget.limits.deepest or 0):
+            return self.sizes.get(key, 1)
+        # What contains itself is refused when it is visited.
+        self.sizes[key] = 1
+        size = 0
+        for entity in block:
+            size += 1
+            if entity.dxftype() == "INSERT" and not entity.dxf.get("invisible", 0):
+                inner = self.document.blocks.get(str(entity.dxf.get("name", "")))
+                size += 0 if inner is None else self.written_out(str(entity.dxf.name), inner, depth + 1)
+        self.sizes[key] = size
+        return size
 
     def refuse_missing_layers(self) -> None:
         """Refuses chosen layers on which there is no outline entity.

@@ -20,7 +20,8 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 from itertools import pairwise
-from math import hypot, pi, tau
+from math import acos, atan2, cos, hypot, pi, sin, tau
+from typing import Any
 
 import numpy as np
 from attrs import define, evolve, field, frozen
@@ -30,6 +31,7 @@ from workhold.files.step.edge_curves import (
     ONE_HEIGHT,
     WHOLE_TURN,
     EdgeCurve,
+    Point3,
     crossing,
     curve_point,
     points_along,
@@ -54,6 +56,8 @@ NEARLY_STEEP = 0.2
 PER_PIECE, MOST_POINTS = 8, 400
 # Shares of a piece at which it may be looked at.
 SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)
+# What rounding may take of a parameter in radians, near an end at which an edge is steep.
+ROUNDING = 1e-6
 # A turn of an edge's direction is found to this share of the range in which it lies, by halving.
 HALVINGS = 48
 
@@ -98,16 +102,19 @@ class WallEdge:
         steep = frozenset(k for k, one in enumerate(edge.parameters.tolist()) if one in upright)
         return cls(edge, segment, tuple(branches_of(along(segment, edge.points), steep)), steep)
 
-    def cuts(self, high: float) -> Iterator[Point]:
-        """Points at which an outline is to be cut: ends of branches, and where the edge passes a height.
+    def cuts(self, low: float, high: float) -> Iterator[Point]:
+        """Points at which an outline is to be cut: ends of branches, and where the edge passes or only just reaches
+        an end of the heights of pegs.
 
-        Where it passes the lower end of the heights of pegs the outline is cut in any case.
+        Where it passes the lower end the outline is cut in any case.
         """
         points = self.edge.points
         if self.is_level:
             return
         yield from ((float(points[k, 0]), float(points[k, 1])) for one in self.branches for k in one)
         yield from self.edge.crossings(high)
+        away = np.abs(points[:, 2:] - (low, high)).min(axis=1)
+        yield from ((float(x), float(y)) for x, y in points[away <= LEAST_GAP, :2])
 
 
 def along(segment: Segment, points: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -199,6 +206,70 @@ def turned_at(edge: EdgeCurve, segment: Segment) -> tuple[EdgeCurve, frozenset[f
     return found, frozenset(upright)
 
 
+@frozen
+class Conic:
+    """A circle or an ellipse in space, whose points are centre + along cos t + across sin t.
+
+    Where it passes an upright wall's place is told at once, which takes a library's curve twenty questions.
+
+    Parameters
+    ----------
+    center, along, across : x, y and z in mm.
+    """
+
+    center: Point3
+    along: Point3
+    across: Point3
+
+    @classmethod
+    def of(cls, curve: Any) -> Conic | None:
+        """That of a curve of Open CASCADE; None of curves of other kinds."""
+        kind = curve.GetType()
+        if kind not in (occ.GeomAbs_Circle, occ.GeomAbs_Ellipse):
+            return None
+        is_round = kind == occ.GeomAbs_Circle
+        own = curve.Circle() if is_round else curve.Ellipse()
+        sizes = (own.Radius(),) * 2 if is_round else (own.MajorRadius(), own.MinorRadius())
+        place, directions = own.Location(), (own.XAxis().Direction(), own.YAxis().Direction())
+        along, across = (
+            (size * one.X(), size * one.Y(), size * one.Z())
+            for size, one in zip(sizes, directions, strict=True)
+        )
+        return cls((place.X(), place.Y(), place.Z()), along, across)
+
+    def height_at(self, carrier: Segment, place: float, first: float, last: float) -> float | None:
+        """The z in mm at which it passes a place on a carrier, between two parameters less than half a turn apart.
+
+        Parameters
+        ----------
+        place : in mm on a line, in radians on a circle.
+
+        Returns
+        -------
+        None where there is none between them.
+        """
+        if isinstance(carrier, Line):
+            (px, py), (nx, ny), off = carrier.middle, carrier.tangent, place
+        else:
+            (px, py), angle, off = carrier.center, carrier.mid_angle + place, 0.0
+            nx, ny = -sin(angle), cos(angle)
+        # (center + along cos t + across sin t - p) . n = off
+        a = self.along[0] * nx + self.along[1] * ny
+        b = self.across[0] * nx + self.across[1] * ny
+        wanted = off - (self.center[0] - px) * nx - (self.center[1] - py) * ny
+        size = hypot(a, b)
+        if abs(wanted) > size * (1.0 + ROUNDING):
+            return None
+        middle, half = (first + last) / 2, abs(last - first) / 2
+        turn = acos(min(max(wanted / size, -1.0), 1.0))
+        found = (atan2(b, a) + side * turn - middle for side in (1.0, -1.0))
+        away = min(((one + pi) % tau - pi for one in found), key=abs)
+        if abs(away) > half + ROUNDING:
+            return None
+        t = middle + min(max(away, -half), half)
+        return self.center[2] + self.along[2] * cos(t) + self.across[2] * sin(t)
+
+
 @frozen(eq=False, slots=False)
 class Branch:
     """A branch of a wall's edge over the wall's carrier.
@@ -275,6 +346,10 @@ class Branch:
 
     def refined(self, k: int, place: float) -> float:
         """The z in mm at which a curved edge passes a place between its points k and k + 1."""
+        if self.conic is not None:
+            z = self.conic.height_at(self.carrier, place, *self.parameters[k : k + 2].tolist())
+            if z is not None:
+                return self.within(k, z)
         # One point of the library for all: making one takes longer than finding it.
         point, carrier, near = occ.gp_Pnt(), self.carrier, float(self.places[k])
         find, x_of, y_of = self.edge.curve.D0, point.X, point.Y
@@ -293,8 +368,16 @@ class Branch:
                 return near + (found - near + pi) % tau - pi - place
 
         ends = [(float(self.parameters[j]), float(self.places[j]) - place) for j in (k, k + 1)]
-        z = curve_point(self.edge.curve, crossing(value, ends[0], ends[1]))[2]
+        return self.within(k, curve_point(self.edge.curve, crossing(value, ends[0], ends[1]))[2])
+
+    def within(self, k: int, z: float) -> float:
+        """A z in mm, no farther than the heights of the points k and k + 1."""
         return min(max(z, float(self.heights[k : k + 2].min())), float(self.heights[k : k + 2].max()))
+
+    @cached_property
+    def conic(self) -> Conic | None:
+        """The circle or the ellipse that the edge is a piece of; None of other curves."""
+        return Conic.of(self.edge.curve)
 
     def extent(self, low: float, high: float) -> Band:
         """The least and the greatest z in mm between two places."""
@@ -521,7 +604,7 @@ class Walls:
 
     def cuts(self) -> list[tuple[Segment, Point]]:
         """Points at which an outline is to be cut, because the runs there may change."""
-        return [(one.segment, point) for one in self.upright for point in one.cuts(self.high)]
+        return [(one.segment, point) for one in self.upright for point in one.cuts(self.low, self.high)]
 
     def ends(self) -> Iterator[tuple[Segment, Point]]:
         """Where level edges end: a subdivision that has the edges themselves is cut there."""

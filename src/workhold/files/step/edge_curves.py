@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from itertools import count
-from math import atan2, hypot, pi, sqrt
+from math import atan2, dist, hypot, pi, sqrt
 from typing import Any
 
 import numpy as np
@@ -28,6 +28,7 @@ __all__ = [
     "Found",
     "ONE_HEIGHT",
     "Point3",
+    "arc_over",
     "bisected",
     "crossing",
     "curve_of",
@@ -42,8 +43,9 @@ __all__ = [
 SAMPLES = 33
 # Heights that differ by less in mm are one.
 ONE_HEIGHT = 1e-9
-# mm. An edge nearer to its wall is on it as it is. Radians. Arcs that lack less are circles.
-EXACT_ON, WHOLE_TURN = 1e-7, 1e-9
+# mm. An edge nearer to its wall is on it as it is. Radians. Arcs that lack less are circles. mm. A straight edge
+# off its wall by no more runs along it.
+EXACT_ON, WHOLE_TURN, ROUNDED = 1e-7, 1e-9, 1e-11
 GOLDEN = (sqrt(5.0) - 1.0) / 2.0
 Point3 = tuple[float, float, float]
 # What a curve is seen from above: a line or an arc, or points (N, 2) of any other curve.
@@ -188,7 +190,8 @@ def wall_carrier(face: SolidFace) -> Segment | None:
 def on_wall(edge: EdgeCurve, carrier: Segment | None) -> EdgeCurve:
     """An edge of a wall put on the wall, where it is off by no more than a disguise.
 
-    Where a leaning face meets a wall, programs write a spline near both, off by 0.001 mm and less.
+    Where a leaning face meets a wall, programs write a spline near both, off by 0.001 mm and less. And the circle
+    that fits a short arc best is not the wall's within rounding: edges of one wall would lie on circles of their own.
 
     Parameters
     ----------
@@ -203,7 +206,8 @@ def on_wall(edge: EdgeCurve, carrier: Segment | None) -> EdgeCurve:
     else:
         cx, cy = carrier.center
         along, off = np.unwrap(np.arctan2(y - cy, x - cx)), np.hypot(x - cx, y - cy) - carrier.radius
-    if not EXACT_ON < np.abs(off).max() <= DISGUISE:
+    most = float(np.abs(off).max())
+    if most > DISGUISE or (most <= EXACT_ON and is_one(edge.segment, carrier, most)):
         return edge
     low, high = float(along.min()), float(along.max())
     if isinstance(carrier, Line):
@@ -212,11 +216,26 @@ def on_wall(edge: EdgeCurve, carrier: Segment | None) -> EdgeCurve:
         segment = arc_over(carrier.center, carrier.radius, low, high)
     if segment.length < SHORTEST:
         return evolve(edge, segment=None, is_other=False)
+    if most <= EXACT_ON and edge.segment is not None:
+        return evolve(edge, segment=segment)
     values = [(position_along(segment), along.tolist()), (height, edge.points[:, 2].tolist())]
     more = [one for value, known in values for one in extremes(edge.curve, edge.parameters, known, value)]
     parameters = np.unique(np.concatenate([edge.parameters, more]))
     points = points_along(edge.curve, parameters)
     return evolve(edge, segment=segment, is_other=False, parameters=parameters, points=points)
+
+
+def is_one(segment: Segment | None, carrier: Segment, off: float) -> bool:
+    """Whether the line or the circle of an edge is that of its wall within rounding.
+
+    Parameters
+    ----------
+    off : how far the edge is from the wall, in mm.
+    """
+    if isinstance(segment, Arc) and isinstance(carrier, Arc):
+        away = max(dist(segment.center, carrier.center), abs(segment.radius - carrier.radius))
+        return away <= ONE_HEIGHT
+    return isinstance(segment, Line) and off <= ROUNDED
 
 
 def curve_of(face: int, curve: Any) -> EdgeCurve:

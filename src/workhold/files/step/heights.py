@@ -33,6 +33,7 @@ from workhold.files.step.material import Material
 from workhold.files.step.projected import (
     FLAT,
     OtherCurveError,
+    PlainCurves,
     ProjectedCurves,
     folds,
     has_plain_cuts,
@@ -116,7 +117,7 @@ def vertices_of(loop: Sequence[Any]) -> NDArray[np.float64]:
     return np.array([(*strip.start, strip.bulge) for strip in loop])
 
 
-@define
+@define(slots=False)
 class StandingSolid:
     """A solid with its axis up and its lowest point at height 0.
 
@@ -154,6 +155,14 @@ class StandingSolid:
         top = max(face.high for face in self.faces)
         level = [face.high for face in self.faces if face.lie == "level" and top - face.high <= SAME_HEIGHT]
         return max(level, default=top)
+
+    @cached_property
+    def plain(self) -> PlainCurves:
+        """Lines and arcs that may be the border of outlines of every height."""
+        edges = [edge.segment for edge in self.edges if edge.segment is not None]
+        leaning = [index for index, face in enumerate(self.faces) if face.lie == "leaning"]
+        every = [one for index in leaning for one in self.folds_of(index)]
+        return PlainCurves.of([*edges, *(one for one in every if isinstance(one, Line | Arc))])
 
     def folds_of(self, index: int) -> list[Found]:
         """Where the face of a number stands upright, seen from above; found once."""
@@ -205,9 +214,9 @@ class StandingSolid:
         high = peg_height + head_room
         suspect = self.suspect
         try:
-            if suspect is not None and suspect.low < high < suspect.high:
+            if suspect is not None:
                 cuts = [one for one in level_cuts(suspect, high) if not isinstance(one, Line | Arc)]
-                refuse_others([(0, one) for one in cuts], [suspect], self.inside(-1.0, high))
+                refuse_others([(0, one) for one in cuts], [suspect], self.inside(-1.0, high), self.plain)
             loops = self.border(-inf, high, self.walls(peg_height))
         except OtherCurveError as error:
             self.suspect = error.face
@@ -242,14 +251,27 @@ class StandingSolid:
             curves = ProjectedCurves(tuple(silhouette), tuple(walls.ends() if walls else ()), ())
         else:
             curves = projected_curves(self.faces, self.edges, low, high, self.folds_of)
-            refuse_others(curves.others, self.faces, inside)
+            refuse_others(curves.others, self.faces, inside, PlainCurves.of(curves.segments))
         carriers = subdivide(curves.segments, (*curves.cuts, *more))
         pieces = border_pieces(carriers, inside)
         if not pieces:
             raise InputError(
                 f"nothing of the solid lies between the heights {max(low, 0):g} and {high:g} mm."
             )
-        return self.closed(pieces, curves)
+        try:
+            return self.closed(pieces, curves)
+        except InputError:
+            # A cut this near to a corner has sides too narrow to be looked at, and is one with the cut through it.
+            corner = float(self.corners[np.abs(self.corners - high).argmin()])
+            if curves.others or silhouette or not 0.0 < abs(corner - high) <= SAME_HEIGHT:
+                raise
+        return self.border(low, corner, walls)
+
+    @cached_property
+    def corners(self) -> NDArray[np.float64]:
+        """The z in mm of all places at which an edge ends, or is highest or lowest."""
+        ends = [(*edge.points[[0, -1], 2].tolist(), edge.low, edge.high) for edge in self.edges]
+        return np.unique(np.array(ends, np.float64))
 
     def closed(self, pieces: Sequence[BorderPiece], curves: ProjectedCurves) -> list[list[BorderPiece]]:
         """The loops of a border's pieces.

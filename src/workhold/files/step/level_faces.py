@@ -49,6 +49,8 @@ Box = tuple[float, float, float, float]
 OFF = 1e-3
 # mm. A face that leaves a level one by no more, however flat, is not above it.
 JUST_ABOVE = 1e-10
+# mm. How far beside a piece of a border its sides are looked at: curves that polygons hold are many and small.
+NEAR_BESIDE = 4e-4
 # mm². A loop around less than this, beside curves that polygons hold, is nothing that anything stands on.
 SLIVER = 1e-6
 
@@ -288,7 +290,7 @@ def region(
     InputError
         Where its border does not close.
     """
-    pieces = border_pieces(subdivide(segments, cuts), lambda points: list(map(inside, points)))
+    pieces = border_pieces(subdivide(segments, cuts), lambda points: list(map(inside, points)), NEAR_BESIDE)
     loops = [smoothed(loop) for loop in border_loops(pieces)]
     sizes = [(signed_area(loop_segments(loop)), loop) for loop in loops]
     return [loop for size, loop in sorted(sizes, key=lambda one: -one[0]) if abs(size) > SLIVER]

@@ -20,7 +20,7 @@ from math import acos, atan2, cos, hypot, pi, sin, sqrt, tau
 from typing import Any
 
 import numpy as np
-from attrs import frozen
+from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import ALIGNED, SAME_HEIGHT, SHORTEST
@@ -29,6 +29,7 @@ from workhold.files.step.edge_curves import (
     EdgeCurve,
     Found,
     Point3,
+    arc_over,
     crossing,
     curve_of,
     curve_point,
@@ -38,13 +39,15 @@ from workhold.files.step.edge_curves import (
 )
 from workhold.files.step.faces import SLOPING, SolidFace, is_level, is_upright, surface_of
 from workhold.files.step.library import occ, sub_shapes
-from workhold.geometry.segment import Arc, Line, Point, Segment
+from workhold.geometry.segment import Arc, Line, Point, Segment, distance_to_segment, segment_rows
 from workhold.geometry.subdivision import Inside
+from workhold.kernels.base.distance import outline_distances
 
 __all__ = [
     "FLAT",
     "Other",
     "OtherCurveError",
+    "PlainCurves",
     "ProjectedCurves",
     "bounding_edges",
     "folds",
@@ -61,6 +64,8 @@ Other = tuple[int, NDArray[np.float64]]
 # How far beside a curve its two sides are looked at, in mm. All have to show that it is the border, because a
 # curve may cross the border near one of its points.
 BESIDE = (4e-4, 4e-5, 4e-6)
+# mm. Curves that are no farther apart are one; up to the second a cut runs beside a fold.
+ONE_CURVE, BESIDE_FOLD = 1e-6, 1e-5
 # Of how many points along a curve one is looked at first.
 FEW = 10
 # Points along the curve that is turned, and along a cut of a lying ring.
@@ -223,6 +228,8 @@ def lying_ring_cuts(surface: Any, z: float) -> list[Found]:
 
     With the axis d, the upward direction e, and b across both, a point of the ring is
     c + (R + r cos v) (cos u b + sin u e) + r sin v d, so at a height h above c it is sin u = h / (R + r cos v).
+    Where it is one with the ring's fold, which is asked for besides, there is none; somewhat farther from it a
+    cut is no arc, though it looks like one: the two would cross each other where their fits have it.
     """
     ring = surface.Torus()
     major, minor = ring.MajorRadius(), ring.MinorRadius()
@@ -236,6 +243,7 @@ def lying_ring_cuts(surface: Any, z: float) -> list[Found]:
     square = (major + minor * np.cos(v)) ** 2 - up * up
     is_there = square >= -SHORTEST * major
     away, along = np.sqrt(np.maximum(square, 0.0)), minor * np.sin(v)
+    from_fold = major + minor * np.cos(v) - away
     found: list[Found] = []
     for across in (away, -away):
         x = center.X() + along * axis.X() - across * axis.Y()
@@ -243,8 +251,9 @@ def lying_ring_cuts(surface: Any, z: float) -> list[Found]:
         runs = np.split(np.arange(len(v)), np.flatnonzero(np.diff(is_there)) + 1)
         for run in (run for run in runs if len(run) > 2 and is_there[run[0]]):
             points = np.column_stack([x[run], y[run]])
-            segment = flattened(points)
-            if segment is not None or np.ptp(points, axis=0).max() > SHORTEST:
+            off = float(from_fold[run].max())
+            segment = flattened(points) if off > BESIDE_FOLD else None
+            if segment is not None or (off > ONE_CURVE and np.ptp(points, axis=0).max() > SHORTEST):
                 found.append(points if segment is None else segment)
     return found
 
@@ -278,26 +287,34 @@ def folds(face: SolidFace) -> list[Found]:
             major, minor = ring.MajorRadius(), ring.MinorRadius()
             return circles(ring.Location(), major + minor, major - minor)
         if is_level(ring.Axis()):
-            return lying_ring_folds(ring)
+            return lying_ring_folds(surface)
     if kind == occ.GeomAbs_SurfaceOfRevolution and is_upright(surface.AxeOfRevolution()):
         return turned_folds(surface)
     return free_folds(surface)
 
 
-def lying_ring_folds(ring: Any) -> list[Found]:
-    """Where a ring with a level axis stands upright, seen from above: two circles and two lines.
+def lying_ring_folds(surface: Any) -> list[Found]:
+    """Where a ring with a level axis stands upright, seen from above, over as much of its tube as a face has.
 
     With the axis d and the radial direction r(u), the normal at the angle v of the tube is
-    cos v r(u) + sin v d. It is level at cos v = 0, and where r is level: at b and -b, across the axis.
+    cos v r(u) + sin v d. It is level at cos v = 0, a line, and where r is level: at b and -b, across the axis,
+    an arc. More of an arc would run beside the fold of what it goes on into.
     """
+    ring = surface.Torus()
     center, axis = ring.Location(), ring.Axis().Direction()
     x, y, major, minor = center.X(), center.Y(), ring.MajorRadius(), ring.MinorRadius()
     dx, dy = axis.X(), axis.Y()
+    first, last = surface.FirstVParameter(), surface.LastVParameter()
     found: list[Found] = []
     for side in (-1.0, 1.0):
+        across = atan2(side * dx, -side * dy)
+        low, high = sorted((-side * first, -side * last))
+        arc = arc_over((x - side * major * dy, y + side * major * dx), minor, low, high)
+        found.append(evolve(arc, mid_angle=arc.mid_angle + across))
         px, py = x + side * minor * dx, y + side * minor * dy
-        found.append(Arc((x - side * major * dy, y + side * major * dx), minor, 0.0, pi, 1.0))
-        found.append(Line((px + major * dy, py - major * dx), (px - major * dy, py + major * dx)))
+        turns = (side * pi / 2 + k * tau for k in (-1, 0, 1))
+        if any(first - ALIGNED <= v <= last + ALIGNED for v in turns):
+            found.append(Line((px + major * dy, py - major * dx), (px - major * dy, py + major * dx)))
     return found
 
 
@@ -425,7 +442,44 @@ class OtherCurveError(InputError):
         self.face = face
 
 
-def refuse_others(others: Sequence[Other], faces: Sequence[SolidFace], inside: Inside) -> None:
+@frozen(eq=False)
+class PlainCurves:
+    """Lines and arcs that may be the border of an outline.
+
+    Parameters
+    ----------
+    segments : of which some may be there twice.
+    rows : (N, 10) of them for the kernels.
+    """
+
+    segments: Sequence[Segment]
+    rows: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, segments: Sequence[Segment]) -> PlainCurves:
+        """Some segments, as the kernels ask for them."""
+        return cls(segments, segment_rows(segments) if segments else np.zeros((0, 10)))
+
+    def are_border(self, places: NDArray[np.float64], inside: Inside) -> bool:
+        """Whether all places (N, 2) of another curve run so near to one of them that this one is the border.
+
+        A lying ring or a sphere is cut beside where it is widest, nearer to the border than that can be looked at.
+        Then what lies between is asked; nothing is where they are nearer than curves that are one.
+        """
+        if len(self.rows) == 0 or outline_distances(places, self.rows).max() > BESIDE[-1]:
+            return False
+        middles = []
+        for x, y in places.tolist():
+            own = min(self.segments, key=lambda one: distance_to_segment((x, y), one))
+            fx, fy = own.at(own.parameter((x, y)))
+            if hypot(fx - x, fy - y) > ONE_CURVE:
+                middles.append(((x + fx) / 2, (y + fy) / 2))
+        return not middles or all(inside(middles))
+
+
+def refuse_others(
+    others: Sequence[Other], faces: Sequence[SolidFace], inside: Inside, plain: PlainCurves | None = None
+) -> None:
     """Refuses a curve that is neither line nor arc where material lies on one side of it only.
 
     The points farthest out are looked at first: where there is such a curve, it is most likely there.
@@ -433,6 +487,7 @@ def refuse_others(others: Sequence[Other], faces: Sequence[SolidFace], inside: I
     Parameters
     ----------
     inside : which of some points (x, y) belong to the outline's region.
+    plain : lines and arcs that may be the border in its place.
 
     Raises
     ------
@@ -456,12 +511,15 @@ def refuse_others(others: Sequence[Other], faces: Sequence[SolidFace], inside: I
     for each in (FEW, 1):
         for index, points in ordered.values():
             away = np.hypot(*(points[1:-1] - middle).T)
-            if has_border(points, np.argsort(-away, kind="stable")[::each] + 1, inside):
+            found = border_places(points, np.argsort(-away, kind="stable")[::each] + 1, inside)
+            if len(found) and not (plain is not None and plain.are_border(found, inside)):
                 raise OtherCurveError(faces[index])
 
 
-def has_border(points: NDArray[np.float64], looked: NDArray[np.intp], inside: Inside) -> bool:
-    """Whether a curve has the region on one side only at some of its points, none of which is an end.
+def border_places(
+    points: NDArray[np.float64], looked: NDArray[np.intp], inside: Inside
+) -> NDArray[np.float64]:
+    """Points (N, 2) of a curve at which it has the region on one side only; none is an end of it.
 
     Parameters
     ----------
@@ -471,7 +529,8 @@ def has_border(points: NDArray[np.float64], looked: NDArray[np.intp], inside: In
     steps = points[looked + 1] - points[looked - 1]
     sizes = np.hypot(*steps.T)
     wide = sizes >= 10 * BESIDE[0]
-    places, across = points[looked[wide]], steps[wide][:, ::-1] * (-1.0, 1.0) / sizes[wide][:, None]
+    places: NDArray[np.float64] = points[looked[wide]]
+    across = steps[wide][:, ::-1] * (-1.0, 1.0) / sizes[wide][:, None]
     for beside in BESIDE:
         both = np.concatenate([places + beside * across, places - beside * across])
         found = np.array(inside([(x, y) for x, y in both.tolist()]), dtype=bool)
@@ -479,4 +538,4 @@ def has_border(points: NDArray[np.float64], looked: NDArray[np.intp], inside: In
         places, across = places[is_border], across[is_border]
         if not len(places):
             break
-    return len(places) > 0
+    return places

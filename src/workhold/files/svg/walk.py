@@ -37,6 +37,9 @@ LONGEST_SUFFIX, MOST_SCALE = 300, 1e15
 # What tells cuts from other lines, as programs for lasers do.
 LOOKS = ("stroke", "stroke-dasharray")
 MARKED = ("path", "line", "polyline", "polygon")
+# What shows all that is in it where it is linked to, and how deep that is looked at before it is visited.
+CONTAINERS_FORESEEN, MOST_FORESEEN = {"g", "a", "svg", "symbol"}, 100
+CONDITIONS = ("requiredExtensions", "systemLanguage", "requiredFeatures")
 
 
 @frozen
@@ -77,6 +80,8 @@ class SvgWalk:
         self.hidden = 0
         self.painted_over = 0
         self.ignored: Counter[str] = Counter()
+        # How many elements one is, those of <use> written out, once that was asked.
+        self.sizes: dict[Element, int] = {}
 
     def visit(self, element: Element, nest: ElementNesting) -> None:
         """Collects one element and those inside it.
@@ -220,6 +225,7 @@ class SvgWalk:
             raise InputError(f"{label} shows '{short(link)}', which is not in the file: unlink or remove it.")
         if link in nest.links:
             raise InputError(f"{label} shows itself: unlink it.")
+        self.budget.foresee(self.written_out(target))
         inner = evolve(nest, suffix=shortened(f" of {label}", LONGEST_SUFFIX), links=(*nest.links, link))
         tag = local_name(target)
         if tag in ("symbol", "svg"):
@@ -227,6 +233,22 @@ class SvgWalk:
                 self.visit_target(target, figure, inner)
         else:
             self.visit(target, inner)
+
+    def written_out(self, element: Element, depth: int = 0) -> int:
+        """How many elements are visited at least where one is shown; links double it from one to the next."""
+        tag = local_name(element)
+        if element in self.sizes or depth > MOST_FORESEEN or may_be_hidden(element, self.styles.of(element)):
+            return self.sizes.get(element, 1)
+        # What shows itself is refused when it is visited.
+        self.sizes[element] = 1
+        shown: list[Element] = []
+        if tag == "use":
+            target = self.document.linked(href(element))
+            shown = [] if target is None else [target]
+        elif tag in CONTAINERS_FORESEEN:
+            shown = [one for one in element if self.document.drawn(one)]
+        self.sizes[element] = 1 + sum(self.written_out(one, depth + 1) for one in shown)
+        return self.sizes[element]
 
     def visit_target(self, target: Element, use: ShapeElement, nest: ElementNesting) -> None:
         """Visits a symbol or nested drawing in the size that a <use> gives it (SVG 2, 5.5 and 5.6).
@@ -400,3 +422,9 @@ def visible_overflow(declarations: dict[str, list[Declared]]) -> bool:
     names = ("overflow", "overflow-x", "overflow-y")
     given = [declarations[name][0].text for name in names if name in declarations]
     return bool(given) and all(text in ("visible", "auto") for text in given)
+
+
+def may_be_hidden(element: Element, declarations: dict[str, list[Declared]]) -> bool:
+    """Whether something says of an element that it may be taken away with all that is in it."""
+    is_conditional = any(element.get(name) is not None for name in CONDITIONS)
+    return is_conditional or "display" in declarations or "opacity" in declarations
