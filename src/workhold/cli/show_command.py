@@ -128,16 +128,11 @@ def print_fixture(
     ----------
     closing : the jaw force in N, None where it is open, and how stiff the jaw is.
     """
-    from workhold.cli.tables import (
-        first_sentence,
-        fixture_tables,
-        no_edge,
-        quality_table,
-        standing_sentences,
-    )
+    from workhold.cli.tables import first_sentence, fixture_tables, quality_table, standing_sentences
+    from workhold.presenting.figure_words import no_edge
 
     fixture, toolkit = result[rank - 1], result.toolkit
-    force, longest = result.query.jaw_force, no_edge(result)
+    force, longest = result.query.jaw_force, no_edge(result.workpiece, toolkit)
     quality = quality_table(fixture, toolkit.moving.noun, unit, force, longest)
     standing = standing_sentences(fixture, result, unit)
     print_tables(*fixture_tables(fixture, toolkit, rank, len(result), unit), *standing, "", quality)

@@ -9,10 +9,13 @@ from workhold.fixels.contacts import CLAMP_TIP
 from workhold.units import Unit
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from workhold.fixels.toolkit import Toolkit
     from workhold.model.fixture import Fixture, Peg
     from workhold.model.quality import Figure
     from workhold.model.result import Result
+    from workhold.model.workpiece import Workpiece
 
 __all__ = [
     "counted_text",
@@ -21,6 +24,7 @@ __all__ = [
     "figures_shown",
     "fixture_title",
     "heading",
+    "no_edge",
     "peg_groups",
     "place_of",
     "rounded",
@@ -123,14 +127,22 @@ def rounded(value: float, decimals: int) -> str:
     return text.removeprefix("-") if float(text) == 0 else text
 
 
-def edgeless(figure: Figure, value: float, longest: float) -> float:
-    """A figure's value; infinite where it is the length that stands for no edge, which is on no part.
+def no_edge(workpiece: Workpiece, toolkit: Toolkit) -> float:
+    """The edge distance in mm of contacts that have no edge, as figures have it."""
+    from workhold.statics.contact_matrix import wrench_length
+
+    return wrench_length(workpiece, toolkit)
+
+
+def edgeless(figures: Mapping[str, float], longest: float) -> dict[str, float]:
+    """Figures by name, with an infinite edge distance for the length that stands for no edge.
 
     Parameters
     ----------
-    longest : that length in mm, ``Touched.length``.
+    longest : that length in mm, which is on no part, see :func:`no_edge`.
     """
-    return inf if figure.key == EDGE and value >= longest * (1 - SAME_SHARE) else value
+    has_none = EDGE in figures and figures[EDGE] >= longest * (1 - SAME_SHARE)
+    return {**figures, EDGE: inf} if has_none else dict(figures)
 
 
 def figure_text(figure: Figure, value: float, unit: Unit) -> str:

@@ -30,9 +30,11 @@ from workhold.model.support_triples import ChosenSupports
 from workhold.presenting.data import REQUIREMENTS
 from workhold.presenting.figure_words import (
     counted_text,
+    edgeless,
     figure_text,
     figures_shown,
     fixture_title,
+    no_edge,
     peg_groups,
     place_of,
     rounded,
@@ -100,6 +102,7 @@ def entries_table(result: Result, shown: Entries) -> Markup:
     """Tabulates the first entries: rank, picture, holes, what to set, and the figures that count."""
     toolkit, unit = result.toolkit, MILLIMETRE
     figures, ranked = figures_shown(result)
+    longest = no_edge(result.workpiece, toolkit)
     groups = peg_groups(toolkit)
     headings = (
         ">rank",
@@ -118,7 +121,7 @@ def entries_table(result: Result, shown: Entries) -> Markup:
             " ".join(place_of(peg, toolkit) for peg in fixture.pegs if peg.carrier in names)
             for names in groups.values()
         ]
-        known = fixture.figures
+        known = edgeless(fixture.figures, longest)
         rows.append(
             (
                 str(index + 1),
@@ -175,7 +178,9 @@ def workpiece_html(workpiece: Workpiece) -> str:
 
 def figures_table(fixture: Fixture) -> Markup:
     """Tabulates the figures of a fixture that are known, with units, and which way each is better."""
-    noun, unit, known = fixture.listing.result.toolkit.moving.noun, MILLIMETRE, fixture.figures
+    result, unit = fixture.listing.result, MILLIMETRE
+    noun = result.toolkit.moving.noun
+    known = edgeless(fixture.figures, no_edge(result.workpiece, result.toolkit))
     rows = []
     for figure in RANKED:
         if figure.key in known:
