@@ -157,7 +157,7 @@ def print_explored(
     """Prints the table and says which toolkit is best; ``known`` are the figures of each."""
     from workhold.files.toolkit_file import is_sold
     from workhold.model.quality import FIGURES, LOCATION_ERROR, PROGRAM_FIGURE
-    from workhold.presenting.figure_words import figure_text, heading
+    from workhold.presenting.figure_words import figure_text, figure_words, heading
 
     keys = dict.fromkeys([FIGURES[LOCATION_ERROR].key, *ranking])
     figures = [figure for key in keys for figure in (*FIGURES, PROGRAM_FIGURE) if figure.key == key]
@@ -178,7 +178,7 @@ def print_explored(
     if best is not None:
         own = known[found.index(best)]
         shown = [f for f in (*figures[1:], figures[0]) if f.key in own]
-        words = ", ".join(f"{heading(f, unit)} {figure_text(f, own[f.key], unit)}" for f in shown)
+        words = ", ".join(f"{f.words} {figure_words(f, own[f.key], unit)}" for f in shown)
         unsold = "" if is_sold(best.name) else " Nobody sells it: it is the gripper of the paper."
         over = f"It holds the part over {best.held:.0%} of its length."
         print_tables(f"First choice: {best.name}; its first fixture has {words}. {over}{unsold}")

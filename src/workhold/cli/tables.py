@@ -198,6 +198,7 @@ def quality_table(
     longest : the edge distance that stands for none, see :func:`no_edge`.
     """
     from workhold.model.quality import FIGURES, PIN_KEYS, PROGRAM_FIGURE
+    from workhold.statics.bent_pegs import at_force
 
     table = Table(("figure", ">value", "unit", "better", "meaning"))
     known = edgeless(fixture.quality, longest)
@@ -208,11 +209,7 @@ def quality_table(
             value = figure_text(figure, known[figure.key], unit)
             words, meaning = figure.named_for(mover)
             if figure.key in PIN_KEYS:
-                at = (
-                    f"for each kN of {mover} force"
-                    if jaw_force is None
-                    else f"at {unit.force_words(jaw_force)}"
-                )
+                at = at_force(jaw_force, mover, unit)
                 meaning = meaning.replace(f"at the {mover} force or for each kN of it", at)
             table.add_row(words, value, of, better, meaning)
     return table

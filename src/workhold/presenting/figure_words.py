@@ -21,6 +21,7 @@ __all__ = [
     "counted_text",
     "edgeless",
     "figure_text",
+    "figure_words",
     "figures_shown",
     "fixture_title",
     "heading",
@@ -154,6 +155,11 @@ def figure_text(figure: Figure, value: float, unit: Unit) -> str:
     # A caliper reads hundredths of a millimetre.
     decimals = unit.decimals - 1 if figure.key in SHORT else unit.decimals + 1
     return unit.number(value, decimals) if figure.unit == "mm" else rounded(value, figure.decimals)
+
+
+def figure_words(figure: Figure, value: float, unit: Unit) -> str:
+    """A figure's value with its unit, in words alone where it is infinite or not known."""
+    return f"{figure_text(figure, value, unit)} {unit_of(figure, unit) if isfinite(value) else ''}".rstrip()
 
 
 def counted_text(figure: Figure, value: float, unit: Unit) -> str:

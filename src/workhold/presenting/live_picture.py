@@ -39,11 +39,10 @@ from workhold.model.setup import settings_of
 from workhold.model.support_triples import ChosenSupports, Supports
 from workhold.presenting.figure_words import (
     edgeless,
-    figure_text,
+    figure_words,
     figures_shown,
     fixture_title,
     no_edge,
-    unit_of,
 )
 from workhold.statics.loads import jaw_words, load_cases
 from workhold.supports.words import why_no_set
@@ -166,7 +165,7 @@ class LivePicture:
         unit, part = MILLIMETRE, self.result.workpiece
         known = edgeless(self.fixture.figures, no_edge(part, self.result.toolkit))
         return [
-            [one.words, f"{figure_text(one, known[one.key], unit)} {unit_of(one, unit)}".rstrip()]
+            [one.words, figure_words(one, known[one.key], unit)]
             for one in figures_shown(self.result)[0]
             if one.key in known
         ]
