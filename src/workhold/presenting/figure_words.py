@@ -113,9 +113,8 @@ def heading(figure: Figure, unit: Unit) -> str:
 
 def unit_of(figure: Figure, unit: Unit) -> str:
     """The unit in which a figure is shown."""
-    if figure.unit == "MPa":
-        return unit.pressure
-    return unit.abbreviation if figure.unit == "mm" else figure.unit
+    shown = {"mm": unit.abbreviation, "MPa": unit.pressure, "N": unit.force}
+    return shown.get(figure.unit, figure.unit)
 
 
 def rounded(value: float, decimals: int) -> str:
@@ -154,7 +153,14 @@ def figure_text(figure: Figure, value: float, unit: Unit) -> str:
         return unit.stress_number(value)
     # A caliper reads hundredths of a millimetre.
     decimals = unit.decimals - 1 if figure.key in SHORT else unit.decimals + 1
-    return unit.number(value, decimals) if figure.unit == "mm" else rounded(value, figure.decimals)
+    if figure.unit == "mm":
+        return unit.number(value, decimals)
+    return rounded(value / size_of(figure, unit), figure.decimals)
+
+
+def size_of(figure: Figure, unit: Unit) -> float:
+    """How much in mm or N the unit is in which a figure is shown."""
+    return {"mm": unit.millimetres, "N": unit.newtons}.get(figure.unit, 1.0)
 
 
 def figure_words(figure: Figure, value: float, unit: Unit) -> str:
@@ -169,9 +175,10 @@ def counted_text(figure: Figure, value: float, unit: Unit) -> str:
     if not isfinite(value):
         return figure_text(figure, value, unit)
     counts = float(f"{round(value, 9):.1e}")
-    shown = counts / unit.millimetres if figure.unit == "mm" else counts
+    size = size_of(figure, unit)
+    shown = counts / size
     if figure.decimals == 0 or shown == 0:
         return rounded(shown, 0)
-    # In mm two digits are all there is to show; in another unit one more keeps what differs apart.
-    digits = 2 if figure.unit != "mm" or unit.millimetres == 1 else 3
+    # In mm and N two digits are all there is to show; in another unit one more keeps what differs apart.
+    digits = 2 if size == 1 else 3
     return rounded(shown, max(digits - 1 - floor(log10(abs(shown))), 0))
