@@ -307,7 +307,7 @@ def report(
     else:
         print_sets(found, listed, rank, unit)
         if friction is not None:
-            print_tables(friction_words(friction, helped))
+            print_tables(friction_words(friction, helped, unit))
     if found.count is not None and found.count > len(listed) and not written:
         print_remark("more sets can be listed with --triples, and written into a file with --out.")
     if written:
