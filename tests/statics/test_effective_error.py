@@ -161,6 +161,8 @@ def test_why_first_says_what_stands_square() -> None:
         "; square to the drawing nothing comes within a tenth, and none is listed."
     )
     assert why_first(evolve(whole, complete=False)).endswith("and none is listed.")
+    alone = answer(Query(block(), Plate(pitch=20, peg_radius=3), best=1), threads=1)
+    assert why_first(alone).endswith("; square to the drawing nothing comes within a tenth.")
     theta, quality = whole.table.theta.copy(), whole.table.quality.copy()
     theta[7] = np.pi
     turned = evolve(whole.table, theta=theta)

@@ -81,11 +81,12 @@ def lies_so(result: Result, angle: int) -> str:
     table, best = result.table, result.query.best
     less = table.take(np.flatnonzero(angle_classes(table.theta) < angle))
     if not len(less):
-        every = result.complete and len(table) == sum(result.found.values()) and (best or inf) > len(table)
+        whole = result.complete and len(table) == sum(result.found.values()) and (best or inf) > len(table)
+        near = f"{straight} nothing comes within a tenth"
         return (
             f"nothing stands {straight}"
-            if every
-            else f"{straight} nothing comes within a tenth, and none is listed"
+            if whole
+            else near + (", and none is listed" if len(table) > 1 else "")
         )
     bad = unfit(less.quality, result.query.tolerance)
     first = table.take(slice(0, 1))
