@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from attrs import frozen
 
+from workhold.conventions import STEADY
 from workhold.drawing.bench import bench_of, draw_bench
 from workhold.drawing.fixture_pictures import draw_thumbnail
 from workhold.drawing.panel import fixture_words
@@ -210,8 +211,8 @@ def supports_html(supports: Supports) -> str:
         for rank, triple in enumerate(supports.triples[:MOST_SETS], 1)
     ]
     notes = [
-        "The clamp presses at that point of the part's coordinates; where the last figure is above 0, the "
-        "part stands before it is clamped."
+        "The clamp presses at that point of the part's coordinates; where the last figure is at least "
+        f"{MILLIMETRE.text(STEADY)}, the part stands before it is clamped."
     ]
     if loaded:
         notes.append(f"Forces are for a closing force of {supports.jaw_force:.0f} N, without friction.")

@@ -190,7 +190,7 @@ def place_notes(listed: Mapping[int, Triple]) -> list[str]:
     ----------
     listed : the sets by the numbers that they have there.
     """
-    falls = [number for number, one in listed.items() if one.standing < 0.0]
+    falls = [number for number, one in listed.items() if not one.stands]
     hangs = [number for number, one in listed.items() if one.clamp.hangs]
     notes = []
     if falls:
