@@ -381,7 +381,7 @@ def touches_one_way(workpiece: Workpiece) -> bool:
 
 
 def slides_always(workpiece: Workpiece, rows: Sequence[HeightRow]) -> list[str]:
-    """What holds a solid that slides along all that pegs of any height can touch of it; nothing for others."""
+    """What holds a solid that slides along all that pegs of any height touch of it; nothing for others."""
     if workpiece.solid is None or not touches_one_way(workpiece):
         return []
     if any(row.touchable > 0 and not row.slides for row in rows):

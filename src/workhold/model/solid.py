@@ -310,7 +310,7 @@ class HeightRow:
     area : of the outline, in mm².
     border, touchable : length of its border, and of what may be touched of it, in mm.
     band : shortest band of what may be touched, in mm; 0 where there is none.
-    slides : whether all that may be touched are flat faces parallel to one another, along which the part slides.
+    slides : whether all that may be touched are flat faces parallel to one another, along which it slides.
     """
 
     low: float
