@@ -39,7 +39,7 @@ def test_heights_with_most_to_touch_are_named_and_the_other_side() -> None:
 
 def test_a_shaft_that_lies_is_said_to_slide_whatever_its_pegs() -> None:
     """Only its ends are touched, which are parallel: no height is named but one that touches more than ends."""
-    sliding = [evolve(row, slides=True) for row in ROWS]
+    sliding = [evolve(row, slides=row.touchable > 0) for row in ROWS]
     for bands, slides in (
         ([None, (0.0, 20.0), None, (0.0, 20.0)], True),
         ([(0.0, 20.0), (0.0, 20.0), None, (0.0, 20.0)], False),

@@ -152,7 +152,9 @@ def test_where_no_edge_is_none_is_said() -> None:
     """The figure then stands for no edge, and is a length that nobody can measure on the part."""
     for loop, words in ((STADIUM, "none"), (RECTANGLE[0], None)):
         part = workhold.Workpiece.from_loops("part", [loop])
-        result = workhold.design(part, workhold.Plate(pitch=20, peg_radius=3, clamps=2), best=2)
+        result = workhold.design(
+            part, workhold.Plate(pitch=20, peg_radius=3, clamp_radius=5, clamps=2), best=2
+        )
         expected = words or f"{result[0].quality['edge_distance']:.4f}"
         rows = {row[0]: row for row in Page(result[0]._repr_html_()).rows}
         assert rows["edge distance"][1] == expected

@@ -176,6 +176,10 @@ def test_why_first_says_what_stands_square() -> None:
         changed = quality.copy()
         changed[7, column] = value
         assert why_first(evolve(whole, table=evolve(turned, quality=changed))).endswith(f"; {words}.")
+        other = theta.copy()
+        other[8] = np.pi / 2
+        two = evolve(whole.table, theta=other, quality=changed)
+        assert why_first(evolve(whole, table=two)).endswith("nothing comes within a tenth.")
     quarter = theta.copy()
     quarter[0], quarter[7] = np.pi / 2, 0.3
     said = why_first(evolve(whole, table=evolve(whole.table, theta=quarter)))
