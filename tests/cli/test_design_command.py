@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import json
-import re
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +13,7 @@ from fakes import fake_proof, fake_result
 from workhold.cli import design_command
 from workhold.errors import InputError
 from workhold.files.result.reader import read_result
+from workhold.search import estimate
 
 # How an earlier output of the same name begins.
 OURS = '{"format": "workhold-result/1"}'
@@ -340,29 +340,69 @@ def test_both_engines_write_the_same_counts(run: Any, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "words"),
+    ("arguments", "best", "told"),
     [
         (
             ("--out", "r.json"),
-            "some 5 fixtures, .* MB in r.json: --best K keeps only the best K; a name that ends in .npz",
+            1000,
+            "there are about 250,000 fixtures, 240 MB in r.json: these are the best 1,000; --all lists all.",
         ),
-        (("--out", "r.npz"), "some 5 fixtures, .* MB in r.npz: --best K keeps only the best K[.]"),
-        ((), None),
-        (("--out", "r.json", "--best", "4"), None),
+        ((), 1000, "there are about 250,000 fixtures, 240 MB: these are the best 1,000; --all lists all."),
+        (("--out", "r.json", "--all"), None, "there are about 250,000 fixtures, 240 MB in r.json."),
+        (
+            ("--all",),
+            None,
+            "workhold: error: --all of about 250,000 fixtures takes 240 MB: write them to a file",
+        ),
+        (("--out", "r.json", "--best", "4"), 4, ""),
+        (("--best", "4", "--all"), None, "--all and --best are opposites"),
     ],
 )
-def test_a_large_file_is_told_beforehand(
+def test_of_very_many_fixtures_the_best_are_listed(
     run: Any,
     searched: dict[str, Any],
     monkeypatch: pytest.MonkeyPatch,
     tmp_path: Path,
     arguments: tuple[str, ...],
-    words: str | None,
+    best: int | None,
+    told: str,
 ) -> None:
-    """Three are found in the first 5/9 of the search, so there will be five; fewer than many are not worth a word."""
+    """How many there are, and how large a file of all would be, is said before; two hundred thousand are not many."""
     monkeypatch.chdir(tmp_path)
-    for many in (5, 6):
-        monkeypatch.setattr(design_command, "MANY", many)
-        told = run("design", "widget", *VISE, *arguments, "--force").stderr
-        assert ("this will be" in told) == (words is not None and many == 5)
-        assert words is None or many == 6 or re.search(words, told)
+    monkeypatch.setattr(estimate, "estimated_fixtures", lambda *asked: 249_600)
+    outcome = run("design", "widget", *VISE, *arguments)
+    assert told in outcome.stderr and bool(told) == (
+        "about" in outcome.stderr or "opposites" in outcome.stderr
+    )
+    assert outcome.exit_code == (2 if "error" in outcome.stderr else 0)
+    if outcome.exit_code == 0:
+        assert searched["asked"].best == best
+    monkeypatch.setattr(estimate, "estimated_fixtures", lambda *asked: 200_000)
+    if best != 4 and "--best" not in arguments:
+        outcome = run("design", "widget", *VISE, *arguments, "--force")
+        assert outcome.exit_code == 0 and "about" not in outcome.stderr and searched["asked"].best is None
+
+
+def test_a_file_that_is_too_large_as_text_is_refused_beforehand(
+    run: Any, searched: dict[str, Any], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """The remedy works: columns carry them."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(estimate, "estimated_fixtures", lambda *asked: 4_000_000)
+    outcome = run("design", "widget", *VISE, "--out", "r.json", "--all")
+    assert outcome.exit_code == 2 and "3,840 MB in r.json" in outcome.stderr and "900 MB" in outcome.stderr
+    assert searched["asked"] is None and not Path("r.json").exists()
+    asked = []
+    monkeypatch.setattr(
+        design_command, "answered", lambda query, *_, **__: asked.append(query) or searched["result"]
+    )
+    assert run("design", "widget", *VISE, "--out", "r.npz", "--all").exit_code == 0
+    assert [query.best for query in asked] == [None]
+
+
+def test_json_says_how_many_there_are_about(
+    run: Any, searched: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """For programs that cannot read remarks."""
+    monkeypatch.setattr(estimate, "estimated_fixtures", lambda *asked: 249_600)
+    assert json.loads(run("design", "widget", *VISE, "--json").stdout)["estimated"] == 249_600

@@ -14,6 +14,7 @@ from workhold.files.part.load import load
 from workhold.fixels.vise import Vise
 from workhold.model.query import Query
 from workhold.model.result import Result
+from workhold.search import estimate
 from workhold.web.searching import FIRST, mark_of, search, with_best_first
 from workhold.web.worker import Order
 
@@ -52,10 +53,12 @@ def asked(monkeypatch: pytest.MonkeyPatch, previews: list[bool]) -> Iterator[lis
     yield asked
 
 
-def run(query: Query, most: int = 10_000, cancel: Event | None = None) -> tuple[Any, list[Any]]:
+def run(
+    query: Query, most: int = 10_000, cancel: Event | None = None, every: bool = False
+) -> tuple[Any, list[Any]]:
     """The outcome of the task, and what it reports."""
     reports: list[Any] = []
-    return search((query, most), Order(reports.append, cancel or Event(), SECONDS)), reports
+    return search((query, most, every), Order(reports.append, cancel or Event(), SECONDS)), reports
 
 
 def marks(result: Result) -> list[Any]:
@@ -111,7 +114,7 @@ def test_a_search_that_is_stopped_among_the_best_keeps_those_found(
         if value[0] == "progress" and value[2] > FIRST:
             cancel.set()
 
-    found = search((query, 10_000), Order(report, cancel, SECONDS))
+    found = search((query, 10_000, False), Order(report, cancel, SECONDS))
     assert asked == [FIRST] and not found.result.complete
     assert 0 < len(found.result) <= FIRST and found.result.query == query
 
@@ -123,3 +126,16 @@ def test_a_search_that_is_stopped_keeps_the_best_first(whole: Result) -> None:
     joined = with_best_first(later, best)
     assert marks(joined) == marks(whole)[:9] and not joined.complete
     assert sum(joined.found.values()) == 9
+
+
+def test_of_very_many_fixtures_the_best_are_sought(
+    query: Query, whole: Result, asked: list[int | None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A remark says how many there are; who wants every one gets them."""
+    monkeypatch.setattr(estimate, "estimated_fixtures", lambda *_: 4_240_000)
+    monkeypatch.setattr(estimate, "LISTED", 30)
+    found, _ = run(query)
+    assert asked == [FIRST, 30] and found.result.query.best == 30 and marks(found.result) == marks(whole)[:30]
+    assert found.notes == ("There are about 4,200,000 fixtures: these are the best 30.",)
+    found, _ = run(query, every=True)
+    assert asked[2:] == [FIRST, None] and marks(found.result) == marks(whole) and found.notes == ()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, TextIO
@@ -38,6 +37,8 @@ from workhold.cli.values import choice, length_unit, optional_count, printed_uni
 from workhold.errors import InputError
 
 if TYPE_CHECKING:
+    from threading import Event
+
     from workhold.model.query import Query
     from workhold.model.result import Result
     from workhold.model.support_triples import Supports
@@ -48,10 +49,8 @@ __all__ = ["design"]
 SEARCH = "The search"
 EVERY_TYPE = "both"
 ENGINES = ("curves", "algebra")
-# From this part of the work on a remark says how many fixtures there will be, where they are so many or more;
-# the search finds them in the first part. Bytes of a fixture in a file of each form.
-KNOWN_FROM, SEARCH_SHARE, MANY = 0.05, 0.9, 200_000
-BYTES = {"json": 960, "csv": 550, "npz": 209}
+# Bytes of a fixture in a file of each form, and the largest file that is text.
+BYTES, MOST_TEXT = {"json": 960, "csv": 550, "npz": 225}, 7e8
 
 
 @spread
@@ -70,6 +69,11 @@ def design(
         default="both",
     ),
     best: str | None = option(SEARCH, "K", "Keep only the best K."),
+    every: bool = flag(
+        SEARCH,
+        "List all fixtures, however many: of more than 200,000 only the best 1,000 are listed else.",
+        "--all",
+    ),
     listing: str | None = option(
         SEARCH,
         "best|all",
@@ -118,6 +122,8 @@ def design(
     kept = optional_count("--best", best)
     workers = optional_count("--threads", threads)
     engine = choice("--engine", engine, ENGINES)
+    if every and kept is not None:
+        raise InputError("--all and --best are opposites: leave one of them out.")
     listed = whole_number("--list", list_)
     form = output_form(out, format_)
     refuse_both(json_, out)
@@ -168,19 +174,18 @@ def design(
             from workhold.cli.warming import compile_seating
 
             compile_seating(cancel)
-        streamed = out if form == "npz" and engine == "curves" else None
+        streamed, estimated = out if form == "npz" and engine == "curves" else None, None
+        if engine == "curves":
+            query, estimated = as_many_as_asked(query, every, out, form, workers, cancel)
         with search_progress() as progress:
-            shown_progress = with_size_remark(progress, query, out, form)
-            result = answered(
-                query, engine, streamed, threads=workers, progress=shown_progress, cancel=cancel
-            )
+            result = answered(query, engine, streamed, threads=workers, progress=progress, cancel=cancel)
     if out is not None and streamed is None:
         result = write_found(result, out, form)
     if json_:
         from workhold.listing.identity import entries
         from workhold.presenting.data import result_data
 
-        further = further_data(result, engine, workers, folder, printed)
+        further = further_data(result, engine, workers, folder, printed) | {"estimated": estimated}
         if sheet is not None:
             written = first_sheet(result, sheet, out, high, printed, words.not_on_faces_cut_in)
             further["sheet"] = sheet if written else None
@@ -213,32 +218,41 @@ def design(
             print_tables(f"The setup sheet of fixture {ranked} was written to {sheet}.", stream=stream)
 
 
-def with_size_remark(
-    progress: Callable[[float, int], None], query: Query, out: str | None, form: str
-) -> Callable[[float, int], None]:
-    """Wraps a progress function so that it says once how large a large result file will be.
+def as_many_as_asked(
+    query: Query, every: bool, out: str | None, form: str, threads: int | None, cancel: Event
+) -> tuple[Query, int | None]:
+    """Returns the query, or one for the best fixtures where there are very many, and about how many there are.
 
-    It says so as soon as the number of fixtures can be estimated.
+    A remark says so before the search.
+
+    Raises
+    ------
+    InputError
+        For all of very many without a file that can carry them.
     """
-    if out is None or query.best is not None or query.has_seating_rules:
-        return progress
-    said_at: list[float] = []
+    from workhold.limits import thread_count
+    from workhold.model.search_report import about_words
+    from workhold.search.estimate import LISTED, MANY, best_where_many
 
-    def followed(fraction: float, found: int) -> None:
-        progress(fraction, found)
-        if said_at or fraction < KNOWN_FROM:
-            return
-        said_at.append(fraction)
-        fixtures = round(found / min(fraction / SEARCH_SHARE, 1.0))
-        if fixtures >= MANY:
-            megabytes = fixtures * BYTES[form] / 1e6
-            size = f"some {float(f'{fixtures:.1e}'):,.0f} fixtures, {megabytes:,.0f} MB in {out}"
-            columns = (
-                "" if form == "npz" else "; a name that ends in .npz gives a smaller file that opens at once"
-            )
-            print_remark(f"this will be {size}: --best K keeps only the best K{columns}.")
-
-    return followed
+    asked, count = best_where_many(query, thread_count(threads), cancel)
+    if count is None or count <= MANY:
+        return query, count
+    name = "" if out in (None, STANDARD_OUTPUT) else f" in {out}"
+    about = about_words(count)
+    size = f"{max(count * BYTES[form] / 1e6, 1.0):,.0f} MB{name}"
+    if not every:
+        print_remark(
+            f"there are about {about} fixtures, {size}: these are the best {LISTED:,}; --all lists all."
+        )
+        return asked, count
+    if form != "npz" and (not name or count * BYTES[form] > MOST_TEXT):
+        columns = f"{count * BYTES['npz'] / 1e6:,.0f} MB"
+        raise InputError(
+            f"--all of about {about} fixtures takes {size}: write them to a file whose name ends in .npz, which "
+            f"takes {columns} and is written as they are found, such as --out all.npz."
+        )
+    print_remark(f"there are about {about} fixtures, {size}.")
+    return query, count
 
 
 def answered(query: Query, engine: str, streamed: str | None, threads: int | None, **watching: Any) -> Result:

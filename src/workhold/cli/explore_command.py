@@ -168,10 +168,13 @@ def print_explored(
     for item, own in zip(found, known, strict=True):
         if own and not item.fit:
             table.red.add(len(table.rows))
-        counts = (f"{item.found.get(name, 0):,}" for name in types)
+        counts = ("-" if item.about is not None else f"{item.found.get(name, 0):,}" for name in types)
         values = (figure_text(f, own[f.key], unit) if f.key in own else "-" for f in figures)
-        table.add_row(item.name, f"{item.fixtures:,}", *values, *counts)
+        about = "" if item.about is None else "~"
+        table.add_row(item.name, f"{about}{item.fixtures:,}", *values, *counts)
     print_tables(table)
+    if any(item.about is not None for item in found):
+        print_tables("~: about so many; where there are many, only the first choice is sought.")
     for item in found:
         if item.reason:
             print_tables(f"{item.name}: {item.reason}")
@@ -191,9 +194,14 @@ def table_text(found: list[Explored], types: list[str]) -> str:
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     figures = [figure.key for figure in FIGURES]
-    writer.writerow(["toolkit", "fixtures", *(f"type_{name}" for name in types), *figures, "reason"])
+    writer.writerow(
+        ["toolkit", "fixtures", "estimated", *(f"type_{name}" for name in types), *figures, "reason"]
+    )
     for item in found:
         values = [f"{item.figures[key]:.12g}" if key in item.figures else "" for key in figures]
-        counts = [item.found.get(name, 0) for name in types]
-        writer.writerow([item.name, item.fixtures, *counts, *values, item.reason])
+        is_estimated = item.about is not None
+        counts = ["" if is_estimated else item.found.get(name, 0) for name in types]
+        writer.writerow(
+            [item.name, item.fixtures, "yes" if is_estimated else "", *counts, *values, item.reason]
+        )
     return stream.getvalue()

@@ -225,13 +225,26 @@ class ClampedSeats:
         """Whether half a turn of everything leaves the toolkit as it is."""
         return half_turns(self.toolkit)
 
+    def half_of(self, seats: Seats) -> IntArray:
+        """Which seats (S,) are paired: 1 for those that are, else 0.
+
+        Of opposite directions half a turn makes one fixture another, so that only one half turn of seats is
+        paired.
+        """
+        return ((seats.theta < pi - SAME_POSE) | (not self.turns_half)).astype(np.int64)
+
+    def count(self, seats: Seats) -> int:
+        """How many fixtures seats have, as they are listed; pairs that hardly close count as well."""
+        every = self.query.listing == "all"
+        rows = pairs_of(seats.spans, self.half_of(seats), seats.clamps, self.hardware, every)
+        if every:
+            return int(rows[:, COUNT].sum())
+        return len(np.unique(rows[:, SEAT] * len(self.toolkit.arrangements) + rows[:, KIND]))
+
     def add(self, seats: Seats) -> None:
         """Pairs the clamps of further seats."""
         self.looked_at += len(seats)
-        # Of opposite directions half a turn makes one fixture another, so that only one half turn of seats is
-        # paired.
-        half = ((seats.theta < pi - SAME_POSE) | (not self.turns_half)).astype(np.int64)
-        every = self.query.listing == "all"
+        half, every = self.half_of(seats), self.query.listing == "all"
         rows = pairs_of(seats.spans, half, seats.clamps, self.hardware, every)
         if self.turns_half and (rows[:, OPEN] != 0.0).any():
             if self.query.best is not None and not every:

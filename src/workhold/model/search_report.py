@@ -17,6 +17,7 @@ from workhold.fixels.toolkit import Wording
 from workhold.model.fixture import Fixture
 
 __all__ = [
+    "about_words",
     "AT_AN_EDGE",
     "GIVEN_UP",
     "NEARLY_DOUBLE",
@@ -33,6 +34,7 @@ __all__ = [
     "cut_note",
     "fitted_note",
     "kept_note",
+    "many_note",
     "left_notes",
     "no_fixture_notes",
     "no_pair_note",
@@ -302,6 +304,20 @@ def fitted_note(departure: float) -> str:
 def kept_note(found: int, kept: int) -> str:
     """The remark on a server that keeps only the best of the fixtures found."""
     return f"{found:,} fixtures were found; this server keeps the best {kept:,} of them."
+
+
+def many_note(about: int, listed: int) -> str:
+    """The remark on a search for everything that finds too many fixtures to list unasked."""
+    return f"There are about {about_words(about)} fixtures: these are the best {listed:,}."
+
+
+def about_words(count: float) -> str:
+    """A count of which two digits are known.
+
+    >>> about_words(2_247_282)
+    '2,200,000'
+    """
+    return f"{float(f'{count:.1e}'):,.0f}"
 
 
 def seated_note(looked_at: int, kept: int) -> str:

@@ -260,6 +260,7 @@ def explored_data(found: Iterable[Explored]) -> list[dict[str, Any]]:
         {
             "name": item.name,
             "fixtures": item.fixtures,
+            "estimated": item.about is not None,
             "found": dict(item.found),
             "fit": bool(item.fit),
             "held_share": round(item.held, 9),

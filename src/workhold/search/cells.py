@@ -44,11 +44,15 @@ class Block:
     work : does it, given what fixtures must reach to be of interest, and returns records.
     cost : a guess of how long it takes, in any unit.
     cells : how many cells it works on.
+    start : the orientation in radians at which the first of them begins.
+    dense : how many records it finds, relative to its cost.
     """
 
     work: Callable[[Needed], Records]
     cost: float
     cells: int = 1
+    start: float = 0.0
+    dense: float = 1.0
 
 
 def cost_of(blocks: Iterable[Block]) -> float:

@@ -48,10 +48,18 @@ from workhold.search.error_limits import (
     next_limit,
     precision_of,
 )
-from workhold.search.lattice_shares import LatticeShares, problems_of
+from workhold.search.estimate import estimated_fixtures
+from workhold.search.lattice_shares import (
+    LatticeShares,
+    blocks_of_search,
+    problems_of,
+    searches_of,
+    ways_in,
+)
 from workhold.search.seated import Sink, seated_answer
 from workhold.search.shares import (
     LIMITED_FROM,
+    OF_TWO,
     Preview,
     Previews,
     answer_in_shares,
@@ -194,7 +202,7 @@ def answer(
         from workhold.search.wall_shares import WallShares
 
         return deliver(answer_in_shares(WallShares.of(query, cancel), progress, cancel), sink)
-    if can_limit_errors(query) and is_large(query):
+    if can_limit_errors(query) and is_large(query, workers, cancel):
         result = best_answer(query, workers, progress, cancel, preview)
         if result is not None:
             return deliver(result, sink)
@@ -212,7 +220,7 @@ def answer(
     return deliver(joined_ways(results, query), sink)
 
 
-def is_large(query: Query) -> bool:
+def is_large(query: Query, threads: int, cancel: Event | None) -> bool:
     """Whether so much is to be searched that limits of the location error are worth their while."""
     if any(one.pegs[0] < 3 for one in query.toolkit.arrangements if one.name in query.arrangements):
         # Of two pegs that stand still nobody knows where they touch for a small error.
@@ -220,7 +228,15 @@ def is_large(query: Query) -> bool:
     problem = Problem.of(one_clamp(query, query.toolkit.ways[0]))
     first, end = problem.standing
     steps = lattice_steps((problem.frame.standing,), problem.diameter).steps
-    return len(steps) * (end - first) ** 2 > LIMITED_FROM
+    # Chords that the lattice may join; of two each a search looks at about one pair in a hundred.
+    pairs = float(len(steps) * (end - first) ** 2) ** 2
+    if pairs / 10.0 < LIMITED_FROM or pairs / 1000.0 > LIMITED_FROM:
+        return pairs / 10.0 >= LIMITED_FROM
+    if query.toolkit.travels > 1:
+        return ways_in(map(blocks_of_search, searches_of(query, threads, cancel))) > OF_TWO * LIMITED_FROM
+    ways = [Problem.of(evolve(query, toolkit=way)) for way in query.toolkit.ways]
+    searches = [ToolkitSearch.of(way, threads=threads, cancel=cancel) for way in ways]
+    return ways_in(search.blocks(query.arrangements) for search in searches) > LIMITED_FROM
 
 
 def best_answer(
@@ -399,10 +415,11 @@ class Explored:
     Parameters
     ----------
     name : what it is called.
-    found : fixtures of each arrangement; empty for a toolkit that cannot be.
+    found : fixtures of each arrangement; empty for a toolkit that cannot be, and where nobody counted them.
     figures : of the first fixture, the one to set up; empty when there is none.
     fit : whether that is a fixture for a workshop.
     held : the share of the part's length that is between its outermost contacts, from 0 to 1.
+    about : how many fixtures there are, about, two digits of it, where they are too many to count.
     reason : why there is no fixture, or why the toolkit cannot be; empty otherwise.
     """
 
@@ -412,11 +429,12 @@ class Explored:
     reason: str = ""
     fit: bool = False
     held: float = 0.0
+    about: int | None = None
 
     @property
     def fixtures(self) -> int:
-        """How many fixtures there are."""
-        return sum(self.found.values())
+        """How many fixtures there are, or about how many."""
+        return sum(self.found.values()) if self.about is None else self.about
 
 
 def explore(
@@ -435,7 +453,9 @@ def explore(
         try:
             if isinstance(query, InputError):
                 raise query
-            result = answer(query, cancel=cancel)
+            about = estimated_fixtures(query, thread_count(None), cancel) if query.best is None else None
+            # Where there are many, the first is enough.
+            result = answer(query if about is None else evolve(query, best=1), cancel=cancel)
         except InputError as error:
             yield Explored(name, {}, {}, str(error))
             continue
@@ -445,7 +465,10 @@ def explore(
         figures = dict(result[0].quality) if len(result) else {}
         fit = bool(figures) and not unfit(result.table.quality[:1], result.query.tolerance)[0]
         held = held_share(result[0], result.workpiece) if len(result) else 0.0
-        yield Explored(name, dict(result.found), figures, reason, fit, held)
+        if about is not None and len(result):
+            yield Explored(name, {}, figures, reason, fit, held, int(float(f"{about:.1e}")))
+        else:
+            yield Explored(name, dict(result.found), figures, reason, fit, held)
 
 
 def held_share(fixture: Fixture, workpiece: Workpiece) -> float:

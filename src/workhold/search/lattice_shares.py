@@ -44,7 +44,7 @@ from workhold.search.error_limits import ErrorLimit
 from workhold.search.shares import one_clamp, tilted_bound
 from workhold.search.toolkit_search import ANY_ERROR, LEAST_BLOCKS, ToolkitSearch
 
-__all__ = ["LatticeShares", "problems_of"]
+__all__ = ["LatticeShares", "blocks_of_search", "problems_of", "searches_of", "ways_in"]
 
 Array = NDArray[np.float64]
 # Ranges of orientation in radians, from and up to but without the second.
@@ -128,6 +128,15 @@ class LatticeShares:
         seats = ClampedSeats(query, problem)
         with ThreadPoolExecutor(max_workers=threads) as pool:
             yield cls(searches, seats, blocks, ranges, bound, pool, threads, cancel)
+
+    @classmethod
+    @contextmanager
+    def made(
+        cls, searches: Sequence[ToolkitSearch], collector: ClampedSeats, threads: int, cancel: Event | None
+    ) -> Iterator[LatticeShares]:
+        """No shares, for seats of contacts that somebody else finds."""
+        with ThreadPoolExecutor(max_workers=threads) as pool:
+            yield cls(searches, collector, (), (), None, pool, threads, cancel)
 
     @property
     def shares(self) -> int:

@@ -70,6 +70,8 @@ KERNELS: dict[tuple[int, ...], tuple[Callable[..., Array], float]] = {
     (2, 2): (two_and_two_cells, 1.0),
     (3, 1): (three_and_one_cells, 0.5),
 }
+# What slides finds about so many times as many records for the same cost as what crosses.
+SLIDING_DENSE = 25.0
 # Cells of a half turn: so many for each pitch that L of the wrenches holds, within limits.
 CELLS_PER_PITCH = 10.0
 FEWEST_CELLS, MOST_CELLS = 96, 1024
@@ -193,6 +195,12 @@ def with_limit(precision: Precision, most: float) -> Precision:
     return precision._replace(most=most, most_aslant=most / ASLANT)
 
 
+def one_in(numbers: NDArray[np.int64], many: int) -> NDArray[np.bool_]:
+    """Which numbers (N,) are among one in so many, as if drawn, and always the same."""
+    mixed = numbers.astype(np.uint64) * np.uint64(0x9E3779B97F4A7C15)
+    return np.asarray((mixed >> np.uint64(33)) % np.uint64(many) == 0)
+
+
 def is_round(problem: Problem) -> bool:
     """Whether every face that a peg could touch is an arc about one centre."""
     arcs = problem.rows[:, IS_ARC] != 0.0
@@ -211,6 +219,7 @@ class ToolkitSearch:
     precision, near : bound location errors, and places of locators, of what is of interest.
     counting : count all simultaneous contacts instead of looking for fixtures only.
     most_listed : of these so many are listed by each block, whatever the rules say of them.
+    every : of chord curves one in so many is looked at, for an estimate.
     stats : (blocks, 5) statistics the kernels add to, one row for each block so that threads never share one.
     """
 
@@ -221,6 +230,7 @@ class ToolkitSearch:
     near: NearSpots = EVERYWHERE
     counting: bool = False
     most_listed: int = 0
+    every: int = 1
     stats: list[NDArray[np.int64]] = field(factory=list, init=False)
 
     @classmethod
@@ -303,7 +313,8 @@ class ToolkitSearch:
                 MOST_CELLS,
             )
         )
-        together = int(min(max(PAIRS_PER_BLOCK / max(self.alive, 1.0) ** 2, 1.0), cells // least))
+        most = max(cells // least, 1)
+        together = int(min(max(PAIRS_PER_BLOCK / max(self.alive, 1.0) ** 2, 1.0), most))
         blocks: list[Block] = []
         frame = self.frame
         for arrangement in frame.toolkit.arrangements:
@@ -363,7 +374,7 @@ class ToolkitSearch:
         """The crossings of some neighbouring cells, in which there are about so many curves."""
         kernel, weight = KERNELS[arrangement.pegs]
         work = partial(self.run, partial(kernel, edges), float(edges[0]), float(edges[-1]), self.tally())
-        return Block(work, 1.0 + weight * members**2, len(edges) - 1)
+        return Block(work, 1.0 + weight * members**2, len(edges) - 1, float(edges[0]))
 
     def sliding_pair_block(
         self, arrangement: Arrangement, edges: Array, cells: list[int], sliding_pairs: list[NDArray[np.int64]]
@@ -383,7 +394,11 @@ class ToolkitSearch:
         members = member_counts(self.table, edges[cells], edges[np.add(cells, 1)])
         cost = float(members @ np.array([len(sliding_pairs[cell]) for cell in cells]))
         return Block(
-            lambda needed: np.concatenate([part(needed) for part in parts]), len(cells) + cost, len(cells)
+            lambda needed: np.concatenate([part(needed) for part in parts]),
+            len(cells) + cost,
+            len(cells),
+            float(edges[cells[0]]),
+            SLIDING_DENSE,
         )
 
     def tally(self) -> NDArray[np.int64]:
@@ -406,6 +421,8 @@ class ToolkitSearch:
             features = features._replace(precision=with_limit(self.precision, most))
         limits = self.limits_from(needed.margin, features.precision.most)
         members = members_of_cell(self.table, low, high)
+        if self.every > 1:
+            members = members[one_in(members, self.every)]
         return kernel(members, features, self.table.curves, self.frame.lattice, limits, self.counting, stats)
 
     def limits_from(self, margin: float, most: float) -> Limits:

@@ -221,6 +221,7 @@ class JobForm(SearchForm):
 
     toolkit: HeldIn
     best: int | None = Field(default=None, ge=1, le=MOST_BEST)
+    every: bool = Field(default=False, description="find all fixtures, even where there are over 200,000")
     seating: int | None = Field(default=None, ge=1, le=MOST_SEATED)
     opening: Annotated[float, Field(gt=0, le=LARGEST)] | None = None
     foolproof: bool = False

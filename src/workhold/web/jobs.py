@@ -252,7 +252,9 @@ class Jobs:
 
     async def run(self, job: ServerJob) -> None:
         """Runs a job to its end."""
-        payload: Any = job.queries if job.kind != "design" else (job.queries[0][1], self.limits.fixtures)
+        payload: Any = job.queries
+        if job.kind == "design":
+            payload = job.queries[0][1], self.limits.fixtures, bool(job.request.get("every", False))
         name = "search" if job.kind == "design" else job.kind
         job.task = PoolTask(
             name,
@@ -293,13 +295,14 @@ class Jobs:
 
     def keep(self, job: ServerJob, found: Found) -> None:
         """Keeps the outcome of a search."""
-        result, notes = found.result, list(found.result.notes)
+        result, notes = found.result, [*found.notes, *found.result.notes]
         if found.left_out:
             every, put_in_order = sum(result.found.values()), len(result) + found.left_out
             notes = [kept_note(every, len(result)), *(n for n in notes if n != cut_note(every, put_in_order))]
         if not result.complete and job.task is not None and not job.task.stop.is_set():
             notes.insert(0, stopped_note(self.limits.seconds))
-        job.result = evolve(result, query=job.queries[0][1], notes=tuple(notes))
+        query = evolve(job.queries[0][1], best=result.query.best)
+        job.result = evolve(result, query=query, notes=tuple(notes))
         job.notes = tuple(notes)
         job.found = sum(result.found.values())
         job.fraction = 1.0 if result.complete else job.fraction

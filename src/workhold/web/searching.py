@@ -16,6 +16,7 @@ from workhold.conventions import SAME_POSE
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.query import Query
 from workhold.model.result import Result
+from workhold.model.search_report import many_note
 from workhold.web.worker import Order
 
 __all__ = ["FIRST", "Found", "search"]
@@ -37,16 +38,20 @@ class Found:
 
     result: Result
     left_out: int
+    notes: tuple[str, ...] = ()
 
 
-def search(payload: tuple[Query, int], order: Order) -> Found:
+def search(payload: tuple[Query, int, bool], order: Order) -> Found:
     """Searches; reports are ("progress", fraction, found), ("preview", result) and ("first", result).
 
-    A first result has the best fixtures of all, in their order.
+    A first result has the best fixtures of all, in their order. Of very many fixtures no more than the best
+    are sought, unless every one is asked for.
     """
+    from workhold.limits import thread_count
     from workhold.search.design import answer
+    from workhold.search.estimate import best_where_many
 
-    query, most = payload
+    query, most, every = payload
     first = None
     if query.best is None and query.seating is None:
         first = best_of(query, order)
@@ -55,6 +60,11 @@ def search(payload: tuple[Query, int], order: Order) -> Found:
     known = first if first is not None and first.complete else None
     if known is not None:
         order.report(("first", known))
+    notes: tuple[str, ...] = ()
+    if first is not None and not every:
+        query, about = best_where_many(query, thread_count(None), order.cancel)
+        if query.best is not None:
+            notes = (many_note(about or 0, query.best),)
     begun = 0.0 if first is None else SHARE
     result = answer(
         query,
@@ -67,7 +77,7 @@ def search(payload: tuple[Query, int], order: Order) -> Found:
     left_out = max(len(result) - most, 0)
     if left_out:
         result = result.part(slice(0, most))
-    return Found(result, left_out)
+    return Found(result, left_out, notes)
 
 
 class Reporter:

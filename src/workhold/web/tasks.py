@@ -69,6 +69,8 @@ def explore(payload: tuple[NamedQuery, ...], order: Order) -> None:
             "title": row.name,
             "toolkit": {"kind": query.toolkit.kind, **toolkit_fields(query.toolkit)},
             "counts": dict(row.found),
+            "fixtures": row.fixtures,
+            "estimated": row.about is not None,
             "figures": dict(row.figures),
             "fit": row.fit,
             "note": row.reason,

@@ -59,15 +59,14 @@ function write(table) {
   const columns = usual.map((key) => shown.find((figure) => figure.key === key)).filter(Boolean);
   const lines = table.map((line) => {
     const name = line.name ?? line.title ?? line.toolkit?.name ?? line.toolkit?.title ?? "";
-    const counts = line.counts ?? {};
-    const total = Object.values(counts).reduce((sum, count) => sum + count, 0);
+    const total = line.fixtures ?? 0;
     const first = figuresOf(line);
     const take = () => {
       /** @type {HTMLDialogElement} */ (byId("comparison")).close();
       usePreset(name);
     };
     return make(total && !line.fit ? "tr.unfit" : "tr", {},
-      make("th", { scope: "row", title: titleOf(name) }, name), make("td.number", {}, line.error ? "–" : countText(total)),
+      make("th", { scope: "row", title: titleOf(name) }, name), make("td.number", {}, line.error ? "–" : `${line.estimated ? "about " : ""}${countText(total)}`),
       ...columns.map((figure) => make("td.number", {}, total ? figureText(figure, first[figure.key]) : "–")),
       make("td", {}, make("button", { type: "button", click: take, "aria-label": `Use ${name}` }, "Use")));
   });

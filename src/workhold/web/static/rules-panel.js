@@ -37,7 +37,8 @@ export function rulesPanel(drawing, showPart) {
   on(["angles", "contactMargin", "unit"], write);
   on(["toolkit", "types"], writeTypes);
   field("every-pair").addEventListener("change", () => change({ listing: field("every-pair").checked ? "all" : null }));
-  on(["toolkit", "listing"], writeListing);
+  field("every-fixture").addEventListener("change", () => change({ every: field("every-fixture").checked }));
+  on(["toolkit", "listing", "every"], writeListing);
   on(["loads", "unit"], writeLoads);
   on(["view"], () => state.view !== "part" && stopZone());
 }
@@ -158,10 +159,11 @@ function writeSeating() {
   for (const id of ["seated-opening", "seated-foolproof"]) field(id).disabled = !first;
 }
 
-/** Whether every pair of clamps is listed, where there are two. */
+/** Whether every fixture is listed, and every pair of clamps where there are two. */
 function writeListing() {
   show(byId("pairs-box"), state.toolkit.clamps === 2);
   field("every-pair").checked = state.listing === "all";
+  field("every-fixture").checked = state.every;
 }
 
 /** A box for each type of fixture where there are several; ticked means sought. */

@@ -57,7 +57,7 @@ export async function start() {
   try {
     await readOutlines();
     if (mine !== token) return;
-    const { job } = await send("jobs", request());
+    const { job } = await send("jobs", { ...request(), every: state.every });
     if (mine === token) follow(job, mine);
     else forget(job);
   } catch (error) {

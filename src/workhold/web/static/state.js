@@ -6,7 +6,7 @@
 
 /** Keys of the state that a search depends on. */
 export const SETTINGS = [
-  "part", "toolkit", "types", "listing", "contactMargin", "avoid", "zones", "angles", "tolerance", "loads", "ranking", "prefer", "seating", "program",
+  "part", "toolkit", "types", "listing", "every", "contactMargin", "avoid", "zones", "angles", "tolerance", "loads", "ranking", "prefer", "seating", "program",
 ];
 
 /**
@@ -18,6 +18,7 @@ export const SETTINGS = [
  * @property {string} unit "mm" or "inch", for reading and typing only
  * @property {string[]|null} types names of the arrangements sought; null is all
  * @property {"all"|null} listing of two clamps every pair of each seat; null is the best of each
+ * @property {boolean} every whether all fixtures are wanted, however many there are
  * @property {number} contactMargin in mm
  * @property {number[]} avoid faces not to touch
  * @property {number[][][]} zones loops of [x, y, bulge] in part coordinates
@@ -53,6 +54,7 @@ export const state = {
   unit: "mm",
   types: null,
   listing: null,
+  every: false,
   contactMargin: 0,
   avoid: [],
   zones: [],

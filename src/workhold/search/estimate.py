@@ -1,0 +1,183 @@
+"""An estimate of how many fixtures there are, from a part of the search.
+
+Cells of orientation are drawn with a chance that grows with the work in them (Horvitz and Thompson 1952, *A
+Generalization of Sampling Without Replacement From a Finite Universe*). Each cell is searched as always, and
+what it holds counts as often as its chance is small. Fixtures lie where there is work, so a few per cent of
+the work show the number within some tenths of it. The draw is systematic: the same query has the same
+estimate.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import degrees, pi, sqrt, tau
+from threading import Event
+
+import numpy as np
+from attrs import evolve
+from numpy.typing import NDArray
+
+from workhold.contact.problem import Problem
+from workhold.conventions import ANGLE_HAIR, SAME_POSE
+from workhold.fixels.contacts import WALL_END
+from workhold.listing.collector import finish
+from workhold.listing.contact_groups import PackedContacts
+from workhold.listing.seat_order import seat_numbers
+from workhold.listing.seats import ClampedSeats
+from workhold.model.query import Query
+from workhold.search.cells import Block, run_blocks
+from workhold.search.lattice_shares import LatticeShares, searches_of
+from workhold.search.toolkit_search import MOST_CELLS, ToolkitSearch, one_in
+
+__all__ = ["LISTED", "MANY", "best_where_many", "estimated_fixtures"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+# Of more fixtures than this only so many are listed, the best, unless all are asked for.
+MANY, LISTED = 200_000, 1_000
+# Searches that cost less have too few fixtures to ask, see ``cells.Block``.
+FEW = 4e6
+# Work that is done for an estimate with one clamp and with two, and the fewest cells that are drawn for it.
+# Of cells for two clamps, more add little. So much more work is done with one clamp where cells hold more.
+WORK, WORK_OF_TWO, MOST_WORK = 6e6, 2e6, 3e7
+FEWEST_DRAWN, FEWEST_OF_TWO, MOST_OF_TWO = 48, 8, 32
+# Records that are decided for an estimate, and contacts of two clamps in one cell.
+DECIDED, CONTACTS_DECIDED = 4000, 3000
+# Where in the first interval a systematic draw begins.
+BEGIN = 0.618
+
+
+def estimated_fixtures(query: Query, threads: int, cancel: Event | None = None) -> int | None:
+    """How many fixtures a query has, about.
+
+    None where they are surely few, that nobody knows without a whole search, and once ``cancel`` is set.
+    """
+    if WALL_END in query.toolkit.contacts or query.seating is not None:
+        return None
+    query = evolve(query, best=None)
+    if query.toolkit.travels > 1:
+        return estimated_pairs(query, threads, cancel)
+    ways = [estimated_of_a_way(evolve(query, toolkit=way), threads, cancel) for way in query.toolkit.ways]
+    known = [count for count in ways if count is not None]
+    return sum(known) if known else None
+
+
+def best_where_many(query: Query, threads: int, cancel: Event | None = None) -> tuple[Query, int | None]:
+    """A query for all fixtures, or for the best where there are more than anybody reads.
+
+    With it comes how many there are, about; None where they are few, or the query is for the best already.
+    """
+    if query.best is not None:
+        return query, None
+    count = estimated_fixtures(query, threads, cancel)
+    return (query, count) if count is None or count <= MANY else (evolve(query, best=LISTED), count)
+
+
+def estimated_of_a_way(query: Query, threads: int, cancel: Event | None) -> int | None:
+    """How many fixtures there are about in a toolkit of which one carrier moves; None where they are few."""
+    problem = Problem.of(query)
+    search = ToolkitSearch.of(problem, threads=threads, cancel=cancel)
+    blocks = search.blocks(query.arrangements, MOST_CELLS)
+    costs = np.array([block.cost for block in blocks])
+    if costs.sum() < FEW:
+        return None
+    dense = np.array([block.dense for block in blocks])
+    drawn, chances = drawn_by(costs * dense, max(number_for(WORK, costs, costs * dense), FEWEST_DRAWN))
+    # Where cells hold too much, so do chord curves: what crosses is found by two of them, what slides by one.
+    search.every = max(int(sqrt(costs[drawn].sum() / MOST_WORK)), 1)
+    chances = chances / np.where(dense[drawn] > 1.0, search.every, search.every**2)
+    records, _ = run_blocks([blocks[k] for k in drawn], threads, None, cancel, stop=search.stop)
+    if len(records) < len(drawn):
+        return None
+    weights = np.repeat(1.0 / chances, [len(some) for some in records])
+    if len(weights) == 0:
+        return 0
+    # Of all records so many are decided, drawn by their weights.
+    chosen, again = drawn_by(weights, DECIDED)
+    kept, _ = finish([np.concatenate(records)[chosen]], problem, cancel)
+    proven = len(kept.standing) / len(chosen)
+    # The chance of a record grows with its weight, so each stands for as many as any other.
+    return round(float((weights[chosen] / again).sum()) * proven)
+
+
+def estimated_pairs(query: Query, threads: int, cancel: Event | None) -> int | None:
+    """How many fixtures two clamps have, about, as they are listed; None where they are few."""
+    searches = searches_of(query, threads, cancel)
+    one = searches[0]
+    blocks = one.blocks(one.problem.toolkit.types, MOST_CELLS)
+    if sum(block.cost for block in blocks) < FEW:
+        return None
+    starts, costs, finds = cells_of(blocks)
+    width, total = float(np.diff(starts, append=starts[0] + tau).min()), 0.0
+    count = min(max(number_for(WORK_OF_TWO, costs, finds), FEWEST_OF_TWO), MOST_OF_TWO)
+    for cell, chance in zip(*drawn_by(finds, count), strict=True):
+        # The part's angle is -psi, a quarter turn more for each that the frame of the search is turned.
+        high = (one.frame.quarters * pi / 2 - starts[cell]) % tau
+        ranges = [(low, low + width) for low in (high - width, high - width + tau, high - width - tau)]
+        total += listed_in(searches, query, ranges, threads, cancel) / chance
+        if cancel is not None and cancel.is_set():
+            return None
+    return round(total)
+
+
+def cells_of(blocks: Sequence[Block]) -> tuple[Array, Array, Array]:
+    """Where the cells of blocks begin, in radians, the work in each, and how much is found there."""
+    starts, number = np.unique([block.start for block in blocks], return_inverse=True)
+    costs, finds = np.zeros(len(starts)), np.zeros(len(starts))
+    for block, at in zip(blocks, number.tolist(), strict=True):
+        costs[at] += block.cost
+        finds[at] += block.cost * block.dense
+    return starts, costs, finds
+
+
+def listed_in(
+    searches: Sequence[ToolkitSearch],
+    query: Query,
+    ranges: Sequence[tuple[float, float]],
+    threads: int,
+    cancel: Event | None,
+) -> float:
+    """How many fixtures of two clamps are listed, about, with orientations in a range in radians.
+
+    The range is given with those a whole turn before and after it.
+    """
+    low, high = map(degrees, ranges[0])
+    # Of cells that only touch the range none is searched.
+    inside = [(low + 2.0 * ANGLE_HAIR, high - 2.0 * ANGLE_HAIR)]
+    found = []
+    for search in searches:
+        blocks = search.blocks(search.problem.toolkit.types, MOST_CELLS, within=inside)
+        found.append(PackedContacts.of(run_blocks(blocks, threads, None, cancel, stop=search.stop)[0]))
+    every = sum(map(len, found)) // CONTACTS_DECIDED + 1
+    collector = ClampedSeats(query, searches[0].problem)
+    some = [thinned(part, search.problem, every) for part, search in zip(found, searches, strict=True)]
+    # What is not decided quickly is left out.
+    hurry = Event()
+    hurry.set()
+    with LatticeShares.made(searches, collector, threads, hurry) as shares:
+        return float(every * collector.count(shares.seats_among(some, ranges)))
+
+
+def thinned(contacts: PackedContacts, problem: Problem, every: int) -> Array:
+    """The contacts (N, 19) of one seat in so many."""
+    parts = []
+    for records in contacts.parts():
+        holes, theta, *_ = seat_numbers(records, problem)
+        # Seats with the same holes and nearly the same orientation are taken together.
+        seats = holes * 0x85EBCA6B + np.round(theta / (100.0 * SAME_POSE)).astype(np.int64)
+        parts.append(records[one_in(seats, every)])
+    return np.concatenate(parts)
+
+
+def drawn_by(sizes: Array, count: float) -> tuple[IntArray, Array]:
+    """About so many numbers, drawn with chances that grow with their sizes (N,), and the chances."""
+    chances = np.minimum(count * sizes / sizes.sum(), 1.0)
+    steps = np.floor(np.cumsum(chances) + BEGIN)
+    drawn = np.flatnonzero(np.diff(steps, prepend=np.floor(BEGIN)) > 0)
+    return drawn, chances[drawn]
+
+
+def number_for(work: float, costs: Array, finds: Array) -> float:
+    """How many of some costs (N,), drawn by what they find (N,), have together so much work."""
+    return work * float(finds.sum() / (finds @ costs))
