@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from math import inf, isinf
 from pathlib import Path
 from typing import Any
 
@@ -39,6 +40,7 @@ from workhold.model.quality import (
     WARNINGS,
 )
 from workhold.model.seating import SMALL_CAPTURE
+from workhold.presenting.figure_words import no_edge
 
 ROOT = Path(__file__).parents[1]
 PAGE, PICTURES = ROOT / "docs" / "first-choice.md", ROOT / "docs" / "figures" / "first-choice"
@@ -87,7 +89,8 @@ def seated(result: workhold.Result) -> dict[str, Any]:
 def chosen(part: ShopPart, seating: int | None = None) -> dict[str, Any]:
     """The first choice for a part: its figures, the best of each, what targets it meets, and its picture."""
     result = workhold.design(part.make(), part.vise, restrictions=part.restrictions, seating=seating)
-    quality = result.table.quality
+    quality, longest = result.table.quality.copy(), no_edge(result.workpiece, part.vise)
+    quality[quality[:, EDGE_DISTANCE] >= longest * (1 - 1e-9), EDGE_DISTANCE] = inf
     good = quality[quality[:, WARNINGS] == quality[:, WARNINGS].min()]
     best = {n: float((good[:, n].max if FIGURES[n].more_is_better else good[:, n].min)()) for n in SHOWN}
     first = result[0]
@@ -110,6 +113,8 @@ def chosen(part: ShopPart, seating: int | None = None) -> dict[str, Any]:
 
 def value(number: int, found: float, part: ShopPart) -> str:
     """A figure in the part's unit."""
+    if isinf(found):
+        return "none"
     if FIGURES[number].unit == "mm":
         return part.unit.text(found, part.unit.decimals)
     return f"{found:.2f}"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import inf
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -57,3 +59,15 @@ def test_the_figure_of_stress_takes_the_unit_of_its_heading():
     assert (
         heading(stress, MILLIMETRE).endswith("MPa") and float(figure_text(stress, 896.0, MILLIMETRE)) == 896
     )
+
+
+def test_forces_of_tables_are_pounds_with_inches():
+    """A load reaction of 1000 N is 224.8 lbf; where it is ranked by, what is equal to two digits shows alike."""
+    from workhold.model.quality import FIGURES
+    from workhold.presenting.figure_words import counted_text, figure_text, figure_words, heading
+
+    force = next(figure for figure in FIGURES if figure.key == "load_reaction")
+    assert heading(force, INCH).endswith(" lbf") and heading(force, MILLIMETRE).endswith(" N")
+    assert (figure_text(force, 1000.0, INCH), figure_text(force, 1000.0, MILLIMETRE)) == ("224.8", "1000.0")
+    assert figure_words(force, 1000.0, INCH) == "224.8 lbf" and figure_words(force, inf, INCH) == "any"
+    assert (counted_text(force, 1003.0, INCH), counted_text(force, 1003.0, MILLIMETRE)) == ("225", "1000")

@@ -255,6 +255,9 @@ STEP_TENTHS = 11, 10
 
 # mm. A contact nearer than this to an edge: edges are commonly broken by some tenths of a millimetre.
 NEAR_EDGE = 1.0
+# mm. A part whose centre of area is less inside the triangle of its supports tips at a touch: the centre of
+# gravity is not known better than that, and broken edges of pads and part take some tenths of a millimetre.
+STEADY = 0.5
 # No unit. Below this closure margin the weakest contact has less than a twelfth of the even share, a quarter.
 WEAK_CLOSURE = 0.02
 # No unit. A peg that pushes with more than so many times the jaw force wedges the part and marks its face.

@@ -103,6 +103,15 @@ class Unit:
         value = force / self.newtons
         return f"{value:.0f} {self.force}" if value >= 100 or value == 0 else f"{value:.3g} {self.force}"
 
+    def force_number(self, force: float, decimals: int = 1) -> str:
+        """A force in N as a number of the unit of force, without a negative zero, for columns of a table.
+
+        >>> MILLIMETRE.force_number(1000.0), INCH.force_number(1000.0), INCH.force_number(-0.01, 0)
+        ('1000.0', '224.8', '0')
+        """
+        text = f"{force / self.newtons:.{decimals}f}"
+        return text.removeprefix("-") if float(text) == 0 else text
+
     def moment_words(self, moment: float) -> str:
         """A moment in N mm in N m, or in ft lbf with N m beside it.
 

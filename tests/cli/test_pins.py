@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +29,7 @@ def test_a_drawing_takes_a_thickness_and_a_height_of_the_pegs_without_a_program(
     shown = run("show", "r.json", 1).stdout
     for words in (
         "pin deflection",
-        "How far the peg that bends most gives way, at 500 N.",
+        "How far the peg that bends most gives way, at a jaw force of 500 N.",
         "Pegs bend, at a jaw force of 500 N, built in at the plate; a real hole gives more:",
         "38.00",
         "beside its location error of",
@@ -51,6 +52,25 @@ def test_without_a_force_it_is_said_to_be_for_each_kn(run: Any, part: str) -> No
     assert "gives way, for each kN of jaw force." in shown
     assert "Pegs bend, for each kN of jaw force, built in at the plate" in shown
     assert "Beware" not in shown
+    inches = run("show", "r.json", 1, "--unit", "inch").stdout
+    assert "gives way, for each 225 lbf (1000 N) of jaw force." in inches and "kN" not in inches
+
+
+def test_loads_act_at_the_force_of_the_result_in_its_unit(run: Any, part: str) -> None:
+    """As on the sheet: what closes it is known, and forces are pounds with inches, with newtons in sentences."""
+    load = ("--load", "force=100 at=10,5")
+    assert run("design", part, *HELD, *load, "--jaw-force", "900", "--out", "r.json").exit_code == 0
+    shown = run("show", "r.json", 1, "--friction", "0.1").stdout
+    assert "Forces on the part at a jaw force of 900 N:" in shown and "jaw force needed N" in shown
+    assert "at a jaw force of 500 N:" in run("show", "r.json", 1, "--jaw-force", "500").stdout
+    inches = run("show", "r.json", 1, "--friction", "0.1", "--unit", "inch").stdout
+    assert "Forces on the part at a jaw force of 202 lbf (900 N):" in inches
+    assert "jaw force needed lbf" in inches and "needed with friction lbf" in inches
+    needed = [
+        row.split() for words in (shown, inches) for row in words.splitlines() if row.startswith("load 1")
+    ]
+    assert float(needed[0][2]) == pytest.approx(float(needed[2][2]) * 4.4482, abs=0.3)
+    assert not re.search(r"\bN\b(?!\))", inches)
 
 
 def test_without_heights_nothing_is_said(run: Any, part: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 from datetime import date
 from hashlib import sha256
 from math import sqrt
@@ -269,6 +270,24 @@ def test_bad_requests_are_one_sentence(
     assert outcome.exit_code == 2
     assert message in outcome.stderr and outcome.stderr.count("\n") == 1
     assert not list(folder.glob("a.*"))
+
+
+def test_explore_says_none_where_a_part_has_no_edge(run: Any, folder: Path) -> None:
+    """Each toolkit has its own figures in its row, and the first choice those of its own."""
+    loop = [(-30, -20, 0), (30, -20, 1), (30, 20, 0), (-30, 20, 1)]
+    (folder / "rounded.json").write_text(json.dumps({"name": "rounded", "units": "mm", "loops": [loop]}))
+    words = ("explore", "rounded.json", "--vise", "table-100mm,plate-20mm,two-clamp-plate-20mm")
+    shown, told = run(*words).stdout, json.loads(run(*words, "--json").stdout)
+    lengths = {}
+    for one in told["toolkits"]:
+        (line,) = (line for line in shown.splitlines() if line.startswith(f"{one['name']} "))
+        if one["figures"]:
+            lengths[one["name"]] = one["figures"]["edge_distance"]
+            assert f" {one['figures']['location_error']:.4f} " in line
+            assert " none " in line or f" {lengths[one['name']]:.4f} " in line
+    assert len(lengths) == 2 and "none" in shown
+    (choice,) = (line for line in shown.splitlines() if line.startswith("First choice"))
+    assert "edge distance none" in choice and "location error 0." in choice and " mm. " in choice
 
 
 def test_the_command_says_none_where_a_part_has_no_edge(run: Any, folder: Path) -> None:

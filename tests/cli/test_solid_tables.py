@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from attrs import evolve
+
 from workhold import Workpiece
 from workhold.cli.tables import other_heights
 from workhold.model.solid import HeightRow, SolidOutline
@@ -36,16 +38,21 @@ def test_heights_with_most_to_touch_are_named_and_the_other_side() -> None:
 
 
 def test_a_shaft_that_lies_is_said_to_slide_whatever_its_pegs() -> None:
-    """Only its ends are touched, which are parallel: no other height is named, and what helps is."""
+    """Only its ends are touched, which are parallel: no height is named but one that touches more than ends."""
+    sliding = [evolve(row, slides=row.touchable > 0) for row in ROWS]
     for bands, slides in (
         ([None, (0.0, 20.0), None, (0.0, 20.0)], True),
         ([(0.0, 20.0), (0.0, 20.0), None, (0.0, 20.0)], False),
         ([None] * 4, False),
     ):
         solid = SolidOutline("z", 20.0, 20.0, 0.5, 1.0, bands)
-        (said,) = other_heights(Workpiece.from_loops("shaft", [SQUARE], solid=solid), ROWS, MILLIMETRE)
+        shaft = Workpiece.from_loops("shaft", [SQUARE], solid=solid)
+        (said,) = other_heights(shaft, sliding, MILLIMETRE)
         assert ("parallel to one another" in said and "vee blocks" in said) == slides
         assert ("--peg-height" in said) != slides
+        (said,) = other_heights(shaft, [*sliding[:1], ROWS[1], *sliding[2:]], MILLIMETRE)
+        assert "--peg-height 12.700" in said and "vee blocks" not in said
+        assert ("--peg-height 3.000" in said) != slides
     solid = SolidOutline("z", 20.0, 20.0, 0.5, 1.0, [(0.0, 20.0)] * 2)
     disc = Workpiece.from_loops("disc", [[[-20, 0, 1], [20, 0, 1]]], solid=solid)
     assert "parallel" not in other_heights(disc, ROWS, MILLIMETRE)[0]

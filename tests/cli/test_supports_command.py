@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -203,6 +204,25 @@ def test_friction_is_a_line_of_its_own_and_ranks_nothing(result_file: Path, run:
         assert refused.exit_code == 2 and sentence in refused.stderr
     bare = run(*words[:5], "--friction", "0.2")
     assert bare.exit_code == 2 and "--friction is asked of loads, of which there are none" in bare.stderr
+
+
+def test_forces_are_pounds_with_inches(result_file: Path, run: Run) -> None:
+    """In the columns alone, in sentences with newtons beside them; the numbers are the same forces."""
+    words = ("supports", result_file, "1", "--thickness", "20mm", "--friction", "0.2")
+    load = {"mm": "at=40,25", "inch": f"at={40 / 25.4},{25 / 25.4}"}
+    newtons, pounds = (
+        run(*words, "--load", f"{at} force=200 axial=-30..60", "--unit", unit).stdout
+        for unit, at in load.items()
+    )
+    assert "clamp force N   support force N" in newtons and "clamp force lbf   support force lbf" in pounds
+    (first, *_), (other, *_) = (
+        [row.split(")")[1].split() for row in shown.splitlines() if row.lstrip().startswith("1 ")]
+        for shown in (newtons, pounds)
+    )
+    for own, size in zip(first[:2], other[:2], strict=True):
+        assert float(own) == pytest.approx(float(size) * 4.4482, abs=3)
+    assert "All for a closing force of" in pounds and "lbf (" in pounds.split("All for a closing force of")[1]
+    assert not re.search(r"\bN\b(?!\))", pounds)
 
 
 def test_no_pad_stands_under_a_solid_that_lies_on_no_face(tmp_path: Path, run: Run) -> None:

@@ -124,6 +124,17 @@ def test_without_loads_the_moment_is_told_for_a_round_force() -> None:
     standing = found.triple.standing
     sentence = f"its area is {standing:.3f} mm inside" if standing > 0 else "Unclamped it does not stand"
     assert sentence in words
+    for inside, said in (
+        (
+            0.0,
+            "Unclamped it tips at a touch, as the centre of its area is 0.000 mm inside their triangle: hold it",
+        ),
+        (0.5, "Unclamped it stands on the three: the centre of its area is 0.500 mm inside their triangle."),
+        (-0.1, "Unclamped it does not stand on the three: hold it down until it is clamped."),
+    ):
+        triples = tuple(evolve(one, standing=inside) for one in found.supports.triples)
+        moved = evolve(found, supports=evolve(found.supports, triples=triples))
+        assert said in printed(sheet(result_of("plate", False), thickness=HEIGHT, supports=moved))
     inches = printed(sheet(result_of("plate", False), thickness=HEIGHT, supports=found, unit=INCH))
     assert (
         f"With each 100 lbf the clamp alone holds up to {100 * found.clamp.arm / 304.8:.3g} ft lbf" in inches

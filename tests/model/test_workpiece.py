@@ -144,7 +144,10 @@ REFUSED = {
         [SQUARE, disc(15, 15, 2), HOLE],
         "loop 1, at (13, 15), lies inside the hole of loop 2",
     ),
-    "hole crosses outer": ([SQUARE, moved(HOLE, 25, 0)], "loops must stay apart"),
+    "hole crosses outer": (
+        [SQUARE, moved(HOLE, 25, 0)],
+        "loops must stay apart from each other; trim both where they cross, or leave one out",
+    ),
     "holes cross": ([SQUARE, HOLE, disc(20, 15, 3)], "loop 1, segment 1 and part: loop 2, segment"),
     "hole touches outer": ([SQUARE, [[0, 20, 0], [10, 15, 0], [10, 25, 0]]], "cross or touch at (0, 20)"),
     "round hole touches outer": ([SQUARE, disc(5, 20, 5)], "cross or touch at (0, 20)"),

@@ -20,11 +20,14 @@ from workhold.listing.identity import entries
 from workhold.model.quality import RANKED
 from workhold.model.requirements import Restrictions
 from workhold.presenting.figure_words import figure_text
+from workhold.presenting.live_picture import LivePicture
 from workhold.presenting.markup import MOST_SVG, Markup, compact, image, table
 from workhold.presenting.notebook import MOST_ROWS, MOST_SEATS
 from workhold.units import MILLIMETRE
+from workhold.web.answers import fixture_answer, rows_answer
 
 RECTANGLE = [[[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]]]
+STADIUM = [[-20, -15, 0], [20, -15, 1], [20, 15, 0], [-20, 15, 1]]
 WEDGE = workhold.Workpiece.from_loops("wedge", [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]])
 RESULT = workhold.design(WEDGE, workhold.Vise(pitch=15, columns=1, peg_radius=2))
 DENSE = workhold.design(WEDGE, workhold.Vise(pitch=7, columns=2, peg_radius=1.5), best=2)
@@ -143,6 +146,26 @@ def test_a_fixture_shows_its_figures_with_units() -> None:
     assert rows["location error"] == [f"{fixture.quality['location_error']:.4f}", "mm", "less"]
     assert rows["closure margin"][2] == "more"
     assert b"Fixture 1 of" in page.pictures[0]
+
+
+def test_where_no_edge_is_none_is_said() -> None:
+    """The figure then stands for no edge, and is a length that nobody can measure on the part."""
+    for loop, words in ((STADIUM, "none"), (RECTANGLE[0], None)):
+        part = workhold.Workpiece.from_loops("part", [loop])
+        result = workhold.design(
+            part, workhold.Plate(pitch=20, peg_radius=3, clamp_radius=5, clamps=2), best=2
+        )
+        expected = words or f"{result[0].quality['edge_distance']:.4f}"
+        rows = {row[0]: row for row in Page(result[0]._repr_html_()).rows}
+        assert rows["edge distance"][1] == expected
+        head, first, *_ = (row for row in Page(result._repr_html_()).rows if row)
+        (place,) = (k for k, name in enumerate(head) if name.startswith("edge distance"))
+        assert (first[place] == "none") == (words == "none")
+        (live,) = (row for row in LivePicture.of(result, 0, 200.0).figures if row[0] == "edge distance")
+        assert live[1] == (words or f"{expected} mm")
+        answer = fixture_answer(result[0], part, result.toolkit)
+        assert (answer["quality"]["edge_distance"] is None) == (words == "none")
+        assert rows_answer(result.table, part, result.toolkit, [1])[0] == {"rank": 1, **answer}
 
 
 def test_figures_of_a_plate_speak_of_its_clamp() -> None:

@@ -14,7 +14,7 @@ from workhold import FlatJaw, OpeningVise, Plate, Query, Vise, Workpiece, answer
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.first_choice import FACTORS
 from workhold.model.fixture_table import FixtureTable
-from workhold.model.quality import LOCATION_ERROR
+from workhold.model.quality import LOCATION_ERROR, WARNINGS
 from workhold.model.requirements import Restrictions
 from workhold.statics.effective_error import EffectiveErrors, angle_classes
 from workhold.statics.why_first import why_first
@@ -150,6 +150,40 @@ def test_why_first_says_what_counts() -> None:
     tilted = answer(Query(quarter, two, restrictions=Restrictions(angles=((90.0, 90.0),)), best=3), threads=1)
     assert "counted as" in why_first(tilted) and "(turned by 90°" in why_first(tilted)
     assert why_first(answer(Query(block(), two, ranking="penalty", best=3), threads=1)) == ""
+
+
+def test_why_first_says_what_stands_square() -> None:
+    """None at all, none among those listed, none within a tenth, or none that has no warning or is fit."""
+    whole = answer(Query(block(), Plate(pitch=20, peg_radius=3)), threads=1)
+    best = answer(Query(block(), Plate(pitch=20, peg_radius=3), best=3), threads=1)
+    assert why_first(whole).endswith("; nothing stands square to the drawing.")
+    assert why_first(best).endswith(
+        "; square to the drawing nothing comes within a tenth, and none is listed."
+    )
+    assert why_first(evolve(whole, complete=False)).endswith("and none is listed.")
+    alone = answer(Query(block(), Plate(pitch=20, peg_radius=3), best=1), threads=1)
+    assert why_first(alone).endswith("; square to the drawing nothing comes within a tenth.")
+    theta, quality = whole.table.theta.copy(), whole.table.quality.copy()
+    theta[7] = np.pi
+    turned = evolve(whole.table, theta=theta)
+    assert why_first(evolve(whole, table=turned)).endswith(
+        "; square to the drawing nothing comes within a tenth."
+    )
+    for column, value, words in (
+        (WARNINGS, 1.0, "what stands square to the drawing has a warning"),
+        (LOCATION_ERROR, 50.0, "what stands square to the drawing is not fit for a workshop"),
+    ):
+        changed = quality.copy()
+        changed[7, column] = value
+        assert why_first(evolve(whole, table=evolve(turned, quality=changed))).endswith(f"; {words}.")
+        other = theta.copy()
+        other[8] = np.pi / 2
+        two = evolve(whole.table, theta=other, quality=changed)
+        assert why_first(evolve(whole, table=two)).endswith("nothing comes within a tenth.")
+    quarter = theta.copy()
+    quarter[0], quarter[7] = np.pi / 2, 0.3
+    said = why_first(evolve(whole, table=evolve(whole.table, theta=quarter)))
+    assert said.endswith("; nothing stands as drawn.")
 
 
 def test_the_manual_has_the_table_of_factors() -> None:

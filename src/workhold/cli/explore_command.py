@@ -32,6 +32,7 @@ from workhold.units import Unit
 
 if TYPE_CHECKING:
     from workhold.files.part.loaded import Loaded
+    from workhold.model.query import Query
     from workhold.search.design import Explored
 
 __all__ = ["explore"]
@@ -82,6 +83,7 @@ def explore(
     for each in loaded.values():
         refuse_unsure_numbers(each, asked["restrictions"].avoid, CALLED)
     further = {one: machined.asked(shown, reading.peg_height, each.workpiece) for one, each in loaded.items()}
+    from workhold.cli.tables import slides_always
     from workhold.cli.warming import compile_on_first_run
     from workhold.contact.features import face_of_segment
     from workhold.files.atomic import text_file
@@ -110,7 +112,11 @@ def explore(
     ranking = next((query.ranking for _, query in queries if not isinstance(query, InputError)), ())
     first = first_choice(found, ranking, is_sold)
     if not json_:
-        print_explored(found, types, ranking, first, shown)
+        known = [figures_known(*each) for each in zip(found, queries, strict=False)]
+        print_explored(found, known, types, ranking, first, shown)
+        sliding = [slides_always(one.workpiece, one.heights) for one in loaded.values()]
+        if first is None and all(sliding):
+            print_tables(*sliding[0])
     if out is not None:
         with text_file(Path(out)) as stream:
             stream.write(table_text(found, types))
@@ -130,13 +136,28 @@ def explore(
 FIGURES_KEPT = 3
 
 
+def figures_known(item: Explored, query: tuple[str, Query | InputError]) -> dict[str, float]:
+    """The figures of a toolkit's first fixture, with an infinite edge distance where there is no edge."""
+    from workhold.presenting.figure_words import edgeless, no_edge
+
+    asked = query[1]
+    if isinstance(asked, InputError):
+        return {}
+    return edgeless(item.figures, no_edge(asked.workpiece, asked.toolkit))
+
+
 def print_explored(
-    found: list[Explored], types: list[str], ranking: tuple[str, ...], best: Explored | None, unit: Unit
+    found: list[Explored],
+    known: list[dict[str, float]],
+    types: list[str],
+    ranking: tuple[str, ...],
+    best: Explored | None,
+    unit: Unit,
 ) -> None:
-    """Prints the table and says which toolkit is best."""
+    """Prints the table and says which toolkit is best; ``known`` are the figures of each."""
     from workhold.files.toolkit_file import is_sold
     from workhold.model.quality import FIGURES, LOCATION_ERROR, PROGRAM_FIGURE
-    from workhold.presenting.figure_words import figure_text, heading
+    from workhold.presenting.figure_words import figure_text, figure_words, heading
 
     keys = dict.fromkeys([FIGURES[LOCATION_ERROR].key, *ranking])
     figures = [figure for key in keys for figure in (*FIGURES, PROGRAM_FIGURE) if figure.key == key]
@@ -144,13 +165,11 @@ def print_explored(
     # are.
     headings = [*(f">{heading(figure, unit)}" for figure in figures), *(f">type {name}" for name in types)]
     table = Table(("toolkit", ">fixtures", *headings), spare=max(len(headings) - FIGURES_KEPT, 0))
-    for item in found:
-        if item.figures and not item.fit:
+    for item, own in zip(found, known, strict=True):
+        if own and not item.fit:
             table.red.add(len(table.rows))
         counts = ("-" if item.about is not None else f"{item.found.get(name, 0):,}" for name in types)
-        values = (
-            figure_text(f, item.figures[f.key], unit) if f.key in item.figures else "-" for f in figures
-        )
+        values = (figure_text(f, own[f.key], unit) if f.key in own else "-" for f in figures)
         about = "" if item.about is None else "~"
         table.add_row(item.name, f"{about}{item.fixtures:,}", *values, *counts)
     print_tables(table)
@@ -160,8 +179,9 @@ def print_explored(
         if item.reason:
             print_tables(f"{item.name}: {item.reason}")
     if best is not None:
-        shown = [f for f in (*figures[1:], figures[0]) if f.key in best.figures]
-        words = ", ".join(f"{heading(f, unit)} {figure_text(f, best.figures[f.key], unit)}" for f in shown)
+        own = known[found.index(best)]
+        shown = [f for f in (*figures[1:], figures[0]) if f.key in own]
+        words = ", ".join(f"{f.words} {figure_words(f, own[f.key], unit)}" for f in shown)
         unsold = "" if is_sold(best.name) else " Nobody sells it: it is the gripper of the paper."
         over = f"It holds the part over {best.held:.0%} of its length."
         print_tables(f"First choice: {best.name}; its first fixture has {words}. {over}{unsold}")

@@ -81,8 +81,9 @@ def show(
     result = result_with(result_file, rank)
     fixture, printed = result[rank - 1], printed_unit(unit, result.toolkit)
     loads_asked = asked or result.query.loads
+    closed_with = result.query.jaw_force if closing_force is None else closing_force
     cases = load_cases(
-        fixture, result.workpiece, result.toolkit, loads_asked, closing_force, coefficient, stiffness
+        fixture, result.workpiece, result.toolkit, loads_asked, closed_with, coefficient, stiffness
     )
     if not json_:
         print_fixture(result, rank, cases, printed, (closing_force, stiffness))
@@ -128,16 +129,11 @@ def print_fixture(
     ----------
     closing : the jaw force in N, None where it is open, and how stiff the jaw is.
     """
-    from workhold.cli.tables import (
-        first_sentence,
-        fixture_tables,
-        no_edge,
-        quality_table,
-        standing_sentences,
-    )
+    from workhold.cli.tables import first_sentence, fixture_tables, quality_table, standing_sentences
+    from workhold.presenting.figure_words import no_edge
 
     fixture, toolkit = result[rank - 1], result.toolkit
-    force, longest = result.query.jaw_force, no_edge(result)
+    force, longest = result.query.jaw_force, no_edge(result.workpiece, toolkit)
     quality = quality_table(fixture, toolkit.moving.noun, unit, force, longest)
     standing = standing_sentences(fixture, result, unit)
     print_tables(*fixture_tables(fixture, toolkit, rank, len(result), unit), *standing, "", quality)
@@ -225,25 +221,26 @@ def load_tables(
     with_friction = cases[0].needed_with_friction is not None
     columns = [
         "load",
-        f">{noun} force needed N",
+        f">{noun} force needed {unit.force}",
         "peg that lets go first",
         f">worst at {unit.abbreviation}",
         ">direction deg",
     ]
-    table = Table((*columns, *([">needed with friction N"] if with_friction else [])))
+    table = Table((*columns, *([f">needed with friction {unit.force}"] if with_friction else [])))
     for number, case in enumerate(cases, 1):
         worst = case.needed
         row = [
             case.load.name or f"load {number}",
-            f"{worst.value:.1f}",
+            unit.force_number(worst.value),
             fixture.pegs[worst.peg].hole,
             f"({unit.number(worst.point[0])}, {unit.number(worst.point[1])})",
             f"{worst.direction:.1f}",
         ]
-        table.add_row(*row, *([f"{case.needed_with_friction:.1f}"] if with_friction else []))
-    forces = Table(("load", *(f">{peg.hole} N" for peg in fixture.pegs), "every peg presses"))
+        table.add_row(*row, *([unit.force_number(case.needed_with_friction or 0.0)] if with_friction else []))
+    forces = Table(("load", *(f">{peg.hole} {unit.force}" for peg in fixture.pegs), "every peg presses"))
     for number, case in enumerate(cases, 1):
-        ranges = (f"{low:.1f} to {high:.1f}" for low, high in zip(case.smallest, case.largest, strict=True))
+        extremes = zip(case.smallest, case.largest, strict=True)
+        ranges = (" to ".join(map(unit.force_number, both)) for both in extremes)
         holds = "yes" if case.keeps_contact else "no: the part can move"
         forces.add_row(case.load.name or f"load {number}", *ranges, holds)
     notes = []
@@ -259,7 +256,7 @@ def load_tables(
         table,
         *notes,
         "",
-        f"Forces on the part at a {noun} force of {cases[0].jaw_force:.1f} N:",
+        f"Forces on the part at a {noun} force of {unit.force_words(cases[0].jaw_force)}:",
         forces,
         note,
     )

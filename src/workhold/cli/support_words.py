@@ -138,7 +138,7 @@ def with_friction(found: Supports, count: int | None, friction: float | None) ->
     return [found.clamp_with_friction(friction, rank) for rank in range(1, len(found.triples[:count]) + 1)]
 
 
-def friction_words(friction: float, helped: list[float]) -> str:
+def friction_words(friction: float, helped: list[float], unit: Unit) -> str:
     """Says what friction could add to the sets that are listed.
 
     Parameters
@@ -146,7 +146,7 @@ def friction_words(friction: float, helped: list[float]) -> str:
     friction : its coefficient.
     helped : least clamp forces in N, one for each set.
     """
-    forces = ", ".join(f"{force:.0f} N" for force in helped)
+    forces = ", ".join(unit.force_words(force) for force in helped)
     sets = "that set" if len(helped) == 1 else "these sets, in their order,"
     return (
         f"With a friction of {friction:g} at every contact the clamp of {sets} could do with {forces} at "

@@ -307,7 +307,7 @@ def report(
     else:
         print_sets(found, listed, rank, unit)
         if friction is not None:
-            print_tables(friction_words(friction, helped))
+            print_tables(friction_words(friction, helped, unit))
     if found.count is not None and found.count > len(listed) and not written:
         print_remark("more sets can be listed with --triples, and written into a file with --out.")
     if written:
@@ -331,10 +331,12 @@ def print_sets(found: Supports, listed: Sequence[Triple], rank: int, unit: Unit)
 
 def notes_of(found: Supports, listed: Sequence[Triple], unit: Unit) -> list[str]:
     """Says what the figures mean, and what has to be set otherwise than for the fixture alone."""
+    from workhold.conventions import STEADY
     from workhold.supports.words import listing_notes
 
     notes = [
         "The clamp presses at that point of the part's coordinates. Its force times the tipping arm is the "
-        "moment that tips the part; where the last figure is above 0, the part stands before it is clamped."
+        f"moment that tips the part; where the last figure is at least {unit.text(STEADY)}, the part stands "
+        "before it is clamped."
     ]
     return notes + before_first(listed) + listing_notes(found, listed, unit, KEEP_OFF)

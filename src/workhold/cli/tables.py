@@ -14,6 +14,7 @@ from workhold.presenting.figure_words import (
     edgeless,
     figure_text,
     figures_shown,
+    no_edge,
     peg_groups,
     place_of,
     rounded,
@@ -44,6 +45,7 @@ __all__ = [
     "proof_sentences",
     "quality_table",
     "result_table",
+    "slides_always",
     "solid_table",
     "standing_sentences",
     "unfit_sentence",
@@ -153,9 +155,10 @@ def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILL
     table = Table(columns, spare=max(len(headings) - (3 if result.seating else 1), 0) + 1)
     # Of two clamps there are two lengths to set, which leave less room: to choose by, fewer decimals will do.
     decimals, degrees_decimals = (unit.decimals, 3) if toolkit.closes_at_once else (unit.decimals - 2, 1)
-    red, longest = unfit(result.table.quality, result.query.tolerance), no_edge(result)
+    red, longest = unfit(result.table.quality, result.query.tolerance), no_edge(result.workpiece, toolkit)
     for index, like in zip(entries.index[:count].tolist(), entries.like[:count].tolist(), strict=True):
         fixture = result[index]
+        known = edgeless(fixture.figures, longest)
         if red[index]:
             table.red.add(len(table.rows))
         table.add_row(
@@ -170,20 +173,13 @@ def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILL
             rounded(fixture.pose.written_deg, degrees_decimals),
             *(
                 (counted_text if figure in ranked[:-1] else figure_text)(
-                    figure, edgeless(figure, fixture.figures.get(figure.key, nan), longest), unit
+                    figure, known.get(figure.key, nan), unit
                 )
                 for figure in figures
             ),
             toolkit.arrangement(fixture.type, fixture.direction).title,
         )
     return table
-
-
-def no_edge(result: Result) -> float:
-    """The edge distance in mm of contacts that have no edge, as the figures of a result have it."""
-    from workhold.statics.contact_matrix import Touched
-
-    return Touched.of(result.workpiece, result.toolkit).length
 
 
 def quality_table(
@@ -202,20 +198,18 @@ def quality_table(
     longest : the edge distance that stands for none, see :func:`no_edge`.
     """
     from workhold.model.quality import FIGURES, PIN_KEYS, PROGRAM_FIGURE
+    from workhold.statics.bent_pegs import at_force
 
     table = Table(("figure", ">value", "unit", "better", "meaning"))
+    known = edgeless(fixture.quality, longest)
     for figure in (*FIGURES, PROGRAM_FIGURE):
-        if figure.key in fixture.quality:
+        if figure.key in known:
             of = unit_of(figure, unit)
             better = "more" if figure.more_is_better else "less"
-            value = figure_text(figure, edgeless(figure, fixture.quality[figure.key], longest), unit)
+            value = figure_text(figure, known[figure.key], unit)
             words, meaning = figure.named_for(mover)
             if figure.key in PIN_KEYS:
-                at = (
-                    f"for each kN of {mover} force"
-                    if jaw_force is None
-                    else f"at {unit.force_words(jaw_force)}"
-                )
+                at = at_force(jaw_force, mover, unit)
                 meaning = meaning.replace(f"at the {mover} force or for each kN of it", at)
             table.add_row(words, value, of, better, meaning)
     return table
@@ -378,16 +372,26 @@ def height_table(rows: Sequence[HeightRow], unit: Unit) -> list[Table]:
 
 def touches_one_way(workpiece: Workpiece) -> bool:
     """Whether pegs can touch some faces of a solid, and all these are flat and parallel."""
-    from workhold.conventions import PARALLEL
-    from workhold.geometry.segment import Line
+    from workhold.geometry.segment import are_parallel_lines
 
     assert workpiece.solid is not None
     bands, every = workpiece.solid.bands, workpiece.numbered.faces
-    faces = [face.segment for face in every if any(bands[k] is not None for k in face.segments)]
-    if not faces or not all(isinstance(one, Line) for one in faces):
-        return False
-    (x, y), *rest = (one.normal() for one in faces)
-    return all(abs(x * v - y * u) <= PARALLEL for u, v in rest)
+    touched = (face for face in every if any(bands[k] is not None for k in face.segments))
+    return are_parallel_lines(face.segment for face in touched)
+
+
+def slides_always(workpiece: Workpiece, rows: Sequence[HeightRow]) -> list[str]:
+    """What holds a solid that slides along all that pegs of any height touch of it; nothing for others."""
+    if workpiece.solid is None or not touches_one_way(workpiece):
+        return []
+    if any(row.touchable > 0 and not row.slides for row in rows):
+        return []
+    return [
+        "All that pegs of any height can touch of the part are flat faces parallel to one another, such as "
+        "the ends and shoulders of a shaft that lies: nothing keeps it from sliding along them, in this or "
+        "any other toolkit. Round sides that lie are touched by no peg: hold it in vee blocks or soft jaws "
+        "with its end against a stop, or turn another side up (--axis)."
+    ]
 
 
 def other_heights(workpiece: Workpiece, rows: Sequence[HeightRow], unit: Unit) -> list[str]:
@@ -400,15 +404,14 @@ def other_heights(workpiece: Workpiece, rows: Sequence[HeightRow], unit: Unit) -
     solid = workpiece.solid
     if solid is None:
         return []
-    if touches_one_way(workpiece):
-        return [
-            "All that pegs can touch of the part at this height are flat faces parallel to one another, "
-            "such as the ends and shoulders of a shaft that lies: nothing keeps it from sliding along "
-            "them, in this or any other toolkit. Round sides that lie are touched by no peg: hold it in "
-            "vee blocks or soft jaws with its end against a stop, or turn another side up (--axis). The "
-            "command features shows whether another height has faces in other directions."
-        ]
-    others = [row for row in rows if not row.low < solid.peg_height <= row.high and row.touchable > 0]
+    if said := slides_always(workpiece, rows):
+        return said
+    slides = touches_one_way(workpiece)
+    others = [
+        row
+        for row in rows
+        if not row.low < solid.peg_height <= row.high and row.touchable > 0 and not (slides and row.slides)
+    ]
     longest = sorted(others, key=lambda row: (-row.touchable, -row.high))[:MOST_NAMED]
     named = [f"--peg-height {unit.number(row.high)}" for row in longest]
     turned = other_way_up(solid.axis)

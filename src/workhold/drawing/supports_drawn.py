@@ -221,10 +221,12 @@ def tipping_words(chosen: ChosenSupports, unit: Unit) -> str:
 
 def holding_up_words(sheet: Sheet, chosen: ChosenSupports) -> str:
     """Whether the part stands before it is clamped, a sentence."""
-    standing = chosen.triple.standing
-    if standing > 0:
-        inside = sheet.lengths.words(standing)
-        return f"Unclamped it stands on the three: the centre of its area is {inside} inside their triangle."
+    triple = chosen.triple
+    inside = f"the centre of its area is {sheet.lengths.words(triple.standing)} inside their triangle"
+    if triple.stands:
+        return f"Unclamped it stands on the three: {inside}."
+    if triple.standing >= 0:
+        return f"Unclamped it tips at a touch, as {inside}: hold it down until it is clamped."
     return "Unclamped it does not stand on the three: hold it down until it is clamped."
 
 

@@ -352,7 +352,7 @@ def refuse_meeting_loops(
             for x, y in common_points(a.segments[i], b.segments[j], TOUCHING):
                 raise InputError(
                     f"{place_a(i)} and {place_b(j)} cross or touch at ({x:.6g}, {y:.6g}): loops must stay "
-                    "apart from each other."
+                    "apart from each other; trim both where they cross, or leave one out."
                 )
 
 

@@ -22,7 +22,7 @@ import numpy as np
 from attrs import evolve, frozen
 from numpy.typing import NDArray
 
-from workhold.conventions import STRAIGHT
+from workhold.conventions import PARALLEL, STRAIGHT
 from workhold.kernels.base.feature import SEGMENT_LENGTH, SHALLOW
 
 __all__ = [
@@ -333,6 +333,15 @@ def bounding_box(segment: Segment) -> tuple[float, float, float, float]:
                 xs.append(segment.center[0] + segment.radius * dx)
                 ys.append(segment.center[1] + segment.radius * dy)
     return min(xs), min(ys), max(xs), max(ys)
+
+
+def are_parallel_lines(segments: Iterable[Segment]) -> bool:
+    """Whether some segments, one at least, are lines that run the same way or back."""
+    found = list(segments)
+    if not found or not all(isinstance(one, Line) for one in found):
+        return False
+    (x, y), *rest = (one.normal() for one in found)
+    return all(abs(x * v - y * u) <= PARALLEL for u, v in rest)
 
 
 def box_around(segments: Iterable[Segment]) -> tuple[float, float, float, float]:

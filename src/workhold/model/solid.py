@@ -25,6 +25,7 @@ __all__ = [
     "SolidOutline",
     "other_way_up",
     "run_at",
+    "slides_at_any",
 ]
 
 # The directions of a file that can point up.
@@ -309,6 +310,7 @@ class HeightRow:
     area : of the outline, in mm².
     border, touchable : length of its border, and of what may be touched of it, in mm.
     band : shortest band of what may be touched, in mm; 0 where there is none.
+    slides : whether all that may be touched are flat faces parallel to one another, along which it slides.
     """
 
     low: float
@@ -317,3 +319,10 @@ class HeightRow:
     border: float
     touchable: float
     band: float
+    slides: bool = False
+
+
+def slides_at_any(rows: Iterable[HeightRow]) -> bool:
+    """Whether a solid slides along what pegs can touch, however high they are."""
+    touching = [row for row in rows if row.touchable > 0]
+    return bool(touching) and all(row.slides for row in touching)

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 
 from attrs import evolve, frozen
 
+from workhold.conventions import STEADY
 from workhold.delegates import delegate
 from workhold.errors import InputError
 from workhold.fixels.carrier import Carrier, hole_name, letter_of
@@ -110,6 +111,11 @@ class Triple:
     arm_at: Point
     best: ClampFigures
     given: ClampFigures | None
+
+    @property
+    def stands(self) -> bool:
+        """Whether the part stands on them unclamped, so that no touch tips it."""
+        return self.standing >= STEADY
 
     @property
     def clamp(self) -> ClampFigures:

@@ -9,18 +9,23 @@ from workhold.fixels.contacts import CLAMP_TIP
 from workhold.units import Unit
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from workhold.fixels.toolkit import Toolkit
     from workhold.model.fixture import Fixture, Peg
     from workhold.model.quality import Figure
     from workhold.model.result import Result
+    from workhold.model.workpiece import Workpiece
 
 __all__ = [
     "counted_text",
     "edgeless",
     "figure_text",
+    "figure_words",
     "figures_shown",
     "fixture_title",
     "heading",
+    "no_edge",
     "peg_groups",
     "place_of",
     "rounded",
@@ -108,9 +113,8 @@ def heading(figure: Figure, unit: Unit) -> str:
 
 def unit_of(figure: Figure, unit: Unit) -> str:
     """The unit in which a figure is shown."""
-    if figure.unit == "MPa":
-        return unit.pressure
-    return unit.abbreviation if figure.unit == "mm" else figure.unit
+    shown = {"mm": unit.abbreviation, "MPa": unit.pressure, "N": unit.force}
+    return shown.get(figure.unit, figure.unit)
 
 
 def rounded(value: float, decimals: int) -> str:
@@ -123,14 +127,22 @@ def rounded(value: float, decimals: int) -> str:
     return text.removeprefix("-") if float(text) == 0 else text
 
 
-def edgeless(figure: Figure, value: float, longest: float) -> float:
-    """A figure's value; infinite where it is the length that stands for no edge, which is on no part.
+def no_edge(workpiece: Workpiece, toolkit: Toolkit) -> float:
+    """The edge distance in mm of contacts that have no edge, as figures have it."""
+    from workhold.statics.contact_matrix import wrench_length
+
+    return wrench_length(workpiece, toolkit)
+
+
+def edgeless(figures: Mapping[str, float], longest: float) -> dict[str, float]:
+    """Figures by name, with an infinite edge distance for the length that stands for no edge.
 
     Parameters
     ----------
-    longest : that length in mm, ``Touched.length``.
+    longest : that length in mm, which is on no part, see :func:`no_edge`.
     """
-    return inf if figure.key == EDGE and value >= longest * (1 - SAME_SHARE) else value
+    has_none = EDGE in figures and figures[EDGE] >= longest * (1 - SAME_SHARE)
+    return {**figures, EDGE: inf} if has_none else dict(figures)
 
 
 def figure_text(figure: Figure, value: float, unit: Unit) -> str:
@@ -141,7 +153,19 @@ def figure_text(figure: Figure, value: float, unit: Unit) -> str:
         return unit.stress_number(value)
     # A caliper reads hundredths of a millimetre.
     decimals = unit.decimals - 1 if figure.key in SHORT else unit.decimals + 1
-    return unit.number(value, decimals) if figure.unit == "mm" else rounded(value, figure.decimals)
+    if figure.unit == "mm":
+        return unit.number(value, decimals)
+    return rounded(value / size_of(figure, unit), figure.decimals)
+
+
+def size_of(figure: Figure, unit: Unit) -> float:
+    """How much in mm or N the unit is in which a figure is shown."""
+    return {"mm": unit.millimetres, "N": unit.newtons}.get(figure.unit, 1.0)
+
+
+def figure_words(figure: Figure, value: float, unit: Unit) -> str:
+    """A figure's value with its unit, in words alone where it is infinite or not known."""
+    return f"{figure_text(figure, value, unit)} {unit_of(figure, unit) if isfinite(value) else ''}".rstrip()
 
 
 def counted_text(figure: Figure, value: float, unit: Unit) -> str:
@@ -151,9 +175,10 @@ def counted_text(figure: Figure, value: float, unit: Unit) -> str:
     if not isfinite(value):
         return figure_text(figure, value, unit)
     counts = float(f"{round(value, 9):.1e}")
-    shown = counts / unit.millimetres if figure.unit == "mm" else counts
+    size = size_of(figure, unit)
+    shown = counts / size
     if figure.decimals == 0 or shown == 0:
         return rounded(shown, 0)
-    # In mm two digits are all there is to show; in another unit one more keeps what differs apart.
-    digits = 2 if figure.unit != "mm" or unit.millimetres == 1 else 3
+    # In mm and N two digits are all there is to show; in another unit one more keeps what differs apart.
+    digits = 2 if size == 1 else 3
     return rounded(shown, max(digits - 1 - floor(log10(abs(shown))), 0))

@@ -37,7 +37,13 @@ from workhold.model.requirements import Load
 from workhold.model.result import Result
 from workhold.model.setup import settings_of
 from workhold.model.support_triples import ChosenSupports, Supports
-from workhold.presenting.figure_words import figure_text, figures_shown, fixture_title, unit_of
+from workhold.presenting.figure_words import (
+    edgeless,
+    figure_words,
+    figures_shown,
+    fixture_title,
+    no_edge,
+)
 from workhold.statics.loads import jaw_words, load_cases
 from workhold.supports.words import why_no_set
 from workhold.units import MILLIMETRE
@@ -156,9 +162,10 @@ class LivePicture:
     @property
     def figures(self) -> list[list[str]]:
         """Names of the figures that count, with their values and units."""
-        known, unit = self.fixture.figures, MILLIMETRE
+        unit, part = MILLIMETRE, self.result.workpiece
+        known = edgeless(self.fixture.figures, no_edge(part, self.result.toolkit))
         return [
-            [one.words, f"{figure_text(one, known[one.key], unit)} {unit_of(one, unit)}".rstrip()]
+            [one.words, figure_words(one, known[one.key], unit)]
             for one in figures_shown(self.result)[0]
             if one.key in known
         ]

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from attrs import frozen
 
+from workhold.conventions import STEADY
 from workhold.drawing.bench import bench_of, draw_bench
 from workhold.drawing.fixture_pictures import draw_thumbnail
 from workhold.drawing.panel import fixture_words
@@ -30,9 +31,11 @@ from workhold.model.support_triples import ChosenSupports
 from workhold.presenting.data import REQUIREMENTS
 from workhold.presenting.figure_words import (
     counted_text,
+    edgeless,
     figure_text,
     figures_shown,
     fixture_title,
+    no_edge,
     peg_groups,
     place_of,
     rounded,
@@ -100,6 +103,7 @@ def entries_table(result: Result, shown: Entries) -> Markup:
     """Tabulates the first entries: rank, picture, holes, what to set, and the figures that count."""
     toolkit, unit = result.toolkit, MILLIMETRE
     figures, ranked = figures_shown(result)
+    longest = no_edge(result.workpiece, toolkit)
     groups = peg_groups(toolkit)
     headings = (
         ">rank",
@@ -118,7 +122,7 @@ def entries_table(result: Result, shown: Entries) -> Markup:
             " ".join(place_of(peg, toolkit) for peg in fixture.pegs if peg.carrier in names)
             for names in groups.values()
         ]
-        known = fixture.figures
+        known = edgeless(fixture.figures, longest)
         rows.append(
             (
                 str(index + 1),
@@ -175,7 +179,9 @@ def workpiece_html(workpiece: Workpiece) -> str:
 
 def figures_table(fixture: Fixture) -> Markup:
     """Tabulates the figures of a fixture that are known, with units, and which way each is better."""
-    noun, unit, known = fixture.listing.result.toolkit.moving.noun, MILLIMETRE, fixture.figures
+    result, unit = fixture.listing.result, MILLIMETRE
+    noun = result.toolkit.moving.noun
+    known = edgeless(fixture.figures, no_edge(result.workpiece, result.toolkit))
     rows = []
     for figure in RANKED:
         if figure.key in known:
@@ -205,8 +211,8 @@ def supports_html(supports: Supports) -> str:
         for rank, triple in enumerate(supports.triples[:MOST_SETS], 1)
     ]
     notes = [
-        "The clamp presses at that point of the part's coordinates; where the last figure is above 0, the "
-        "part stands before it is clamped."
+        "The clamp presses at that point of the part's coordinates; where the last figure is at least "
+        f"{MILLIMETRE.text(STEADY)}, the part stands before it is clamped."
     ]
     if loaded:
         notes.append(f"Forces are for a closing force of {supports.jaw_force:.0f} N, without friction.")

@@ -17,7 +17,7 @@ from workhold.statics.pins import PinRuns, bent_pins, limits_of
 from workhold.statics.quality import extremes
 from workhold.units import Unit
 
-__all__ = ["BentPeg", "BentPegs", "bent_pegs"]
+__all__ = ["BentPeg", "BentPegs", "at_force", "bent_pegs"]
 
 
 @frozen
@@ -88,15 +88,8 @@ class BentPegs:
         return self.jaw_force is not None and bool(is_beyond(self.movement, self.movement_limit))
 
     def at_force(self, mover: str, unit: Unit) -> str:
-        """The force that it is stated for, in words.
-
-        Parameters
-        ----------
-        mover : what presses, such as "jaw".
-        """
-        if self.jaw_force is not None:
-            return f"at a {mover} force of {unit.force_words(self.jaw_force)}"
-        return f"for each {'kN' if unit.newtons == 1 else unit.force_words(STATED_FORCE)} of {mover} force"
+        """The force that it is stated for, in words, see :func:`at_force`."""
+        return at_force(self.jaw_force, mover, unit)
 
     def sentence(self, mover: str, unit: Unit, location_error: float | None = None) -> str:
         """What bending does, in a sentence; ``location_error`` in mm is named beside it where it is known."""
@@ -150,6 +143,19 @@ class BentPegs:
                 for one in self.pegs
             ],
         }
+
+
+def at_force(jaw_force: float | None, mover: str, unit: Unit) -> str:
+    """The force that pegs bend at, in words.
+
+    Parameters
+    ----------
+    jaw_force : in N; None where it is not known, and all is for each kN of it.
+    mover : what presses, such as "jaw".
+    """
+    if jaw_force is not None:
+        return f"at a {mover} force of {unit.force_words(jaw_force)}"
+    return f"for each {'kN' if unit.newtons == 1 else unit.force_words(STATED_FORCE)} of {mover} force"
 
 
 def bent_pegs(

@@ -39,7 +39,7 @@ from workhold.model.pose import Flush
 from workhold.model.workpiece import Workpiece
 from workhold.rowwise import largest
 
-__all__ = ["ContactMatrices", "Touched", "outward_normals", "wrenches"]
+__all__ = ["ContactMatrices", "Touched", "outward_normals", "wrench_length", "wrenches"]
 
 Array = NDArray[np.float64]
 
@@ -102,6 +102,11 @@ class ContactMatrices:
     edges: Array
     inverses: Array
     closing: Array
+
+
+def wrench_length(workpiece: Workpiece, toolkit: Toolkit) -> float:
+    """L of the wrenches in mm, half the diameter of the peg-centre locus of a toolkit's widest pegs."""
+    return outline_diameter(workpiece) / 2 + max(carrier.peg_radius for carrier in toolkit.carriers)
 
 
 @define(frozen=True, eq=False)
@@ -170,10 +175,9 @@ class Touched:
         rows[len(features) : -1, :SEGMENT_LENGTH] = segment_rows(walls)
         rows[:, [X, Y]] -= center
         faces = [number * segments + feature.face for number, locus in enumerate(loci) for feature in locus]
-        radius = max(carrier.peg_radius for carrier in carriers)
         return cls(
             center=center,
-            length=outline_diameter(workpiece) / 2 + radius if length is None else length,
+            length=wrench_length(workpiece, toolkit) if length is None else length,
             features=rows,
             starts=np.concatenate(
                 [

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import isfinite
+from math import inf, isfinite
 
 import numpy as np
 
@@ -65,9 +65,33 @@ def why_first(result: Result, unit: Unit = MILLIMETRE) -> str:
         near = "the least of all"
     else:
         near = "within a tenth of the least"
-    lies = (
-        "as drawn",
-        "as drawn nothing comes within a tenth",
-        "square to the drawing nothing comes within a tenth",
-    )[angle]
-    return f"First: {said}; {size}, {near}; {lies}."
+    return f"First: {said}; {size}, {near}; {lies_so(result, angle)}."
+
+
+def lies_so(result: Result, angle: int) -> str:
+    """Says how the first fixture of a result lies, and of one that is turned what stands less so.
+
+    Parameters
+    ----------
+    angle : class of its angle, see :mod:`workhold.statics.effective_error`.
+    """
+    if angle == 0:
+        return "as drawn"
+    straight = "as drawn" if angle == 1 else "square to the drawing"
+    table, best = result.table, result.query.best
+    less = table.take(np.flatnonzero(angle_classes(table.theta) < angle))
+    if not len(less):
+        whole = result.complete and len(table) == sum(result.found.values()) and (best or inf) > len(table)
+        near = f"{straight} nothing comes within a tenth"
+        return (
+            f"nothing stands {straight}"
+            if whole
+            else near + (", and none is listed" if len(table) > 1 else "")
+        )
+    bad = unfit(less.quality, result.query.tolerance)
+    first = table.take(slice(0, 1))
+    if bad.all() and not unfit(first.quality, result.query.tolerance)[0]:
+        return f"what stands {straight} is not fit for a workshop"
+    if (bad | (less.quality[:, WARNINGS] > 0)).all() and not first.quality[0, WARNINGS] > 0:
+        return f"what stands {straight} has a warning"
+    return f"{straight} nothing comes within a tenth"

@@ -144,18 +144,18 @@ def largest_circle(corners: np.ndarray) -> float:
 def set_headings(unit: Unit, loaded: bool) -> tuple[str, ...]:
     """The headings of a table of sets of three, see :func:`set_row`; ``>`` marks columns of numbers."""
     of = unit.abbreviation
-    forces = (">clamp force N", ">support force N") if loaded else ()
+    forces = (f">clamp force {unit.force}", f">support force {unit.force}") if loaded else ()
     return ("supports", f"clamp at {of}", *forces, f">tipping arm {of}", f">stands by {of}")
 
 
 def set_row(triple: Triple, unit: Unit, loaded: bool) -> list[str]:
     """The cells of a set of three in a table; forces where there are loads."""
     clamp = triple.clamp
-    forces = [f"{clamp.clamp_needed:.0f}", f"{clamp.support_force or 0.0:.0f}"] if loaded else []
+    sizes = (clamp.clamp_needed, clamp.support_force or 0.0) if loaded else ()
     return [
         " ".join(pad.hole for pad in triple.supports),
         f"({unit.number(clamp.at[0])}, {unit.number(clamp.at[1])})",
-        *forces,
+        *(unit.force_number(size, 0) for size in sizes),
         unit.number(clamp.arm),
         unit.number(triple.standing),
     ]
@@ -172,7 +172,7 @@ def listing_notes(
     """
     notes = []
     if found.loads and listed and found.jaw_force > 0:
-        notes.append(f"All for a closing force of {found.jaw_force:.0f} N, without friction.")
+        notes.append(f"All for a closing force of {unit.force_words(found.jaw_force)}, without friction.")
     moved = {one.travel for one in listed if one.travel is not None}
     if any(abs(one - found.fixture.jaw_separation) > SAME_OPENING for one in moved):
         notes.append(
@@ -190,7 +190,7 @@ def place_notes(listed: Mapping[int, Triple]) -> list[str]:
     ----------
     listed : the sets by the numbers that they have there.
     """
-    falls = [number for number, one in listed.items() if one.standing < 0.0]
+    falls = [number for number, one in listed.items() if not one.stands]
     hangs = [number for number, one in listed.items() if one.clamp.hangs]
     notes = []
     if falls:

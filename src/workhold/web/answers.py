@@ -27,6 +27,7 @@ from workhold.model.setup import settings_of
 from workhold.model.shown import Shown, shown
 from workhold.model.workpiece import Workpiece
 from workhold.presenting.data import finite, helps_data, solid_data
+from workhold.presenting.figure_words import edgeless, no_edge
 
 __all__ = [
     "arrangements_answer",
@@ -133,8 +134,12 @@ def rows_answer(
     table: FixtureTable, workpiece: Workpiece, toolkit: Toolkit, ranks: Iterable[int]
 ) -> list[dict[str, Any]]:
     """Describes fixtures as rows; ``ranks`` are those of the table's fixtures."""
+    longest = no_edge(workpiece, toolkit)
     return [
-        {"rank": rank, **fixture_answer(fixture_at(table, toolkit, number, workpiece), workpiece, toolkit)}
+        {
+            "rank": rank,
+            **fixture_answer(fixture_at(table, toolkit, number, workpiece), workpiece, toolkit, longest),
+        }
         for number, rank in enumerate(ranks)
     ]
 
@@ -267,12 +272,19 @@ def arrangements_answer(toolkit: Toolkit) -> list[dict[str, str]]:
     return [{"title": one.title, "words": arrangement_words(one, toolkit)} for one in toolkit.arrangements]
 
 
-def fixture_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> dict[str, Any]:
+def fixture_answer(
+    fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, longest: float | None = None
+) -> dict[str, Any]:
     """Describes a fixture, without its rank, on its plate as it stands in the middle of that.
 
     Holes are named so, and plates lie so under the part. All places are in the frame of the fixture as it is
-    listed; ``placed`` is by how much it stands further on.
+    listed; ``placed`` is by how much it stands further on. Edge distances are null where there is no edge.
+
+    Parameters
+    ----------
+    longest : the edge distance that stands for none, where it is known already.
     """
+    longest = no_edge(workpiece, toolkit) if longest is None else longest
     move = middle_move(fixture, toolkit, workpiece)
     stands = moved_on(fixture, toolkit, move)
     placed = [steps * pitch for steps, pitch in zip(move, toolkit.plates[0].pitch, strict=True)]
@@ -301,7 +313,7 @@ def fixture_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> 
         "pegs": [[peg.x, peg.y] for peg in fixture.pegs],
         "forces": [finite(peg.force) for peg in fixture.pegs],
         "carriers": moved_back(carriers_answer(shown(stands, toolkit, workpiece), stands), placed),
-        "quality": {key: finite(value) for key, value in fixture.quality.items()},
+        "quality": {key: finite(value) for key, value in edgeless(fixture.quality, longest).items()},
     }
 
 

@@ -148,6 +148,7 @@ def set_answer(found: Supports, triple: Triple) -> dict[str, Any]:
         "support_force": clamp.support_force if loaded else None,
         "arm": clamp.arm,
         "standing": triple.standing,
+        "stands": triple.stands,
         "overhang": triple.overhang,
         "travel": triple.travel if moves else None,
         "marginal": triple.marginal,

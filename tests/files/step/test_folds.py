@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from math import pi, sqrt
+from math import cos, floor, hypot, pi, sin, sqrt
 from typing import Any
 
 import numpy as np
@@ -25,7 +25,7 @@ from OCP.gp import gp_Ax1, gp_Ax2, gp_Dir, gp_Pnt
 from step_shapes import box, cut, cylinder, fused
 
 from workhold.files.step.edge_curves import bisected, crossing
-from workhold.files.step.enclosing import fold_squares
+from workhold.files.step.enclosing import Enclosure, fold_boxes, fold_squares
 from workhold.files.step.faces import surface_of
 from workhold.files.step.heights import measures, standing
 from workhold.files.step.library import sub_shapes
@@ -116,3 +116,22 @@ def test_squares_hold_a_fold_with_room_beside_it() -> None:
                 at = int(np.floor((place.X() + dx) / size)), int(np.floor((place.Y() + dy) / size))
                 missed += at not in squares
     assert found > 400 and missed == 0
+
+
+def test_boxes_hold_the_outline_where_two_folds_cross() -> None:
+    """Of two discs that overlap all of the border is held, also in the gaps beside where it crosses itself."""
+    size, reach = 0.5, 10.0
+    circles = [
+        [(x + reach * cos(k / 500), y + reach * sin(k / 500)) for k in range(3142)]
+        for x, y in ((0.0, 0.0), (19.0, 4.0))
+    ]
+
+    def is_there(point: tuple[float, float]) -> bool:
+        return any(hypot(point[0] - x, point[1] - y) < reach - 1e-9 for x, y in ((0.0, 0.0), (19.0, 4.0)))
+
+    squares = {(floor(x / size), floor(y / size)) for circle in circles for x, y in circle}
+    held = Enclosure(polygons=fold_boxes(squares, size, is_there))
+    border = [place for circle in circles for place in circle if not is_there(place)]
+    assert len(border) > 3000 and all(map(held.holds, border))
+    # A fold at which there is nothing, as it lies below the heights that are asked about, is left out.
+    assert fold_boxes({(100, 100)}, size, is_there) == []

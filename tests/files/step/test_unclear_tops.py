@@ -70,3 +70,12 @@ def test_other_faces_of_such_a_part_stay_known() -> None:
     plain = load(box(100, 60, 20), name="plain", peg_height=11)
     assert plain.solid is not None and plain.solid.unclear_heights == () and plain.solid.top
     assert flat_faces_notes(plain, ("a", "b")) == []
+
+
+def test_where_rings_reach_into_one_another_it_is_told_what_is_free() -> None:
+    """Between their outlines, where these cross, a gap narrows to a point; tips stay off both, and off that."""
+    part = load(plate_with_rings(), name="rings", peg_height=11)
+    assert part.solid is not None and part.solid.unclear_heights == ()
+    assert part.solid.top and set(part.solid.top_heights) == {20.0}
+    result = workhold.design(part, Plate(pitch=10, peg_radius=3), best=1)
+    assert result[0].supports(best=1).triples

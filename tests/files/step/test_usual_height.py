@@ -9,9 +9,11 @@ import pytest
 pytest.importorskip("OCP", reason="the extra 'step' is not installed")
 
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
+from step_shapes import cylinder, fused
 
 import workhold
-from solid_examples import bearing_housing, boss, ribbed, stepped
+from solid_examples import bearing_housing, boss, lying_shaft, ribbed, stepped
+from workhold.cli.tables import slides_always
 from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece, refuse_unsure_numbers
 from workhold.model.dowel_lengths import standouts
@@ -77,6 +79,17 @@ def test_the_note_says_how_high_why_and_how_to_have_them_as_tall() -> None:
     assert "stand out 11 mm, as dowels of 6 × 20 mm do that sit 9 mm deep: higher ones bend more" in note
     assert note.endswith("For pegs as tall as the part give peg_height 40mm.")
     assert read_workpiece(block).remarks == ()
+
+
+def test_no_height_is_advised_where_the_part_slides_along_pegs_of_any() -> None:
+    """A stepped shaft that lies shows pegs its ends and shoulders; two flats on it keep it from sliding."""
+    shaft = fused(cylinder(15, 60, (0, 0, 22), (1, 0, 0)), cylinder(22, 40, (60, 0, 22), (1, 0, 0)))
+    for shape, slides in ((shaft, True), (lying_shaft(), False)):
+        loaded = read_workpiece(shape, peg_diameter=6.0)
+        assert all(row.slides for row in loaded.heights if row.touchable > 0) == slides
+        said = " ".join(loaded.remarks)
+        assert "stand out 11 mm" in said and ("peg_height" in said) != slides
+        assert (slides_always(loaded.workpiece, loaded.heights) != []) == slides
 
 
 def test_numbers_that_depend_on_the_height_are_refused_with_both() -> None:

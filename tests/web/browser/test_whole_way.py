@@ -158,6 +158,53 @@ def test_forces_and_stresses_are_told_in_the_unit_chosen(walk: Walk, unit: str, 
     assert told == words
 
 
+def test_forces_are_typed_in_the_unit_chosen(walk: Walk) -> None:
+    """Pounds and foot-pounds with inches; what was not typed stays as it was to the last digit."""
+    page = walk.page
+    walk.take()
+    walk.search()
+    page.select_option("#unit", "inch")
+    page.click("#push")
+    labels = page.eval_on_selector_all(
+        "#force-size, #force-moment, #force-jaw, #program-force",
+        "fields => fields.map(each => each.closest('label').textContent)",
+    )
+    assert [label.split()[-2:] for label in labels] == [
+        ["force", "lbf"],
+        ["Force", "lbf"],
+        ["ft", "lbf"],
+        ["force", "lbf"],
+    ]
+    assert page.input_value("#force-size") == "45"
+    page.fill("#force-size", "100")
+    page.fill("#force-moment", "2")
+    page.fill("#force-jaw", "50")
+    force = page.evaluate("async () => (await import('/static/state.js')).state.force")
+    pound = 4.4482216152605
+    assert [force[key] for key in ("size", "moment", "jaw")] == pytest.approx(
+        [100 * pound, 2 * 304.8 * pound, 50 * pound], rel=1e-12
+    )
+    assert "lbf" in page.inner_text("#force-title")
+    page.focus("#unit")
+    page.select_option("#unit", "mm")
+    assert page.input_value("#force-size") == "444.822162"
+    page.fill("#force-direction", "30")
+    turned = page.evaluate("async () => (await import('/static/state.js')).state.force")
+    assert turned == {**force, "direction": 30}
+
+
+def test_no_edge_is_told_in_words(walk: Walk) -> None:
+    """Where a part has no edge the figure is null, and better than any length."""
+    told = walk.page.evaluate(
+        """async () => {
+            const { figureText } = await import('/static/units.js');
+            const edge = { key: "edge_distance", unit: "mm" }, end = { ...edge, key: "end_distance" };
+            return [figureText(edge, null), figureText(edge, 3), figureText(end, null)];
+        }"""
+    )
+    assert told == ["none", "3.00 mm", "–"]
+
+
 def test_the_keys_are_enough(walk: Walk) -> None:
     """Part, face, search, list and a peg without the mouse."""
     page = walk.page

@@ -299,7 +299,7 @@ def corners_of(low: Array, high: Array) -> list[Point]:
 
 
 def fold_boxes(squares: set[tuple[int, int]], size: float, is_there: Callable[[Point], bool]) -> list[Array]:
-    """Boxes that hold a fold where something is on one side of it: rows of squares, larger ones of a long fold.
+    """Boxes that hold a fold where there is something at it: rows of squares, larger ones of a long fold.
 
     Parameters
     ----------
@@ -311,7 +311,8 @@ def fold_boxes(squares: set[tuple[int, int]], size: float, is_there: Callable[[P
         size *= 2.0
         squares = {(i // 2, j // 2) for i, j in squares}
 
-    def is_mixed(square: tuple[int, int]) -> bool:
+    def is_met(square: tuple[int, int]) -> bool:
+        # Not only where something is beside it: a gap between two outlines that cross is narrower than places.
         i, j = square
         places = [
             (i - 0.5, j - 0.5),
@@ -320,9 +321,9 @@ def fold_boxes(squares: set[tuple[int, int]], size: float, is_there: Callable[[P
             (i - 0.5, j + 1.5),
             (i + 0.5, j + 0.5),
         ]
-        return len({is_there((x * size, y * size)) for x, y in places}) == 2
+        return any(is_there((x * size, y * size)) for x, y in places)
 
-    kept = sorted((j, i) for i, j in squares if is_mixed((i, j)))
+    kept = sorted((j, i) for i, j in squares if is_met((i, j)))
     rows: list[list[int]] = []
     for j, i in kept:
         if rows and rows[-1][0] == j and rows[-1][2] == i:

@@ -43,9 +43,9 @@ from workhold.files.step.projected import (
 )
 from workhold.files.step.strips import Strip, run_rows, strips_of_loop
 from workhold.geometry.loop import loop_segments, signed_area
-from workhold.geometry.segment import Arc, Line, Segment
+from workhold.geometry.segment import Arc, Line, Segment, are_parallel_lines
 from workhold.geometry.subdivision import BorderPiece, Inside, border_loops, border_pieces, subdivide
-from workhold.model.solid import NO_LEVELS, Band, HeightRow, RunRows, SolidOutline
+from workhold.model.solid import NO_LEVELS, Band, HeightRow, RunRows, SolidOutline, slides_at_any
 
 __all__ = [
     "HEAD_ROOM",
@@ -340,6 +340,16 @@ def measures(outline: HeightOutline) -> tuple[float, float, float, float]:
     return area, border, touchable, min(bands, default=0.0)
 
 
+def slides_along(outline: HeightOutline) -> bool:
+    """Whether all that may be touched of an outline are lines parallel to one another."""
+    strips = [
+        (segment, strip)
+        for loop in outline.loops
+        for segment, strip in zip(loop_segments(vertices_of(loop)), loop, strict=True)
+    ]
+    return are_parallel_lines(segment for segment, strip in strips if strip.band is not None)
+
+
 def height_table(solid: StandingSolid, room: float, least: float) -> list[HeightRow]:
     """Ranges of peg heights with what their outlines offer, without those whose outline is refused.
 
@@ -406,7 +416,7 @@ class WholeOutline:
             return None
         pieces = [one for loop in outline.loops for strip in loop for one in strip.covered]
         border = tuple(one.piece.carrier.segment.part(one.low, one.high) for one in pieces)
-        return cls(HeightRow(0.0, height, *measures(outline)), border)
+        return cls(HeightRow(0.0, height, *measures(outline), slides_along(outline)), border)
 
     def has_area(self, area: float) -> bool:
         """Whether an outline of some area in mm² is the whole of it."""
@@ -429,9 +439,10 @@ def row_of(
     border : see :meth:`StandingSolid.outline`.
     """
     try:
-        return HeightRow(low, high, *measures(solid.outline(high - before, room, least, silhouette=border)))
+        outline = solid.outline(high - before, room, least, silhouette=border)
     except InputError:
         return None
+    return HeightRow(low, high, *measures(outline), slides_along(outline))
 
 
 def rows_between(
@@ -544,7 +555,7 @@ def height_remarks(outline: HeightOutline, found: SolidOutline, rows: Sequence[H
 def better_height(rows: Sequence[HeightRow], touchable: float) -> list[str]:
     """A sentence on the height of pegs that could touch most, if that is more than a length in mm."""
     best = longest(rows)
-    if best is None or best.touchable <= touchable * (1 + 1e-6):
+    if best is None or slides_at_any(rows) or best.touchable <= touchable * (1 + 1e-6):
         return []
     return [f"With {PEG_HEIGHT} {best.high:.6g}mm most could be touched: {best.touchable:.4g} mm."]
 

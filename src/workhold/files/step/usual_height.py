@@ -15,7 +15,7 @@ from workhold.errors import InputError
 from workhold.files.questions import PEG_HEIGHT
 from workhold.files.step.heights import StandingSolid, measures
 from workhold.model.dowel_lengths import dowel_for, standouts
-from workhold.model.solid import HeightRow
+from workhold.model.solid import HeightRow, slides_at_any
 
 __all__ = ["UsualHeight", "usual_height"]
 
@@ -35,12 +35,14 @@ class UsualHeight:
     height : of the part, in mm.
     diameter : of the pegs, in mm.
     decides_numbers : whether the numbers of faces depend on it, as they do unless the part is a prism.
+    slides : whether pegs of no height keep the part from sliding.
     """
 
     peg_height: float
     height: float
     diameter: float
     decides_numbers: bool
+    slides: bool = False
 
     @property
     def is_whole(self) -> bool:
@@ -49,7 +51,7 @@ class UsualHeight:
 
     @property
     def remarks(self) -> list[str]:
-        """What is said of it: how high, why, and how to have pegs as tall as the part."""
+        """What is said of it: how high, why, and how to have pegs as tall as the part where that may help."""
         if self.is_whole:
             return []
         dowel = dowel_for(self.diameter, self.peg_height)
@@ -59,10 +61,9 @@ class UsualHeight:
             if self.peg_height > DOWEL_STANDOUT * self.diameter + SAME_HEIGHT
             else "higher ones bend more, and these touch at least half of what pegs can touch here"
         )
-        return [
-            f"Pegs are taken to stand out {self.peg_height:.6g} mm{what}: {more}. For pegs as tall as the part "
-            f"give {PEG_HEIGHT} {self.height:.6g}mm."
-        ]
+        said = f"Pegs are taken to stand out {self.peg_height:.6g} mm{what}: {more}."
+        taller = f" For pegs as tall as the part give {PEG_HEIGHT} {self.height:.6g}mm."
+        return [said if self.slides else said + taller]
 
 
 def usual_height(
@@ -96,7 +97,7 @@ def usual_height(
     low = [one for one in heights if one <= usual]
     in_order = [*reversed(low), *(one for one in heights if one > usual)]
     found = next((one for one in in_order if touches_enough(one)), top)
-    return UsualHeight(min(found, top), top, diameter, not is_prism)
+    return UsualHeight(min(found, top), top, diameter, not is_prism, slides_at_any(rows))
 
 
 def ends_of(rows: Sequence[HeightRow], top: float) -> list[float]:

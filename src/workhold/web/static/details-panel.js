@@ -5,7 +5,7 @@ import { byId, make } from "./dom.js";
 import { forceOf, writtenTurn } from "./pose.js";
 import { on, state } from "./state.js";
 import { pressedBy } from "./toolkits.js";
-import { bareLength, figureText, length, number } from "./units.js";
+import { bareForce, bareLength, figureText, forceWord, length, number } from "./units.js";
 
 /** @type {any[]} */
 let figures = [];
@@ -34,14 +34,14 @@ function write() {
 
 /** The table of pegs. */
 function writePegs(row) {
-  byId("force-title").textContent = loaded ? "Force N" : "Force";
+  byId("force-title").textContent = loaded ? `Force ${forceWord()}` : "Force";
   byId("force-title").title = loaded ? "Under the load" : `For each newton of ${forceOf(row)}`;
   byId("pegs").replaceChildren(
     ...row.holes.map((hole, k) =>
       make("tr", {},
         make("td", {}, hole), make("td", {}, row.touched[k]),
         make("td.number", {}, bareLength(row.pegs[k][0] + row.placed[0])), make("td.number", {}, bareLength(row.pegs[k][1] + row.placed[1])),
-        make("td.number", {}, loaded ? number(loaded[k], 0) : number(row.forces[k], 3)),
+        make("td.number", {}, loaded ? bareForce(loaded[k]) : number(row.forces[k], 3)),
       ),
     ),
   );
@@ -77,7 +77,9 @@ function writeQuality(row, pinned) {
       const cells = [];
       if (pinned) {
         const other = pinned.quality[figure.key];
-        const more = (a, b) => (figure.more_is_better ? a > b : a < b) && figureText(figure, a) !== figureText(figure, b);
+        const size = (value) => value ?? (figure.key === "edge_distance" ? Infinity : NaN);
+        const more = (a, b) =>
+          (figure.more_is_better ? size(a) > size(b) : size(a) < size(b)) && figureText(figure, a) !== figureText(figure, b);
         cells.push(figureCell(figure, other, more(other, own)), figureCell(figure, own, more(own, other)));
       } else {
         cells.push(figureCell(figure, own, false));

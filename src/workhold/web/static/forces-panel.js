@@ -12,11 +12,12 @@ import { selectRank } from "./selection.js";
 import { fixtureDrawing } from "./stage-panel.js";
 import { change, on, state } from "./state.js";
 import { kindOf } from "./toolkits.js";
-import { fieldLength, forceAlone, forceText, number, readLength, readNumber } from "./units.js";
+import { fieldForce, fieldLength, fieldMoment, forceAlone, forceScale, forceText, number, readForce, readLength, readMoment, readNumber } from "./units.js";
 
 /** A drag over the part's diagonal is this many newtons. */
 const NEWTONS = 1000;
-const STEP = 5;
+/** Dragging goes by so much of the unit that is shown. */
+const STEPS = { mm: 5, inch: 1 };
 /** What the jaw is, and how many times as stiff as a contact. */
 const KINDS = ["force-kind", "force-ratio"];
 const FIELDS = ["force-x", "force-y", "force-size", "force-direction", "force-moment", "force-jaw"];
@@ -53,7 +54,7 @@ export function togglePush() {
     return;
   }
   const [x, y] = centerOf(state.part);
-  change({ trial: null, force: { x, y, size: 200, direction: 0, moment: 0, jaw: null, kind: "screw" } });
+  change({ trial: null, force: { x, y, size: state.unit === "inch" ? 45 * forceScale() : 200, direction: 0, moment: 0, jaw: null, kind: "screw" } });
   byId("forces").scrollIntoView({ block: "nearest" });
 }
 
@@ -97,7 +98,8 @@ function drag(point) {
     return;
   }
   const [dx, dy] = [own[0] - force.x, own[1] - force.y];
-  const size = Math.round((Math.hypot(dx, dy) * perMillimetre()) / STEP) * STEP;
+  const step = STEPS[state.unit] * forceScale();
+  const size = Math.round((Math.hypot(dx, dy) * perMillimetre()) / step) * step;
   const direction = size ? Math.round((Math.atan2(dy, dx) * 1800) / Math.PI) / 10 : force.direction;
   change({ force: { ...force, size, direction: (direction + 360) % 360 } });
 }
@@ -105,8 +107,11 @@ function drag(point) {
 /** Read the typed force. */
 function read() {
   if (!state.force) return;
-  const [x, y] = [readLength(field("force-x").value), readLength(field("force-y").value)];
-  const [size, direction, moment, jaw] = FIELDS.slice(2).map((id) => readNumber(field(id).value));
+  const { force } = state;
+  const [x, y] = [typed("force-x", fieldPlace, readLength, force.x), typed("force-y", fieldPlace, readLength, force.y)];
+  const [size, jaw] = [typed("force-size", fieldForce, readForce, force.size), typed("force-jaw", fieldForce, readForce, force.jaw)];
+  const moment = typed("force-moment", fieldMoment, readMoment, force.moment);
+  const direction = readNumber(field("force-direction").value);
   const values = { x, y, size, direction, moment: moment ?? 0, jaw, kind: state.force.kind };
   const wrong = {
     "force-x": x === null || !Number.isFinite(x), "force-y": y === null || !Number.isFinite(y),
@@ -115,6 +120,12 @@ function read() {
   };
   for (const [id, bad] of Object.entries(wrong)) field(id).setAttribute("aria-invalid", String(bad));
   if (!Object.values(wrong).some(Boolean)) change({ force: values });
+}
+
+/** What a field holds; what it held before where nobody typed into it, so that no rounding comes in. */
+function typed(id, write, take, before) {
+  const text = field(id).value;
+  return text !== "" && text === write(before) ? before : take(text);
 }
 
 /** Read what the jaw is. */
@@ -150,8 +161,8 @@ function write() {
     return;
   }
   const texts = [
-    fieldLength(rounded(force.x)), fieldLength(rounded(force.y)), String(force.size), String(force.direction),
-    force.moment ? String(force.moment) : "", force.jaw === null ? "" : String(force.jaw),
+    fieldPlace(force.x), fieldPlace(force.y), fieldForce(force.size), String(force.direction),
+    force.moment ? fieldMoment(force.moment) : "", fieldForce(force.jaw),
   ];
   FIELDS.forEach((id, k) => {
     if (field(id) !== document.activeElement) field(id).value = texts[k];
@@ -207,9 +218,9 @@ const tellSoon = quiet(async (key, rank, force) => {
   write();
 }, 80);
 
-/** @param {number} value */
-function rounded(value) {
-  return Math.round(value * 1000) / 1000;
+/** A coordinate as a field holds it. @param {number} mm */
+function fieldPlace(mm) {
+  return fieldLength(Math.round(mm * 1000) / 1000);
 }
 
 /** A bar for each peg. */

@@ -6,7 +6,7 @@ import { byId, field, make, quiet, show } from "./dom.js";
 import { colourOf } from "./program-drawing.js";
 import { fixtureDrawing, partDrawing } from "./stage-panel.js";
 import { change, on, programRequest, state } from "./state.js";
-import { bareLength, countText, fieldLength, length, number, readLength, readNumber } from "./units.js";
+import { bareLength, countText, fieldForce, fieldLength, length, readForce, readLength } from "./units.js";
 
 /** @typedef {{name: string, text: string, tools: {name: string, text: string}|null, zero: number[], z_zero: "top"|"bottom"|number, clearance: number, rapid: "straight"|"box", unit: "mm"|"inch"|null, start: number[]|null, whole_numbers: "units"|"thousandths", cutting: {cutting_force: number}|null, stock: {side: number, top: number, shape: "outline"|"block"}|null, thickness: number|null, peg_height: number|null}} Wish */
 
@@ -95,7 +95,7 @@ function takeFields() {
     unit: field("program-unit").value || null,
     start: startOf(field("program-start").value),
     whole_numbers: field("program-whole").value,
-    cutting: forceOf(field("program-force").value),
+    cutting: forceOf(field("program-force").value, state.program.cutting),
     stock: { side: size("program-side") ?? 5, top: size("program-top") ?? 5, shape: field("program-stock").value },
   };
   const { thickness } = program;
@@ -104,9 +104,10 @@ function takeFields() {
   change({ program, ...sheet, ...supports });
 }
 
-/** A force in N for every tool, or null. @param {string} words */
-function forceOf(words) {
-  const value = readNumber(words);
+/** A force in N for every tool, or null. @param {string} words @param {{cutting_force: number}|null} before */
+function forceOf(words, before) {
+  if (before && words === fieldForce(before.cutting_force)) return before;
+  const value = readForce(words);
   return value === null || !Number.isFinite(value) || value < 0 ? null : { cutting_force: value };
 }
 
@@ -137,7 +138,7 @@ function writeFields() {
   field("program-unit").value = program.unit ?? "";
   field("program-start").value = program.start ? program.start.map((value) => fieldLength(value)).join(", ") : "";
   field("program-whole").value = program.whole_numbers ?? "units";
-  field("program-force").value = program.cutting ? String(program.cutting.cutting_force) : "";
+  field("program-force").value = fieldForce(program.cutting?.cutting_force);
   const { side = 5, top = 5, shape = "outline" } = program.stock ?? {};
   field("program-side").value = side === 5 ? "" : fieldLength(side);
   field("program-top").value = top === 5 ? "" : fieldLength(top);
@@ -226,7 +227,7 @@ async function tellPassing() {
     if (mine !== asked) return;
     fixtureDrawing.showPassing(passing);
     byId("passing").textContent = passing
-      ? `T${passing.tool} comes nearest in line ${passing.line}: ${length(passing.distance)} from the ${passing.element}. ${number(program.clearance, 2)} mm are asked for.`
+      ? `T${passing.tool} comes nearest in line ${passing.line}: ${length(passing.distance)} from the ${passing.element}. ${length(program.clearance, 2)} is asked for.`
       : "No tool comes down to where anything holds the part.";
     byId("passing").append(...(asksFor ? [make("br"), asksFor.words.join(" ")] : []));
   } catch (error) {

@@ -5,7 +5,7 @@ import { byId, field, make, quiet, show } from "./dom.js";
 import { bandWords, isNever, toggleFace } from "./part-drawing.js";
 import { change, on, state } from "./state.js";
 import { kindOf, kinds } from "./toolkits.js";
-import { fieldLength, length, number, readLength, readNumber } from "./units.js";
+import { fieldLength, forceText, length, number, readLength, readNumber } from "./units.js";
 import { circleLoop, ZoneTool } from "./zone-tool.js";
 
 /** Fixtures whose seating is worked out in one search. */
@@ -39,7 +39,7 @@ export function rulesPanel(drawing, showPart) {
   field("every-pair").addEventListener("change", () => change({ listing: field("every-pair").checked ? "all" : null }));
   field("every-fixture").addEventListener("change", () => change({ every: field("every-fixture").checked }));
   on(["toolkit", "listing", "every"], writeListing);
-  on(["loads"], writeLoads);
+  on(["loads", "unit"], writeLoads);
   on(["view"], () => state.view !== "part" && stopZone());
 }
 
@@ -191,7 +191,7 @@ function writeLoads() {
   const words = byId("load-words");
   show(words, state.loads.length > 0);
   words.replaceChildren(
-    ...state.loads.map((load) => `Ranked by a load of ${number(load.force, 0)} N at (${load.points[0].map((v) => length(v, 1)).join(", ")}). `),
+    ...state.loads.map((load) => `Ranked by a load of ${forceText(load.force)} at (${load.points[0].map((v) => length(v, 1)).join(", ")}). `),
     make("button", { type: "button", click: () => change({ loads: [], ranking: null }) }, "Drop the load"),
   );
 }

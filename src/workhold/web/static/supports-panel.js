@@ -125,7 +125,7 @@ function sentence(answer, one) {
     : " The loads keep it down by themselves: the clamp has to add nothing.";
   const built = one.built
     ? ` Not all of these holes have a name on the plate, or the jaws stand elsewhere: build it in ${one.built.pegs.join(", ")}, supports in ${one.built.supports.join(", ")}, as on the sheet.` : "";
-  const stands = one.standing > 0 ? "The part stands on them before it is clamped." : "The part tips off them until it is clamped: hold it.";
+  const stands = one.stands ? "The part stands on them before it is clamped." : "The part tips off them until it is clamped: hold it.";
   return `Supports in ${one.holes.join(", ")}, the clamp at ${one.at_part.map((value) => bareLength(value, 2)).join(", ")} ${unitWord()} of the part.${force} ` +
     `It is ${length(one.arm, 1)} from the line about which the part would tip first. ${stands}${built}`;
 }
@@ -140,7 +140,7 @@ function writeSets(answer, chosen) {
       make("td", {}, make("button", { type: "button", "aria-pressed": String(k === chosen), "aria-label": `Set ${k + 1}`, click: () => wish({ chosen: k + 1 }) }, String(k + 1))),
       make("td", {}, one.holes.join(" ")), make("td", {}, one.at_part.map((value) => bareLength(value, 2)).join(", ")),
       ...(loaded ? [make("td.number", {}, bareForce(Math.ceil(one.clamp_force))), make("td.number", {}, bareForce(one.support_force))] : []),
-      make("td.number", {}, bareLength(one.arm, 1)), make(`td.number${one.standing > 0 ? "" : ".bad"}`, {}, bareLength(one.standing, 1)));
+      make("td.number", {}, bareLength(one.arm, 1)), make(`td.number${one.stands ? "" : ".bad"}`, {}, bareLength(one.standing, 1)));
     return row;
   }));
 }

@@ -6,7 +6,7 @@ import { byId, field, make, quiet, show } from "./dom.js";
 import { change, on, state } from "./state.js";
 import { makeFields, readField, writeField } from "./toolkit-fields.js";
 import { asKind, fieldsOf, kindOf, kinds, learnKinds, same, setValue, valueOf } from "./toolkits.js";
-import { fieldLength, pressureWord, readLength, unitWord } from "./units.js";
+import { fieldLength, forceWord, momentWord, pressureWord, readLength, unitWord } from "./units.js";
 
 const TOLERANCES = ["tolerance-peg", "tolerance-face"];
 const OWN = "own";
@@ -144,8 +144,10 @@ function write() {
   TOLERANCES.forEach((id, k) => {
     if (field(id) !== document.activeElement) field(id).value = fieldLength(off[k]);
   });
-  for (const word of document.querySelectorAll(".unit")) word.textContent = unitWord();
-  for (const word of document.querySelectorAll(".pressure")) word.textContent = pressureWord();
+  const units = { ".unit": unitWord(), ".pressure": pressureWord(), ".force-unit": forceWord(), ".moment-unit": momentWord() };
+  for (const [each, words] of Object.entries(units)) {
+    for (const word of document.querySelectorAll(each)) word.textContent = words;
+  }
   byId("more-title").textContent = `More about the ${kind.noun}`;
   field("toolkit").value = kind.name;
   field("preset").value = state.toolkitName || OWN;

@@ -24,9 +24,24 @@ export function pressureWord() {
   return state.unit === "inch" ? "ksi" : "MPa";
 }
 
+/** The short name of the unit of moment that is shown. */
+export function momentWord() {
+  return state.unit === "inch" ? "ft lbf" : "N mm";
+}
+
 /** MPa in the unit of stress that is shown. */
 function stressScale() {
   return state.unit === "inch" ? KSI : 1;
+}
+
+/** Newtons in the unit of force that is shown. */
+export function forceScale() {
+  return state.unit === "inch" ? POUND : 1;
+}
+
+/** N mm in the unit of moment that is shown. */
+function momentScale() {
+  return state.unit === "inch" ? 12 * MM_PER_INCH * POUND : 1;
 }
 
 /**
@@ -62,7 +77,12 @@ export function bareLength(mm, decimals = 3) {
  * @param {number|null|undefined} mm
  */
 export function fieldLength(mm) {
-  return mm === null || mm === undefined ? "" : String(Number((mm / scale()).toPrecision(9)));
+  return fieldNumber(mm, scale());
+}
+
+/** @param {number|null|undefined} value @param {number} unit how much the unit of the field is */
+function fieldNumber(value, unit) {
+  return value === null || value === undefined ? "" : String(Number((value / unit).toPrecision(9)));
 }
 
 /**
@@ -70,8 +90,13 @@ export function fieldLength(mm) {
  * @param {string} text
  */
 export function readLength(text) {
+  return readTimes(text, scale());
+}
+
+/** @param {string} text @param {number} unit how much the unit of the field is */
+function readTimes(text, unit) {
   const value = readNumber(text);
-  return value === null ? null : value * scale();
+  return value === null ? null : value * unit;
 }
 
 /**
@@ -89,6 +114,7 @@ export function readNumber(text) {
  * @param {number|null|undefined} value
  */
 export function figureText(figure, value) {
+  if (value === null && figure.key === "edge_distance") return "none";
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   if (figure.unit === "mm") return length(value, ["location_error", "pin_deflection", "pin_movement"].includes(figure.key) ? 4 : 2);
   if (figure.unit === "deg") return `${number(value, figure.decimals)}°`;
@@ -124,7 +150,7 @@ export function forceWord() {
  * @param {number} newtons
  */
 export function bareForce(newtons) {
-  return number(state.unit === "inch" ? newtons / POUND : newtons, 0);
+  return number(newtons / forceScale(), 0);
 }
 
 /**
@@ -140,7 +166,7 @@ export function stressText(stress) {
  * @param {number|null|undefined} stress in MPa
  */
 export function fieldStress(stress) {
-  return stress === null || stress === undefined ? "" : String(Number((stress / stressScale()).toPrecision(9)));
+  return fieldNumber(stress, stressScale());
 }
 
 /**
@@ -148,8 +174,39 @@ export function fieldStress(stress) {
  * @param {string} text
  */
 export function readStress(text) {
-  const value = readNumber(text);
-  return value === null ? null : value * stressScale();
+  return readTimes(text, stressScale());
+}
+
+/**
+ * A force as a field holds it.
+ * @param {number|null|undefined} newtons
+ */
+export function fieldForce(newtons) {
+  return fieldNumber(newtons, forceScale());
+}
+
+/**
+ * The newtons of a field; null when it is empty, NaN when it is no number.
+ * @param {string} text
+ */
+export function readForce(text) {
+  return readTimes(text, forceScale());
+}
+
+/**
+ * A moment in N mm as a field holds it.
+ * @param {number|null|undefined} moment
+ */
+export function fieldMoment(moment) {
+  return fieldNumber(moment, momentScale());
+}
+
+/**
+ * The N mm of a field; null when it is empty, NaN when it is no number.
+ * @param {string} text
+ */
+export function readMoment(text) {
+  return readTimes(text, momentScale());
 }
 
 /**
