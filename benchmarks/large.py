@@ -1,8 +1,8 @@
 """Target 12: the best fixtures of large parts: what they cost, and how that grows with the holes under the part.
 
-Plates with rounded corners are held on presets of 20 mm pitch. Seconds are those of the processor for the best 20, in a process
-that has loaded its kernels, and stand beside those of ``design widget`` in the same run. The exponent is the slope of a
-straight line through their logarithms over those of the holes under the part, by least squares.
+Plates with rounded corners are held on presets of 20 mm pitch. Seconds are those of the processor for the best 20, in a
+process that has loaded its kernels, and stand beside those of ``design widget`` in the same run. The exponent is the slope
+of a straight line through their logarithms over those of the holes under the part, by least squares.
 """
 
 from __future__ import annotations

@@ -171,7 +171,7 @@ def test_explore_lists_every_toolkit(run: Any, tmp_path: Path) -> None:
     outcome = run("explore", "widget", *words)
     assert outcome.exit_code == 0
     rows = [line.split(",") for line in table.read_text().splitlines()]
-    assert rows[0][:4] == ["toolkit", "fixtures", "type_I", "type_II"]
+    assert rows[0][:4] == ["toolkit", "fixtures", "estimated", "type_I"]
     assert len(rows) == 4
     assert "505" in outcome.stdout and "pegs of radius 3 overlap" in outcome.stdout
     assert "First choice: pitch" in outcome.stdout and re.search(

@@ -221,7 +221,8 @@ def design(
 def as_many_as_asked(
     query: Query, every: bool, out: str | None, form: str, threads: int | None, cancel: Event
 ) -> tuple[Query, int | None]:
-    """Returns the query, or one for the best fixtures where there are very many, and about how many there are.
+    """Returns the query, or one for the best fixtures where there are very many, and about how many these
+    are.
 
     A remark says so before the search.
 
@@ -248,8 +249,8 @@ def as_many_as_asked(
     if form != "npz" and (not name or count * BYTES[form] > MOST_TEXT):
         columns = f"{count * BYTES['npz'] / 1e6:,.0f} MB"
         raise InputError(
-            f"--all of about {about} fixtures takes {size}: write them to a file whose name ends in .npz, which "
-            f"takes {columns} and is written as they are found, such as --out all.npz."
+            f"--all of about {about} fixtures takes {size}: write them to a file whose name ends in .npz, "
+            f"which takes {columns} and is written as they are found, such as --out all.npz."
         )
     print_remark(f"there are about {about} fixtures, {size}.")
     return query, count

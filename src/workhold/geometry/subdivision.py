@@ -46,8 +46,8 @@ ONE = 1e-6
 SHORT = 1e-5
 # mm. Largest gap between the ends of neighbouring pieces of a border.
 REACH = 1e-4
-# How far beside a piece its two sides are looked at, in mm, and as a share of the piece: far enough that what rises
-# by 0.001 for 1 and ends at the piece is there.
+# How far beside a piece its two sides are looked at, in mm, and as a share of the piece: far enough that
+# what rises by 0.001 for 1 and ends at the piece is there.
 BESIDE, BESIDE_SHARE = 2e-2, 0.1
 # Where along a piece that may be, as shares of it: the first where nothing is near, or where it is farthest.
 SHARES = (0.5, 0.25, 0.75, 0.375, 0.625, 0.125, 0.875, 0.03, 0.97)

@@ -189,7 +189,8 @@ Array = NDArray[np.float64]
 
 # Searches that cost more begin with what lies square, see ``cells.Block``: those of a tenth of a second.
 SQUARE_FIRST = 1e6
-# Searches that cost more limit errors; those of two clamps, where seats are paired besides, from this part of it.
+# Searches that cost more limit errors; those of two clamps, where seats are paired besides, from this part
+# of it.
 LIMITED_FROM, OF_TWO = 1.5e7, 0.5
 
 

@@ -210,7 +210,7 @@ def turned_at(edge: EdgeCurve, segment: Segment) -> tuple[EdgeCurve, frozenset[f
 class Conic:
     """A circle or an ellipse in space, whose points are centre + along cos t + across sin t.
 
-    Where it passes an upright wall's place is told at once, which takes a library's curve twenty questions.
+    Where it passes an upright wall's place is known at once, which takes a library's curve twenty questions.
 
     Parameters
     ----------
