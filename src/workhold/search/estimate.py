@@ -36,7 +36,7 @@ IntArray = NDArray[np.int64]
 
 # Of more fixtures than this only so many are listed, the best, unless all are asked for.
 MANY, LISTED = 200_000, 1_000
-# Searches that cost less have too few fixtures to ask, see ``cells.Block``.
+# Searches that cost less, see ``cells.Block``, surely find fewer.
 FEW = 4e6
 # Work that is done for an estimate with one clamp and with two, and the fewest cells that are drawn for it.
 # Of cells for two clamps, more add little. So much more work is done with one clamp where cells hold more.
@@ -51,7 +51,7 @@ BEGIN = 0.618
 def estimated_fixtures(query: Query, threads: int, cancel: Event | None = None) -> int | None:
     """How many fixtures a query has, about.
 
-    None where they are surely few, that nobody knows without a whole search, and once ``cancel`` is set.
+    None where they are surely few, beside a wall, with rules for their seating, and once ``cancel`` is set.
     """
     if WALL_END in query.toolkit.contacts or query.seating is not None:
         return None
@@ -84,7 +84,8 @@ def estimated_of_a_way(query: Query, threads: int, cancel: Event | None) -> int 
         return None
     dense = np.array([block.dense for block in blocks])
     drawn, chances = drawn_by(costs * dense, max(number_for(WORK, costs, costs * dense), FEWEST_DRAWN))
-    # Where cells hold too much, so do chord curves: what crosses is found by two of them, what slides by one.
+    # Where these cells hold too much work, only some chord curves are looked at. What crosses is made of two
+    # of them, what slides of one.
     search.every = max(int(sqrt(costs[drawn].sum() / MOST_WORK)), 1)
     chances = chances / np.where(dense[drawn] > 1.0, search.every, search.every**2)
     records, _ = run_blocks([blocks[k] for k in drawn], threads, None, cancel, stop=search.stop)
