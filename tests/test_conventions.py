@@ -104,8 +104,8 @@ def test_the_verification_reads_outlines_as_the_geometry_does() -> None:
     assert (rules.STRAIGHT, rules.WHOLE) == (conventions.STRAIGHT, conventions.WHOLE)
 
 
-# Of the sizes of dowels, which no figure of a fixture rests on, and of rounding.
-NOT_JUDGED = {"FIGURE_DECIMALS", "DOWEL_DEPTH", "DOWEL_STANDOUT"}
+# Of the sizes of dowels and of supports, which no figure of a fixture rests on, and of rounding.
+NOT_JUDGED = {"FIGURE_DECIMALS", "DOWEL_DEPTH", "DOWEL_STANDOUT", "STEADY"}
 
 
 def test_the_verification_judges_by_the_numbers_of_the_order() -> None:
