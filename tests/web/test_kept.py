@@ -10,13 +10,17 @@ from typing import Any
 
 import numpy as np
 import pytest
+from attrs import evolve
 from running_server import run_alone
 
+from fakes import fake_result
 from workhold.files.step.part_shape import PartShape
+from workhold.model.search_report import best_note, many_note
 from workhold.web import jobs as kept_jobs
 from workhold.web.families import FamilyFound
 from workhold.web.guard import ServerLimits
 from workhold.web.jobs import Jobs, ServerJob, TooManyError
+from workhold.web.searching import Found
 
 LIMITS = ServerLimits(jobs=2, kept_jobs=4, kept_bytes=1_000, life_seconds=100.0, left_seconds=0.05)
 
@@ -49,9 +53,11 @@ def jobs(monkeypatch: pytest.MonkeyPatch) -> Iterator[Jobs]:
     yield Jobs(FakePool(), LIMITS)  # type: ignore[arg-type]
 
 
-def job(jobs: Jobs, name: str, *, state: str = "done", unused: float = 0.0, **values: Any) -> ServerJob:
+def job(
+    jobs: Jobs, name: str, *, state: str = "done", unused: float = 0.0, queries: Any = (), **values: Any
+) -> ServerJob:
     """A job that was used some seconds ago."""
-    made = ServerJob(name, {}, (), values.pop("address", "a"), values.pop("kind", "design"), **values)
+    made = ServerJob(name, {}, queries, values.pop("address", "a"), values.pop("kind", "design"), **values)
     made.state, made.used = state, monotonic() - unused
     jobs.by_name[name] = made
     return made
@@ -174,3 +180,15 @@ def test_a_job_that_is_left_is_cancelled_unless_somebody_watches_it(jobs: Jobs) 
     assert not run_alone(whole(True, 50.0))
     assert not run_alone(whole(False, -50.0))
     assert run_alone(whole(False, 50.0))
+
+
+def test_how_many_there_are_about_is_said_beside_the_best(jobs: Jobs) -> None:
+    """Not that nobody counted them, which the kept result says, as it is one of the best alone."""
+    whole = fake_result(5)
+    limited = evolve(whole, query=evolve(whole.query, best=5), notes=(best_note(5),))
+    made = job(jobs, "one", queries=(("", whole.query),))
+    jobs.keep(made, Found(limited, 0, (many_note(4_240_000, 5),)))
+    assert made.notes == ("There are about 4,200,000 fixtures: these are the best 5.",)
+    assert made.result is not None and made.result.query.best == 5 and made.result.notes == (best_note(5),)
+    jobs.keep(made, Found(evolve(whole, notes=(best_note(5),)), 0))
+    assert made.notes == (best_note(5),) and made.result.query.best is None

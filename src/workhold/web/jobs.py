@@ -19,7 +19,7 @@ from attrs import define, evolve, field
 from workhold.errors import InputError
 from workhold.listing.identity import Entries
 from workhold.model.result import Result
-from workhold.model.search_report import Explanation, cut_note, kept_note, stopped_note
+from workhold.model.search_report import Explanation, best_note, cut_note, kept_note, stopped_note
 from workhold.model.seating import Seating
 from workhold.seating.clamping import ByHand
 from workhold.web.answers import arrangements_answer, proof_answer
@@ -295,7 +295,7 @@ class Jobs:
 
     def keep(self, job: ServerJob, found: Found) -> None:
         """Keeps the outcome of a search."""
-        result, notes = found.result, [*found.notes, *found.result.notes]
+        result, notes = found.result, list(found.result.notes)
         if found.left_out:
             every, put_in_order = sum(result.found.values()), len(result) + found.left_out
             notes = [kept_note(every, len(result)), *(n for n in notes if n != cut_note(every, put_in_order))]
@@ -303,7 +303,9 @@ class Jobs:
             notes.insert(0, stopped_note(self.limits.seconds))
         query = evolve(job.queries[0][1], best=result.query.best)
         job.result = evolve(result, query=query, notes=tuple(notes))
-        job.notes = tuple(notes)
+        # How many there are about says more than that nobody counted them.
+        uncounted = () if not found.notes or result.query.best is None else (best_note(result.query.best),)
+        job.notes = (*found.notes, *(note for note in notes if note not in uncounted))
         job.found = sum(result.found.values())
         job.fraction = 1.0 if result.complete else job.fraction
         job.revision += 1
