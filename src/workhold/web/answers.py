@@ -278,7 +278,8 @@ def fixture_answer(
     """Describes a fixture, without its rank, on its plate as it stands in the middle of that.
 
     Holes are named so, and plates lie so under the part. All places are in the frame of the fixture as it is
-    listed; ``placed`` is by how much it stands further on. Edge distances are null where there is no edge.
+    listed; ``placed`` is by how much it stands further on. Where ``edgeless``, its edge distance stands for
+    none.
 
     Parameters
     ----------
@@ -313,7 +314,8 @@ def fixture_answer(
         "pegs": [[peg.x, peg.y] for peg in fixture.pegs],
         "forces": [finite(peg.force) for peg in fixture.pegs],
         "carriers": moved_back(carriers_answer(shown(stands, toolkit, workpiece), stands), placed),
-        "quality": {key: finite(value) for key, value in edgeless(fixture.quality, longest).items()},
+        "edgeless": edgeless(fixture.quality, longest) != dict(fixture.quality),
+        "quality": {key: finite(value) for key, value in fixture.quality.items()},
     }
 
 

@@ -6,6 +6,8 @@ the best fixtures within seconds, and looks at them while the rest is searched.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from threading import Event, Thread
 from time import perf_counter
 
@@ -21,8 +23,9 @@ from workhold.web.worker import Order
 
 __all__ = ["FIRST", "Found", "search"]
 
-# So many are sought first. The search for them is given up after so many seconds, or after this share of the
-# time that there is: what was found by then is shown, and the search for all begins.
+# So many are sought first. The search for them, and the estimate of all, are given up after so many seconds
+# each, or after this share of the time that there is: what was found by then is shown, and the search for all
+# begins.
 FIRST = 20
 MOST_SECONDS, MOST_SHARE = 30.0, 0.25
 # The part of the progress bar that is theirs.
@@ -62,7 +65,8 @@ def search(payload: tuple[Query, int, bool], order: Order) -> Found:
         order.report(("first", known))
     notes: tuple[str, ...] = ()
     if first is not None and not every:
-        query, about = best_where_many(query, thread_count(None), order.cancel)
+        with soon_enough(order) as enough:
+            query, about = best_where_many(query, thread_count(None), enough)
         if query.best is not None:
             notes = (many_note(about or 0, query.best),)
     begun = 0.0 if first is None else SHARE
@@ -104,6 +108,18 @@ def best_of(query: Query, order: Order) -> Result:
     """The best fixtures of a query; incomplete where that takes long, or the order is cancelled."""
     from workhold.search.design import answer
 
+    with soon_enough(order) as enough:
+        return answer(
+            evolve(query, best=FIRST),
+            progress=Reporter(order, 0.0, SHARE),
+            cancel=enough,
+            preview=lambda result: order.report(("preview", result.part(slice(0, FIRST)))),
+        )
+
+
+@contextmanager
+def soon_enough(order: Order) -> Iterator[Event]:
+    """An event that is set when the order is cancelled, or a part of its time has passed."""
     enough, done = Event(), Event()
     seconds = min(MOST_SECONDS, MOST_SHARE * order.seconds)
 
@@ -116,12 +132,7 @@ def best_of(query: Query, order: Order) -> Result:
     watching = Thread(target=watch, daemon=True)
     watching.start()
     try:
-        return answer(
-            evolve(query, best=FIRST),
-            progress=Reporter(order, 0.0, SHARE),
-            cancel=enough,
-            preview=lambda result: order.report(("preview", result.part(slice(0, FIRST)))),
-        )
+        yield enough
     finally:
         done.set()
         watching.join()

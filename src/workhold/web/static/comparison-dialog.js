@@ -4,7 +4,7 @@
 import { ApiError, ask, send } from "./api.js";
 import { byId, make, show } from "./dom.js";
 import { request, state } from "./state.js";
-import { countText, figureText } from "./units.js";
+import { countText, figureText, shownFigures } from "./units.js";
 import { titleOf, usePreset } from "./toolkit-panel.js";
 
 const POLL = 250;
@@ -54,13 +54,13 @@ export async function openComparison() {
 /** The table as far as it is known. */
 function write(table) {
   if (!table.length) return;
-  const shown = figures.filter((figure) => table.some((line) => figure.key in figuresOf(line)));
+  const shown = figures.filter((figure) => table.some((line) => figure.key in shownFigures(line)));
   const usual = ["warnings", "tilt", "location_error", "clamp_amplification", "closure_margin"];
   const columns = usual.map((key) => shown.find((figure) => figure.key === key)).filter(Boolean);
   const lines = table.map((line) => {
     const name = line.name ?? line.title ?? line.toolkit?.name ?? line.toolkit?.title ?? "";
     const total = line.fixtures ?? 0;
-    const first = figuresOf(line);
+    const first = shownFigures(line);
     const take = () => {
       /** @type {HTMLDialogElement} */ (byId("comparison")).close();
       usePreset(name);
@@ -76,9 +76,4 @@ function write(table) {
       make("thead", {}, make("tr", {}, ...heads.map((words, k) => make(k && words ? "th.number" : words ? "th" : "td", words ? { scope: "col" } : {}, words)))),
       make("tbody", {}, ...lines)),
   );
-}
-
-/** The figures of the first choice in a toolkit, by key. */
-function figuresOf(line) {
-  return line.figures ?? {};
 }

@@ -5,7 +5,7 @@ import { byId, make } from "./dom.js";
 import { forceOf, writtenTurn } from "./pose.js";
 import { on, state } from "./state.js";
 import { pressedBy } from "./toolkits.js";
-import { bareForce, bareLength, figureText, forceWord, length, number } from "./units.js";
+import { bareForce, bareLength, figureText, forceWord, length, number, shownFigures } from "./units.js";
 
 /** @type {any[]} */
 let figures = [];
@@ -70,13 +70,14 @@ const capital = (words, k) => (k ? words : `${words[0].toUpperCase()}${words.sli
 function writeQuality(row, pinned) {
   const heads = ["Figure", ...(pinned ? [`${pinned.rank} pinned`] : []), pinned ? `${row.rank} shown` : `Fixture ${row.rank}`];
   byId("quality-heads").replaceChildren(...heads.map((words, k) => make(k ? "th.number" : "th", { scope: "col" }, words)));
+  const [known, beside] = [shownFigures(row), pinned ? shownFigures(pinned) : {}];
   const lines = figures
-    .filter((figure) => figure.key in row.quality)
+    .filter((figure) => figure.key in known)
     .map((figure) => {
-      const own = row.quality[figure.key];
+      const own = known[figure.key];
       const cells = [];
       if (pinned) {
-        const other = pinned.quality[figure.key];
+        const other = beside[figure.key];
         const size = (value) => value ?? (figure.key === "edge_distance" ? Infinity : NaN);
         const more = (a, b) =>
           (figure.more_is_better ? size(a) > size(b) : size(a) < size(b)) && figureText(figure, a) !== figureText(figure, b);

@@ -5,7 +5,7 @@ import { make } from "./dom.js";
 import { writtenTurn } from "./pose.js";
 import { state } from "./state.js";
 import { drawThumbnail } from "./thumbnails.js";
-import { figureText, length, number } from "./units.js";
+import { figureText, length, number, shownFigures } from "./units.js";
 
 const ROW = 88;
 const THUMBNAIL = [84, 72];
@@ -142,7 +142,7 @@ export class FixtureList {
       ...(caught ? [make("span.row-figure", { title: "from how far open the part is caught" }, make("i", {}, "caught "), opening)] : []),
       ...this.shownFigures().slice(0, caught ? 2 : 3).map((figure) =>
         make(`span.row-figure${figure.key === state.list.sort ? ".sorted" : ""}`, { title: figure.words },
-          make("i", {}, `${figure.short} `), figureText(figure, row.quality[figure.key])),
+          make("i", {}, `${figure.short} `), figureText(figure, shownFigures(row)[figure.key])),
       ),
     );
     drawThumbnail(cell.canvas, state.part, row);

@@ -108,6 +108,12 @@ export function readNumber(text) {
   return plain === "" ? null : Number(plain);
 }
 
+/** The figures of a fixture; an edge distance that stands for none is null. @param {any} row */
+export function shownFigures(row) {
+  const figures = row.quality ?? row.figures ?? {};
+  return row.edgeless ? { ...figures, edge_distance: null } : figures;
+}
+
 /**
  * A figure of quality for reading, with its unit.
  * @param {{key: string, unit: string}} figure
