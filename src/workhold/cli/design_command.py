@@ -175,9 +175,10 @@ def design(
 
             compile_seating(cancel)
         streamed, estimated = out if form == "npz" and engine == "curves" else None, None
-        if engine == "curves":
-            query, estimated = as_many_as_asked(query, every, out, form, workers, cancel)
         with search_progress() as progress:
+            if engine == "curves":
+                progress(0.0, 0)
+                query, estimated = as_many_as_asked(query, every, out, form, workers, cancel)
             result = answered(query, engine, streamed, threads=workers, progress=progress, cancel=cancel)
     if out is not None and streamed is None:
         result = write_found(result, out, form)

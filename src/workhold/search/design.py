@@ -228,7 +228,7 @@ def is_large(query: Query, threads: int, cancel: Event | None) -> bool:
     problem = Problem.of(one_clamp(query, query.toolkit.ways[0]))
     first, end = problem.standing
     steps = lattice_steps((problem.frame.standing,), problem.diameter).steps
-    # Chords that the lattice may join; of two each a search looks at about one pair in a hundred.
+    # Pairs of chords that the lattice may join. A search looks at a tenth to a thousandth of them.
     pairs = float(len(steps) * (end - first) ** 2) ** 2
     if pairs / 10.0 < LIMITED_FROM or pairs / 1000.0 > LIMITED_FROM:
         return pairs / 10.0 >= LIMITED_FROM
