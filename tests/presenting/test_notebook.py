@@ -164,7 +164,8 @@ def test_where_no_edge_is_none_is_said() -> None:
         (live,) = (row for row in LivePicture.of(result, 0, 200.0).figures if row[0] == "edge distance")
         assert live[1] == (words or f"{expected} mm")
         answer = fixture_answer(result[0], part, result.toolkit)
-        assert (answer["quality"]["edge_distance"] is None) == (words == "none")
+        assert answer["edgeless"] == (words == "none")
+        assert answer["quality"]["edge_distance"] == result[0].quality["edge_distance"]
         assert rows_answer(result.table, part, result.toolkit, [1])[0] == {"rank": 1, **answer}
 
 
