@@ -27,6 +27,7 @@ def unasked(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of small searches, too, a part is looked at only."""
     monkeypatch.setattr(estimate, "FEW", 0.0)
     monkeypatch.setattr(estimate, "WORK", 1e5)
+    monkeypatch.setattr(estimate, "CONTACTS_DECIDED", 400)
 
 
 @pytest.mark.usefixtures("unasked")
