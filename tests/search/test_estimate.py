@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from threading import Event
+from typing import Any
 
 import pytest
 from attrs import evolve
@@ -85,12 +86,50 @@ def test_the_best_are_asked_for_where_there_are_many(monkeypatch: pytest.MonkeyP
 
 
 @pytest.mark.usefixtures("unasked")
-def test_a_comparison_counts_about_and_seeks_the_first_choice() -> None:
+def test_what_is_thinned_counts_as_often(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where cells hold too much, one chord curve in some is looked at, and what is found stands for all."""
+    monkeypatch.setattr(estimate, "WORK", 1e9)
+    query = Query(PARTS["bores"], KITS["vise"])
+    known = len(answer(query))
+    assert estimate.estimated_fixtures(query, 2) == pytest.approx(known, rel=0.05)
+    monkeypatch.setattr(estimate, "MOST_WORK", 2e4)
+    about = estimate.estimated_fixtures(query, 2)
+    assert about is not None and about != known and known / 2 <= about <= 2 * known
+
+
+@pytest.mark.usefixtures("unasked")
+def test_candidates_that_are_not_proven_do_not_count(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of those that are decided the share that is proven counts."""
+    query = Query(PARTS["widget"], KITS["vise"])
+    every, real = estimate.estimated_fixtures(query, 2), estimate.finish
+
+    def decide_half(records: Any, *asked: Any) -> Any:
+        return real([records[0][::2]], *asked)
+
+    monkeypatch.setattr(estimate, "finish", decide_half)
+    assert every is not None and estimate.estimated_fixtures(query, 2) == pytest.approx(every / 2, rel=0.2)
+
+
+@pytest.mark.usefixtures("unasked")
+def test_all_ways_of_a_toolkit_count() -> None:
+    """A clamp that may push along columns or rows holds the part in either way."""
+    kit = Plate(pitch=16, peg_radius=3, directions=("+x", "+y"))
+    assert len(kit.ways) > 1
+    query = Query(PARTS["widget"], kit)
+    ways = [estimate.estimated_fixtures(evolve(query, toolkit=way), 2) for way in kit.ways]
+    assert all(ways) and estimate.estimated_fixtures(query, 2) == sum(way or 0 for way in ways)
+
+
+@pytest.mark.usefixtures("unasked")
+def test_a_comparison_counts_about_and_seeks_the_first_choice(monkeypatch: pytest.MonkeyPatch) -> None:
     """Its figures are those of the first of all; where nothing is found, that is counted."""
+    asked = []
+    monkeypatch.setattr(designing, "answer", lambda query, **_: asked.append(query.best) or answer(query))
     kits = {"vise": KITS["vise"], "none": Vise(pitch=10, columns=1, peg_radius=3, max_opening=11)}
     found = list(designing.explore((name, Query(PARTS["flange"], kit)) for name, kit in kits.items()))
     whole = answer(Query(PARTS["flange"], kits["vise"]))
     assert found[0].about is not None and found[0].fixtures == found[0].about
     assert len(whole) / 2 <= found[0].fixtures <= 2 * len(whole)
     assert found[0].figures == dict(whole[0].quality) and not found[0].found
+    assert asked == [1, 1]
     assert found[1].fixtures == 0 and found[1].about is None and found[1].reason

@@ -233,14 +233,14 @@ def as_many_as_asked(
         For all of very many without a file that can carry them.
     """
     from workhold.limits import thread_count
-    from workhold.model.search_report import about_words
+    from workhold.model.search_report import round_to_two_digits
     from workhold.search.estimate import LISTED, MANY, best_where_many
 
     asked, count = best_where_many(query, thread_count(threads), cancel)
     if count is None or count <= MANY:
         return query, count
     name = "" if out in (None, STANDARD_OUTPUT) else f" in {out}"
-    about = about_words(count)
+    about = f"{round_to_two_digits(count):,}"
     size = f"{max(count * BYTES[form] / 1e6, 1.0):,.0f} MB{name}"
     if not every:
         print_remark(

@@ -136,13 +136,13 @@ def print_explanation(
     from workhold.cli.tables import fixture_tables
 
     print_tables("", stream=stream)
-    if explanation.contacts == 0:
-        print_tables(*(words for words in [explanation.no_contacts] if words not in said), stream=stream)
-    else:
+    if explanation.contacts:
         table = Table(("rule", ">sets of four contacts", ">removed", ">left"))
         for removal in explanation.removals:
             table.add_row(removal.rule, f"{removal.before:,}", f"{removal.removed:,}", f"{removal.after:,}")
         print_tables(table, f"The last were removed by: {explanation.last_rule}.", stream=stream)
+    elif explanation.no_contacts not in said:
+        print_tables(explanation.no_contacts, stream=stream)
     if explanation.asked_words:
         print_tables(explanation.asked_words, stream=stream)
     if explanation.nearest is not None:

@@ -239,6 +239,10 @@ class ClampedSeats:
         rows = pairs_of(seats.spans, self.half_of(seats), seats.clamps, self.hardware, every)
         if every:
             return int(rows[:, COUNT].sum())
+        return self.held_in(rows)
+
+    def held_in(self, rows: Array) -> int:
+        """How many seats, by pair of directions, are held in pairs (N, 10)."""
         return len(np.unique(rows[:, SEAT] * len(self.toolkit.arrangements) + rows[:, KIND]))
 
     def add(self, seats: Seats) -> None:
@@ -258,7 +262,7 @@ class ClampedSeats:
         self.undecided += undecided_pairs(self.table_of(rows[is_open], seats), self.toolkit)
         rows = rows[~is_open]
         self.pairs += int(rows[:, COUNT].sum())
-        self.seats += len(np.unique(rows[:, SEAT] * len(self.toolkit.arrangements) + rows[:, KIND]))
+        self.seats += self.held_in(rows)
         self.ranked.add(self.table_of(rows, seats))
 
     def of_interest(self, rows: Array, seats: Seats) -> Array:

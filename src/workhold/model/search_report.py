@@ -17,7 +17,7 @@ from workhold.fixels.toolkit import Wording
 from workhold.model.fixture import Fixture
 
 __all__ = [
-    "about_words",
+    "round_to_two_digits",
     "AT_AN_EDGE",
     "GIVEN_UP",
     "NEARLY_DOUBLE",
@@ -308,18 +308,18 @@ def kept_note(found: int, kept: int) -> str:
     return f"{found:,} fixtures were found; this server keeps the best {kept:,} of them."
 
 
-def many_note(about: int, listed: int) -> str:
+def many_note(count: int, listed: int) -> str:
     """The remark on a search for everything that finds too many fixtures to list unasked."""
-    return f"There are about {about_words(about)} fixtures: these are the best {listed:,}."
+    return f"There are about {round_to_two_digits(count):,} fixtures: these are the best {listed:,}."
 
 
-def about_words(count: float) -> str:
+def round_to_two_digits(count: int) -> int:
     """A count of which two digits are known.
 
-    >>> about_words(2_247_282)
-    '2,200,000'
+    >>> round_to_two_digits(2_247_282)
+    2200000
     """
-    return f"{float(f'{count:.1e}'):,.0f}"
+    return int(float(f"{count:.1e}"))
 
 
 def seated_note(looked_at: int, kept: int) -> str:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 __all__ = [
     "counted_text",
     "edgeless",
+    "is_edgeless",
     "figure_text",
     "figure_words",
     "figures_shown",
@@ -141,8 +142,12 @@ def edgeless(figures: Mapping[str, float], longest: float) -> dict[str, float]:
     ----------
     longest : that length in mm, which is on no part, see :func:`no_edge`.
     """
-    has_none = EDGE in figures and figures[EDGE] >= longest * (1 - SAME_SHARE)
-    return {**figures, EDGE: inf} if has_none else dict(figures)
+    return {**figures, EDGE: inf} if is_edgeless(figures, longest) else dict(figures)
+
+
+def is_edgeless(figures: Mapping[str, float], longest: float) -> bool:
+    """Whether the edge distance among figures stands for no edge, see :func:`edgeless`."""
+    return EDGE in figures and figures[EDGE] >= longest * (1 - SAME_SHARE)
 
 
 def figure_text(figure: Figure, value: float, unit: Unit) -> str:

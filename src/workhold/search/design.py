@@ -36,7 +36,7 @@ from workhold.model.quality import FIGURES, WARNINGS, asked_ranking
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Restrictions, Tolerance
 from workhold.model.result import Result
-from workhold.model.search_report import left_notes, no_fixture_notes, no_place_note
+from workhold.model.search_report import left_notes, no_fixture_notes, no_place_note, round_to_two_digits
 from workhold.model.workpiece import Workpiece
 from workhold.search.broken_rules import line_in_the_way
 from workhold.search.cells import run_blocks
@@ -230,8 +230,10 @@ def is_large(query: Query, threads: int, cancel: Event | None) -> bool:
     steps = lattice_steps((problem.frame.standing,), problem.diameter).steps
     # Pairs of chords that the lattice may join. A search looks at a tenth to a thousandth of them.
     pairs = float(len(steps) * (end - first) ** 2) ** 2
-    if pairs / 10.0 < LIMITED_FROM or pairs / 1000.0 > LIMITED_FROM:
-        return pairs / 10.0 >= LIMITED_FROM
+    if pairs / 10.0 < LIMITED_FROM:
+        return False
+    if pairs / 1000.0 > LIMITED_FROM:
+        return True
     if query.toolkit.travels > 1:
         return ways_in(map(blocks_of_search, searches_of(query, threads, cancel))) > OF_TWO * LIMITED_FROM
     ways = [Problem.of(evolve(query, toolkit=way)) for way in query.toolkit.ways]
@@ -419,8 +421,8 @@ class Explored:
     figures : of the first fixture, the one to set up; empty when there is none.
     fit : whether that is a fixture for a workshop.
     held : the share of the part's length that is between its outermost contacts, from 0 to 1.
-    about : how many fixtures there are, about, two digits of it, where they are too many to count.
     reason : why there is no fixture, or why the toolkit cannot be; empty otherwise.
+    about : how many fixtures there are, about, two digits of it, where they are too many to count.
     """
 
     name: str
@@ -453,9 +455,9 @@ def explore(
         try:
             if isinstance(query, InputError):
                 raise query
-            about = estimated_fixtures(query, thread_count(None), cancel) if query.best is None else None
+            count = estimated_fixtures(query, thread_count(None), cancel) if query.best is None else None
             # Where there are many, the first is enough.
-            result = answer(query if about is None else evolve(query, best=1), cancel=cancel)
+            result = answer(query if count is None else evolve(query, best=1), cancel=cancel)
         except InputError as error:
             yield Explored(name, {}, {}, str(error))
             continue
@@ -465,10 +467,9 @@ def explore(
         figures = dict(result[0].quality) if len(result) else {}
         fit = bool(figures) and not unfit(result.table.quality[:1], result.query.tolerance)[0]
         held = held_share(result[0], result.workpiece) if len(result) else 0.0
-        if about is not None and len(result):
-            yield Explored(name, {}, figures, reason, fit, held, int(float(f"{about:.1e}")))
-        else:
-            yield Explored(name, dict(result.found), figures, reason, fit, held)
+        known = None if count is None or not len(result) else round_to_two_digits(count)
+        found = dict(result.found) if known is None else {}
+        yield Explored(name, found, figures, reason, fit, held, known)
 
 
 def held_share(fixture: Fixture, workpiece: Workpiece) -> float:

@@ -25,7 +25,7 @@ from workhold.listing.contact_groups import PackedContacts
 from workhold.listing.seat_order import seat_numbers
 from workhold.listing.seats import ClampedSeats
 from workhold.model.query import Query
-from workhold.search.cells import Block, run_blocks
+from workhold.search.cells import Block, cost_of, run_blocks
 from workhold.search.lattice_shares import LatticeShares, searches_of
 from workhold.search.toolkit_search import MOST_CELLS, ToolkitSearch, one_in
 
@@ -83,7 +83,8 @@ def estimated_of_a_way(query: Query, threads: int, cancel: Event | None) -> int 
     if costs.sum() < FEW:
         return None
     dense = np.array([block.dense for block in blocks])
-    drawn, chances = drawn_by(costs * dense, max(number_for(WORK, costs, costs * dense), FEWEST_DRAWN))
+    finds = costs * dense
+    drawn, chances = drawn_by(finds, max(number_for(WORK, costs, finds), FEWEST_DRAWN))
     # Where these cells hold too much work, only some chord curves are looked at. What crosses is made of two
     # of them, what slides of one.
     search.every = max(int(sqrt(costs[drawn].sum() / MOST_WORK)), 1)
@@ -107,7 +108,7 @@ def estimated_pairs(query: Query, threads: int, cancel: Event | None) -> int | N
     searches = searches_of(query, threads, cancel)
     one = searches[0]
     blocks = one.blocks(one.problem.toolkit.types, MOST_CELLS)
-    if sum(block.cost for block in blocks) < FEW:
+    if cost_of(blocks) < FEW:
         return None
     starts, costs, finds = cells_of(blocks)
     width, total = float(np.diff(starts, append=starts[0] + tau).min()), 0.0

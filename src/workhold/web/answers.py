@@ -27,7 +27,7 @@ from workhold.model.setup import settings_of
 from workhold.model.shown import Shown, shown
 from workhold.model.workpiece import Workpiece
 from workhold.presenting.data import finite, helps_data, solid_data
-from workhold.presenting.figure_words import edgeless, no_edge
+from workhold.presenting.figure_words import is_edgeless, no_edge
 
 __all__ = [
     "arrangements_answer",
@@ -314,7 +314,7 @@ def fixture_answer(
         "pegs": [[peg.x, peg.y] for peg in fixture.pegs],
         "forces": [finite(peg.force) for peg in fixture.pegs],
         "carriers": moved_back(carriers_answer(shown(stands, toolkit, workpiece), stands), placed),
-        "edgeless": edgeless(fixture.quality, longest) != dict(fixture.quality),
+        "edgeless": is_edgeless(fixture.quality, longest),
         "quality": {key: finite(value) for key, value in fixture.quality.items()},
     }
 

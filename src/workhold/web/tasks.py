@@ -60,13 +60,12 @@ def warm_up(kind: str) -> None:
 def explore(payload: tuple[NamedQuery, ...], order: Order) -> None:
     """Answers one query after the other; reports are ("row", row) and ("progress", fraction, found)."""
     from workhold.files.result.writer import toolkit_fields
-    from workhold.presenting.figure_words import edgeless, no_edge
+    from workhold.presenting.figure_words import is_edgeless, no_edge
     from workhold.search.design import explore
 
     total = 0
     for number, (row, (_, query)) in enumerate(zip(explore(payload, order.cancel), payload, strict=False), 1):
         total += row.fixtures
-        figures = edgeless(row.figures, no_edge(query.workpiece, query.toolkit))
         entry = {
             "title": row.name,
             "toolkit": {"kind": query.toolkit.kind, **toolkit_fields(query.toolkit)},
@@ -74,7 +73,7 @@ def explore(payload: tuple[NamedQuery, ...], order: Order) -> None:
             "fixtures": row.fixtures,
             "estimated": row.about is not None,
             "figures": dict(row.figures),
-            "edgeless": figures != dict(row.figures),
+            "edgeless": is_edgeless(row.figures, no_edge(query.workpiece, query.toolkit)),
             "fit": row.fit,
             "note": row.reason,
         }
