@@ -15,7 +15,7 @@ from workhold import design
 from workhold.files.toolkit_file import load_toolkit
 from workhold.kernels.base.tables import Limits
 from workhold.proof.ball_contacts import CandidateBox, narrowed
-from workhold.proof.interval_newton import PRECISIONS
+from workhold.proof.interval_newton import PRECISIONS, BoxOutcome, located, solutions_in
 
 GAP = 25.0
 LIMITS = Limits(GAP, 0.0, 45.0, 2.0, 1.0, 0.0, 0.0)
@@ -142,6 +142,73 @@ def test_no_contact_is_lost(seed: int) -> None:
     assert abs(found.middle[0] - psi) <= found.reach[0] + 1e-13
     assert abs(found.middle[3] - separation) <= found.reach[3] + 1e-12
     assert found.reach[0] <= box.reach[0] * (1 + 1e-5)
+
+
+def placed_box(random: Random, reach: float) -> tuple[CandidateBox, tuple[float, float, float, float]]:
+    """A box about three standing pegs and a moving one on lines and arcs, and the place at which all touch."""
+    psi, x, y, separation = (random.uniform(-end, end) for end in (pi, 9.0, 9.0, 40.0))
+    offsets = [(0.0, 0.0), (120.0, 440.0), (720.0, 20.0), (40.0, 100.0)]
+    rows = []
+    for k, (dx, dy) in enumerate(offsets):
+        along = dx + (separation if k == 3 else 0.0)
+        center = x + cos(psi) * along - sin(psi) * dy, y + sin(psi) * along + cos(psi) * dy
+        normal = random.uniform(-pi, pi)
+        if random.random() < 0.5:
+            rows.append(line(*center, normal + pi / 2))
+        else:
+            radius = random.uniform(4.0, 60.0)
+            middle = center[0] - radius * cos(normal), center[1] - radius * sin(normal)
+            rows.append([1.0, *middle, cos(normal), sin(normal), 1.5, radius, 1.0, 0.0, 0.0, TIGHT, TIGHT])
+    true = (psi, x, y, separation)
+    reaches = (reach, 400.0 * reach, 400.0 * reach, 900.0 * reach)
+    middle = tuple(one + 0.9 * off * random.uniform(-1, 1) for one, off in zip(true, reaches, strict=True))
+    return CandidateBox(rows, offsets, 3, middle, reaches), true  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_standing_pegs_lose_no_contact(seed: int) -> None:
+    """The place at which three locators and a clamp touch stays in the box, which mostly shrinks to it."""
+    random = Random(seed)
+    box, true = placed_box(random, 10.0 ** random.uniform(-7, -2.5))
+    # Neither the gap nor what closes is asked for.
+    found = located(box, LIMITS._replace(gap=-inf, pairing=1.0, clamping=0.0))
+    if found is None:
+        # The clamp pushes the wrong way, or hardly at all, everywhere.
+        return
+    for one, middle, reach in zip(true, found.middle, found.reach, strict=True):
+        assert abs(one - middle) <= reach + 1e-11
+
+
+def test_standing_pegs_make_most_boxes_small() -> None:
+    """A simple place of three locators is found to the last digits, whatever is known of the clamp."""
+    small = 0
+    for seed in range(60):
+        random = Random(seed)
+        box, true = placed_box(random, 1e-4)
+        away = evolve(box, middle=(*box.middle[:3], true[3]), reach=(*box.reach[:3], 30.0))
+        found = located(away, LIMITS._replace(gap=-inf, pairing=1.0, clamping=0.0))
+        small += found is None or max(found.reach[:3]) < 1e-9
+    assert small >= 50
+
+
+@pytest.mark.parametrize(("end", "row"), [((497.0, 297.0), -600.0), ((-497.0, 297.0), -600.0)])
+def test_a_clamp_that_grazes_a_corner_beside_three_locators_is_decided(
+    end: tuple[float, float], row: float
+) -> None:
+    """Three locators fix a large plate, one where a face goes over into a round corner; the clamp slides along
+    another corner and never pushes."""
+    rest = [0.0, 0.0, 1e-9, 1e-9]
+    way = 0.5**0.5
+    rows = [
+        [0.0, 0.0, -303.0, 1.0, 0.0, 497.0, 0.0, 1.0, *rest],
+        [0.0, -103.0, 0.0, 0.0, -1.0, 190.0, 0.0, 1.0, *rest],
+        [1.0, 497.0, -297.0, way, -way, pi / 4, 6.0, 1.0, *rest],
+        [1.0, *end, way * (1 if end[0] > 0 else -1), way, pi / 4, 8.0, 1.0, *rest],
+    ]
+    offsets = [(0.0, 0.0), (-120.0, -440.0), (-720.0, 0.0), (0.0, row)]
+    middle = (pi, -223.0, -303.0, -720.0 if end[0] > 0 else 274.0)
+    box = CandidateBox(rows, offsets, 3, middle, (6.65e-4, 21.8, 21.8, 45.0))
+    assert solutions_in(box, LIMITS._replace(gap=-inf)) == BoxOutcome((), "")
 
 
 def test_an_end_of_a_slot_whose_arc_and_line_are_tangent_is_decided() -> None:

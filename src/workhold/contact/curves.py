@@ -30,10 +30,11 @@ from workhold.kernels.base.tables import (
 from workhold.kernels.chord.coincidences import are_concentric
 from workhold.kernels.curves.table import tail_curves
 
-__all__ = ["CurveTable", "LatticeSteps", "center_numbers", "curve_table", "joined", "loosened"]
+__all__ = ["ANY_TURN", "CurveTable", "LatticeSteps", "center_numbers", "curve_table", "joined", "loosened"]
 
 # Rules nothing out.
 EVERYWHERE = NearSpots(np.zeros(1, np.int64), np.zeros((0, 0), np.int8), np.zeros((0, 0, 0), np.int8))
+ANY_TURN = np.zeros((0, 2))
 
 
 @define(frozen=True, eq=False)
@@ -110,6 +111,7 @@ def curve_table(
     cancel: Event | None = None,
     centers: NDArray[np.int64] | None = None,
     near: NearSpots = EVERYWHERE,
+    within: NDArray[np.float64] = ANY_TURN,
 ) -> CurveTable:
     """Chord curves between (F, 10) loosened feature rows, or those with their tails on some features.
 
@@ -119,12 +121,13 @@ def curve_table(
     cancel : when set, curves whose turn has not come are left out.
     centers : as of ``center_numbers``, for who asks again and again.
     near : leaves out what no locators of interest touch.
+    within : (K, 2) ranges of psi in radians beside which curves may be left out; none for everywhere.
     """
     centers = center_numbers(rows) if centers is None else centers
 
     def curves_from(tail: int) -> tuple[NDArray[Any], ...]:
         few = steps if cancel is None or not cancel.is_set() else steps.none
-        return tail_curves(tail, rows, centers, few.lengths, few.starts, few.steps, few.angles, near)
+        return tail_curves(tail, rows, centers, few.lengths, few.starts, few.steps, few.angles, near, within)
 
     parts = made_by_threads(curves_from, range(len(rows)) if tails is None else tails, threads)
     before = 0

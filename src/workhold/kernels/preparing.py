@@ -100,7 +100,7 @@ def matrices_and_figures() -> Calls:
 
 def table_and_proof() -> Calls:
     """Most of the kernels that come before and after the search."""
-    yield table.tail_curves, (0, np.zeros((1, SEGMENT_LENGTH)), ONE, LINE, NUMBERS, WHOLE, LINE, NEAR)
+    yield table.tail_curves, (0, np.zeros((1, SEGMENT_LENGTH)), ONE, LINE, NUMBERS, WHOLE, LINE, NEAR, ROWS)
     yield location_bounds.join_near_spots, (ROWS, 0, 1.0, PRECISION, NEAR, NUMBERS)
     yield location_bounds.least_middle_error, (ROWS, 0, PRECISION)
     setting, work = Setting(LATTICE, LIMITS, 0.0, 0.0, 0.0), (np.zeros((WORK_LENGTH, 4)), np.zeros((2, 4, 2)))

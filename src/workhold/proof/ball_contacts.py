@@ -42,6 +42,7 @@ __all__ = [
     "contact_value",
     "contact_values",
     "end_slacks",
+    "extent",
     "from_origin",
     "is_empty",
     "narrowed",

@@ -1,12 +1,14 @@
 """What double precision leaves open, decided in ball arithmetic (python-flint).
 
 A candidate is a box of the four unknowns (psi, tail x, tail y, separation) that holds the exact contact, if
-there is one. It is made smaller by two rules of one or two unknowns (``ball_contacts.narrowed``), and turned
-into the frame of ``proof.singular_frame``. There, boxes in which some contact equation has no zero, or in
-which some rule is broken everywhere, are dropped. The interval Newton method (Hansen and Sengupta) makes the
-others smaller. It shows that there is none or exactly one solution. What remains is cut in three. Where
-``FEW_BOXES`` do not decide, all solutions are mostly on one curve, on which ``proof.solution_curve`` finds
-them. What is left after ``MOST_BOXES`` boxes stays undecided. Solutions are judged at rising precision.
+there is one. It is made smaller by two rules of one or two unknowns (``ball_contacts.narrowed``), and by the
+contacts of three standing pegs alone (``located``). These often fix the pose where the moving peg only grazes
+what it touches. Then the box is turned into the frame of ``proof.singular_frame``. There, boxes in which some
+contact equation has no zero, or in which some rule is broken everywhere, are dropped. The interval Newton
+method (Hansen and Sengupta) makes the others smaller. It shows that there is none or exactly one solution.
+What remains is cut in three. Where ``FEW_BOXES`` do not decide, all solutions are mostly on one curve, on
+which ``proof.solution_curve`` finds them. What is left after ``MOST_BOXES`` boxes stays undecided. Solutions
+are judged at rising precision.
 
 References: E. Hansen, S. Sengupta, "Bounding solutions of systems of equations using interval analysis",
 BIT 21 (1981) 203-211; F. Johansson, "Arb", IEEE Transactions on Computers 66 (2017) 1281-1292.
@@ -15,14 +17,24 @@ BIT 21 (1981) 203-211; F. Johansson, "Arb", IEEE Transactions on Computers 66 (2
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import reduce
 
-from attrs import frozen
-from flint import arb, ctx
+from attrs import evolve, frozen
+from flint import arb, arb_mat, ctx
 
 from workhold.kernels.base.tables import Limits
 from workhold.model.search_report import AT_AN_EDGE, NEARLY_DOUBLE
-from workhold.proof.ball_contacts import CandidateBox, is_empty, narrowed, places, slacks, wrench_minors
-from workhold.proof.singular_frame import SingularFrame, is_smaller, thirds
+from workhold.proof.ball_contacts import (
+    CandidateBox,
+    contact_values,
+    extent,
+    is_empty,
+    narrowed,
+    places,
+    slacks,
+    wrench_minors,
+)
+from workhold.proof.singular_frame import SingularFrame, is_smaller, newton_step, thirds
 from workhold.proof.solution_curve import roots_on_curve
 
 __all__ = ["BoxOutcome", "solutions_in"]
@@ -32,6 +44,10 @@ PRECISIONS = (128, 256, 512)
 FEW_BOXES, MOST_BOXES = 40, 10000
 # A root is not refined further than to so many units in the last place of a mm, at the precision in force.
 SHARP = 2.0**24
+# Rounds in which standing pegs make a box smaller.
+MOST_STEPS = 60
+# Cuts of the separation once these fix the pose.
+FEW_CUTS = 120
 
 
 @frozen
@@ -50,6 +66,8 @@ def solutions_in(
         return None
     with ctx.workprec(PRECISIONS[0]):
         smaller_box = narrowed(box, limits)
+        if smaller_box is not None and box.standing == 3:
+            smaller_box = located(smaller_box, limits)
         if smaller_box is None:
             return BoxOutcome((), "")
         frame = SingularFrame.of(smaller_box, limits)
@@ -61,6 +79,49 @@ def solutions_in(
     if roots is None:
         return None if is_stopped() else BoxOutcome((), NEARLY_DOUBLE)
     return judged(frame, roots, limits)
+
+
+def located(box: CandidateBox, limits: Limits) -> CandidateBox | None:
+    """The part of a box in which three standing pegs may touch, and the moving one then; None without one.
+
+    Their equations do without the separation. Each is first solved for each unknown, which needs no inverse
+    where the box is wide, and then all are combined by the inverse of their Jacobian at its middle. Where
+    that fixes the pose, the separation is cut in two again and again.
+    """
+    place = [arb(middle, reach) for middle, reach in zip(box.middle, box.reach, strict=True)]
+    for _ in range(MOST_STEPS):
+        before = place[:3]
+        for turn in range(4):
+            middle = [arb(one.mid()) for one in place[:3]]
+            values = contact_values(box, [*middle, place[3]])[:3]
+            slopes = [row[:3] for row in places(box, place).slopes[:3]]
+            if turn < 3:
+                values, slopes = values[turn:] + values[:turn], slopes[turn:] + slopes[:turn]
+            else:
+                try:
+                    inverse = arb_mat(slopes).mid().inv().mid()
+                except ZeroDivisionError:
+                    break
+                values = list((inverse * arb_mat(3, 1, values)).entries())
+                slopes = (inverse * arb_mat(slopes)).tolist()
+            closer, _ = newton_step(place[:3], values, slopes)
+            if closer is None:
+                return None
+            place[:3] = closer
+        if not is_smaller(place[:3], before):
+            break
+    waiting = [place[3]]
+    for _ in range(FEW_CUTS):
+        if not waiting:
+            break
+        part = waiting.pop()
+        if not is_empty(box, places(box, [*place[:3], part]), limits):
+            waiting += [arb(part.mid() + side * part.rad() / 2, part.rad() / 2) for side in (-1, 1)]
+    if not waiting:
+        return None
+    place[3] = reduce(arb.union, waiting)
+    middles, reaches = zip(*map(extent, place), strict=True)
+    return evolve(box, middle=middles, reach=reaches)
 
 
 def roots_in_boxes(

@@ -17,7 +17,7 @@ limit holds as it is. Elsewhere it is a smaller one, below which there is often 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import hypot, inf, pi
+from math import inf, pi
 
 import numpy as np
 from attrs import evolve, frozen
@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 from workhold.contact.curves import loosened
 from workhold.contact.problem import Problem
 from workhold.conventions import SQUARE_TILT
+from workhold.geometry.hull import convex_hull
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS, SEGMENT_LENGTH, SIGN, X, Y
 from workhold.kernels.base.tables import NearSpots, Precision
 from workhold.kernels.contact.location_bounds import (
@@ -209,12 +210,22 @@ def give_of(row: Array, points: Array) -> float:
     """What a contact on a feature may be off by for a location error of 1.
 
     On a line it is for each mm that the contact is moved, on an arc for each radian. Points (C, 2) are those
-    of the silhouette.
+    of the silhouette. Nothing between them moves farther than they.
     """
     apart = largest_apart(points)
     if row[IS_ARC] == 0.0:
         return 2.0 / apart
-    return 1.0 + 2.0 * min(hypot(*(point - row[[X, Y]])) for point in points) / apart
+    return 1.0 + 2.0 * distance_from_hull(points, row[[X, Y]]) / apart
+
+
+def distance_from_hull(points: Array, place: Array) -> float:
+    """The distance in mm of a place from the convex hull of points (C, 2); 0 inside."""
+    hull = np.array(convex_hull(map(tuple, points.tolist())))
+    side, ray = np.roll(hull, -1, axis=0) - hull, place - hull
+    if len(hull) > 2 and (side[:, 0] * ray[:, 1] >= side[:, 1] * ray[:, 0]).all():
+        return 0.0
+    along = np.clip((ray * side).sum(axis=1) / np.maximum((side * side).sum(axis=1), 1e-300), 0.0, 1.0)
+    return float(np.hypot(*(ray - along[:, None] * side).T).min())
 
 
 def cut_feature(row: Array, number: int, points: Array, apart: float, length: float) -> list[Array]:

@@ -102,11 +102,11 @@ class LatticeShares:
         With a limit those of seats with no larger location error, the square ones first.
         """
         if limit is not None:
-            square, aslant = (
-                searches_of(query, threads, cancel, limit, near) for near in (limit.square, limit.aslant)
-            )
+            first = preferred_angles(query)
+            square = searches_of(query, threads, cancel, limit, limit.square, first)
+            aslant = searches_of(query, threads, cancel, limit, limit.aslant)
             blocks = [blocks_of_search(search) for search in aslant]
-            ranges = square_first(ranges_of(blocks), preferred_angles(query))
+            ranges = square_first(ranges_of(blocks), first)
             seats = ClampedSeats(query, square[0].problem, is_limited=True)
             seats.ranked.has_dropped = True
             with ThreadPoolExecutor(max_workers=threads) as pool:
@@ -252,12 +252,13 @@ def searches_of(
     cancel: Event | None,
     limit: ErrorLimit | None = None,
     near: NearSpots = EVERYWHERE,
+    only: Ranges = (),
 ) -> list[ToolkitSearch]:
     """The search of each direction of the clamp, for contacts that need not close; with a limit for those
-    near some spots."""
+    near some spots, and perhaps at some angles only."""
     precision = ANY_ERROR if limit is None else limit.precision
     return [
-        ToolkitSearch.of(problem, threads=threads, cancel=cancel, near=near, precision=precision)
+        ToolkitSearch.of(problem, threads=threads, cancel=cancel, near=near, precision=precision, only=only)
         for problem in problems_of(query)
     ]
 

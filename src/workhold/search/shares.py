@@ -234,12 +234,16 @@ def limited_work(
     query, works = problem.query, list[Work]()
     for number, near in enumerate((limit.square, limit.aslant)):
         share = stage(progress, number / 2, (number + 1) / 2)
+        first = preferred_angles(query)
         search = ToolkitSearch.of(
-            problem, threads=threads, cancel=cancel, near=near, precision=limit.precision
+            problem,
+            threads=threads,
+            cancel=cancel,
+            near=near,
+            precision=limit.precision,
+            only=first if number == 0 else (),
         )
-        blocks = search.blocks(
-            query.arrangements, 4 * LEAST_BLOCKS, first=preferred_angles(query), rest=number > 0
-        )
+        blocks = search.blocks(query.arrangements, 4 * LEAST_BLOCKS, first=first, rest=number > 0)
         done = run_blocks(blocks, threads, share, cancel, kept.add, look, search.stop)[1]
         works.append(work_of(search, blocks, done))
     statistics = summed([work.statistics for work in works])

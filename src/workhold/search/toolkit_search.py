@@ -19,6 +19,7 @@ from attrs import define, evolve, field
 from numpy.typing import NDArray
 
 from workhold.contact.curves import (
+    ANY_TURN,
     EVERYWHERE,
     CurveTable,
     LatticeSteps,
@@ -103,7 +104,8 @@ def lattice_steps(carriers: Sequence[Carrier], longest: float) -> LatticeSteps:
         np.arange(-most_columns, most_columns + 1), np.arange(-most_rows, most_rows + 1), indexing="ij"
     )
     steps = np.stack([columns.ravel(), rows.ravel()], axis=1).astype(np.int64)
-    sizes = np.array([hypot(k * pitch_x, m * pitch_y) for k, m in np.abs(steps)])
+    known = [[hypot(k * pitch_x, m * pitch_y) for m in range(most_rows + 1)] for k in range(most_columns + 1)]
+    sizes = np.array(known)[tuple(np.abs(steps).T)]
     keep = (sizes > 0.0) & (sizes <= longest)
     thick = [carrier.body_radius for carrier in carriers if carrier.body_radius > carrier.peg_radius]
     if thick:
@@ -140,11 +142,16 @@ def is_between_free_holes(carrier: Carrier, steps: NDArray[np.int64]) -> NDArray
 
 
 def tables_of(
-    problem: Problem, loose: Array, threads: int, cancel: Event | None, near: NearSpots = EVERYWHERE
+    problem: Problem,
+    loose: Array,
+    threads: int,
+    cancel: Event | None,
+    near: NearSpots = EVERYWHERE,
+    within: Array = ANY_TURN,
 ) -> CurveTable:
     """The chord curves of a problem's loose features, those of each carrier apart unless its pegs touch the
     same."""
-    share = partial(curve_table, threads=threads, cancel=cancel, near=near)
+    share = partial(curve_table, threads=threads, cancel=cancel, near=near, within=within)
     longest, (standing, moving) = problem.diameter + 1e-6, problem.frame.carriers
     if all(arrangement.pegs[-1] == 1 for arrangement in problem.toolkit.arrangements):
         # No two pegs move.
@@ -174,6 +181,15 @@ def may_lie_at(
         wanted |= (least - ANGLE_HAIR - low) % turn <= width
         wanted |= (low - least + ANGLE_HAIR) % turn <= most - least + 2 * ANGLE_HAIR
     return wanted
+
+
+def cells_of_half_turn(problem: Problem) -> int:
+    """How many cells there are in a half turn of orientations.
+
+    In a cell heights should change by no more than part of a pitch, so that most pairs of pieces cannot cross.
+    """
+    most = CELLS_PER_PITCH * problem.wrench_length / problem.frame.lattice.pitch_y
+    return int(min(max(most, FEWEST_CELLS), MOST_CELLS))
 
 
 def neighbours(wanted: NDArray[np.bool_], together: int) -> Iterator[tuple[int, int]]:
@@ -243,15 +259,23 @@ class ToolkitSearch:
         cancel: Event | None = None,
         near: NearSpots = EVERYWHERE,
         precision: Precision = ANY_ERROR,
+        only: Collection[tuple[float, float]] = (),
     ) -> ToolkitSearch:
         """The search of a problem, with its chord curves, or some of them once ``cancel`` is set.
 
         ``counting`` leaves the contact margin out. What ``near`` and ``precision`` rule out is not searched.
+        With ``only``, ranges in degrees of the part's angle, no other blocks are made than those of them that
+        come first.
         """
         if counting:
             problem = Problem.of(evolve(problem.query, contact_margin=0.0), problem.pairing)
         loose = loosened(problem.rows[:, :SEGMENT_LENGTH])
-        table = tables_of(problem, loose, threads, cancel, near)
+        within = ANY_TURN
+        if only:
+            edges = cell_edges(2, 2 * cells_of_half_turn(problem))
+            chosen = may_lie_at(edges, only, 2, 90.0 * problem.frame.quarters)
+            within = np.stack([edges[:-1], edges[1:]], axis=1)[chosen]
+        table = tables_of(problem, loose, threads, cancel, near, within)
         return cls(problem, loose, table, precision, near, counting, most_listed)
 
     @property
@@ -305,14 +329,7 @@ class ToolkitSearch:
         """
         # All lines of action pass a round part's centre, so nothing keeps it from turning.
         is_idle = not self.counting and is_round(self.problem)
-        # In a cell heights should change by no more than part of a pitch, so that most pairs of pieces cannot
-        # cross.
-        cells = int(
-            min(
-                max(CELLS_PER_PITCH * self.problem.wrench_length / self.frame.lattice.pitch_y, FEWEST_CELLS),
-                MOST_CELLS,
-            )
-        )
+        cells = cells_of_half_turn(self.problem)
         most = max(cells // least, 1)
         together = int(min(max(PAIRS_PER_BLOCK / max(self.alive, 1.0) ** 2, 1.0), most))
         blocks: list[Block] = []

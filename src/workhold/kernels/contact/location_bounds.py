@@ -15,8 +15,8 @@ them. Let contacts u' be the middles of stretches that hold u. What a contact me
 from u to u'. On a line it changes by no more than the half length times the turn, and on an arc by the half
 sweep times the movement of the centre. So the same movement belongs to errors of u' that are off by no more
 than g_i e. Let z be the largest movement of a probe at u' for the tolerances, and h that for errors of sizes
-g_i. Then z is at most e (1 + h), and e >= z / (1 + h) is the bound. It holds as well where contacts in the
-middles fix no pose: all is multiplied by the determinant.
+g_i. Then z is at most e (1 + h), and e >= z / (1 + h) is the bound, the largest of all probes. It holds as
+well where contacts in the middles fix no pose: all is multiplied by the determinant.
 """
 
 from __future__ import annotations
@@ -56,30 +56,35 @@ def cross_rows(one: Array, two: Array, out: Array) -> None:
 
 
 @inner
+def probe_error(moves: Array, features: Array, count: int, precision: Precision, probe: int) -> float:
+    """The largest movement of one probe in mm, see ``error_times``."""
+    total, probes, faces = 0.0, precision.probes, precision.faces
+    x, y, turn = probes[probe, 0], probes[probe, 1], probes[probe, 2]
+    for i in range(count):
+        along = moves[i, 0] * x + moves[i, 1] * y + moves[i, 2] * turn
+        total += precision.peg * abs(along)
+        face, first = faces[int(features[i])], True
+        for j in range(i):
+            first = first and faces[int(features[j])] != face
+        if not first:
+            continue
+        for j in range(i + 1, count):
+            if faces[int(features[j])] == face:
+                along += moves[j, 0] * x + moves[j, 1] * y + moves[j, 2] * turn
+        total += precision.face * abs(along)
+    return total
+
+
+@inner
 def error_times(moves: Array, features: Array, count: int, precision: Precision, enough: float) -> float:
     """A lower bound of the location error in mm for movements (C, 3) that errors of 1 of contacts make.
 
     ``features`` (C,) are those touched. Where movements are multiplied by something, so is the result.
     A bound above ``enough`` is as good as any larger one.
     """
-    most, probes, faces = 0.0, precision.probes, precision.faces
-    for p in range(probes.shape[0]):
-        total = 0.0
-        for i in range(count):
-            along = moves[i, 0] * probes[p, 0] + moves[i, 1] * probes[p, 1] + moves[i, 2] * probes[p, 2]
-            total += precision.peg * abs(along)
-            face, first = faces[int(features[i])], True
-            for j in range(i):
-                first = first and faces[int(features[j])] != face
-            if not first:
-                continue
-            for j in range(i + 1, count):
-                if faces[int(features[j])] == face:
-                    along += (
-                        moves[j, 0] * probes[p, 0] + moves[j, 1] * probes[p, 1] + moves[j, 2] * probes[p, 2]
-                    )
-            total += precision.face * abs(along)
-        most = max(most, total)
+    most = 0.0
+    for p in range(precision.probes.shape[0]):
+        most = max(most, probe_error(moves, features, count, precision, p))
         if most > enough:
             break
     return most
@@ -199,16 +204,18 @@ def least_error_in(
     cross_rows(first, second, room[2])
     size = abs(first[0] * room[0, 0] + first[1] * room[0, 1] + first[2] * room[0, 2])
     room[3, 0], room[3, 1], room[3, 2] = first[SPOT_FEATURE], second[SPOT_FEATURE], third[SPOT_FEATURE]
-    give, probes, doubt = 0.0, precision.probes, doubt_at(room[3], 3, precision)
+    least, probes, doubt = 0.0, precision.probes, doubt_at(room[3], 3, precision)
     for p in range(probes.shape[0]):
-        total = 0.0
+        give = 0.0
         for i in range(3):
             spot = first if i == 0 else (second if i == 1 else third)
             along = room[i, 0] * probes[p, 0] + room[i, 1] * probes[p, 1] + room[i, 2] * probes[p, 2]
-            total += spot[SPOT_GIVE] * abs(along)
-        give = max(give, total)
-    size = max(size + give, 1e-300) / doubt
-    return error_times(room, room[3], 3, precision, enough * size) / size
+            give += spot[SPOT_GIVE] * abs(along)
+        error = doubt * probe_error(room, room[3], 3, precision, p) / max(size + give, 1e-300)
+        least = max(least, error)
+        if least > enough:
+            break
+    return least
 
 
 @inner

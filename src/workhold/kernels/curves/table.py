@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from math import cos, hypot, sin
+from math import ceil, cos, hypot, sin
 
 import numpy as np
 
 from workhold.kernels.base.arrays import with_room
 from workhold.kernels.base.compiling import Array, IntArray, compiled_making_arrays, inner
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS, X, Y, point_at
+from workhold.kernels.base.interval import TURN
 from workhold.kernels.base.tables import (
     CENTER,
     COLUMN_STEP,
@@ -127,6 +128,28 @@ def slides_near(a: Array, b: Array, ends: tuple[int, int], near: NearSpots, pair
     return True
 
 
+@inner
+def comes_within(low: float, high: float, angle: float, within: Array) -> bool:
+    """Whether a chord of a step turned by an angle is at some orientation within (K, 2) ranges, for alpha from
+    ``low`` to ``high``; all in radians. It always is where there are none."""
+    for k in range(within.shape[0]):
+        # Where the range ends, a turn or more before the chord begins there or not.
+        end = within[k, 1] + ROUNDING
+        end += TURN * ceil((low - angle - end) / TURN)
+        if end - (within[k, 1] - within[k, 0]) - 2.0 * ROUNDING <= high - angle:
+            return True
+    return within.shape[0] == 0
+
+
+@inner
+def any_comes_within(curve: Array, angles: Array, first: int, end: int, within: Array) -> bool:
+    """Whether a chord of one of some steps, which are equally long, comes within ranges of orientations."""
+    found = False
+    for step in range(first, end):
+        found = found or comes_within(curve[FROM], curve[TO], angles[step], within)
+    return found
+
+
 @compiled_making_arrays
 def tail_curves(
     tail: int,
@@ -137,6 +160,7 @@ def tail_curves(
     steps: IntArray,
     angles: Array,
     near: NearSpots,
+    within: Array,
 ) -> tuple[IntArray, Array, IntArray, Array, Array]:
     """All chords of interest whose tail is on one feature and whose head is on the same feature or one of a
     higher number.
@@ -151,6 +175,7 @@ def tail_curves(
     steps : (S, 2) column and row differences. Both directions of every step are listed.
     angles : (S,) their directions in radians.
     near : which two stretches of features locators of interest may touch.
+    within : (K, 2) ranges of psi in radians in which curves are of interest; none for everywhere.
 
     Returns
     -------
@@ -184,6 +209,8 @@ def tail_curves(
                 write_curve(curve, a, b, d, ranges[k, 2], 0.0)
                 curve[FROM], curve[TO] = ranges[k, 0], ranges[k, 1]
                 curve[TANGENT_FROM], curve[TANGENT_TO] = ranges[k, 3], ranges[k, 4]
+                if not any_comes_within(curve, angles, starts[length], starts[length + 1], within):
+                    continue
                 if not may_exist(a, b, curve) or not write_near_range(a, b, (tail, head), near, curve):
                     continue
                 first = stretch_count
@@ -191,6 +218,8 @@ def tail_curves(
                 for step in range(starts[length], starts[length + 1]):
                     column, row = steps[step, 0], steps[step, 1]
                     if head == tail and (column < 0 or (column == 0 and row < 0)):
+                        continue
+                    if not comes_within(curve[NEAR_FROM], curve[NEAR_TO], angles[step], within):
                         continue
                     integers, reals = with_room(integers, count), with_room(reals, count)
                     write_step(integers[count], tail, head, column, row, center)

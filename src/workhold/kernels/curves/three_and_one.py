@@ -20,6 +20,7 @@ from workhold.kernels.base.compiling import (
     inner_making_arrays,
 )
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, local_size
+from workhold.kernels.base.interval import TURN
 from workhold.kernels.base.tables import (
     CENTER,
     COLUMN_STEP,
@@ -77,6 +78,8 @@ LIMB_TAIL_FIRST, LIMB_TAIL_END, LIMB_HEAD_FIRST, LIMB_HEAD_END = range(6, 10)
 # Both contacts as spots (``contact.location_bounds``).
 LIMB_TAIL_SPOT, LIMB_HEAD_SPOT = 10, 10 + CONTACT_LENGTH
 LIMB_LENGTH = LIMB_HEAD_SPOT + CONTACT_LENGTH
+# Radians from the seam of a circle, where no curve goes on, in which rounding may take a value past it.
+BESIDE_SEAM = 1e-3
 
 
 @inner
@@ -215,14 +218,16 @@ def add_limb_pairs(out: Array, count: int, limbs: Array, pieces: Array, work: Bl
             end += 1
         if at[1] == 0:
             stats[PAIRS] += end - 1 - i
-        # A tail on a whole circle may be counted from either side of the seam.
         circle = loose[tail, IS_ARC] != 0.0 and loose[tail, HALF_EXTENT] >= pi
-        period = 2.0 * pi if circle else 0.0
+        period = TURN if circle else 0.0
         for ahead in range(at[1], end - 1 - i):
             other = limbs[i + 1 + ahead]
-            # All that follow have larger values, as most have.
-            if not circle and other[LIMB_VALUE_LEAST] > limb[LIMB_VALUE_MOST]:
-                break
+            if other[LIMB_VALUE_LEAST] > limb[LIMB_VALUE_MOST]:
+                # All that follow have larger values, too. Beside the seam of a circle these may be the same ones.
+                if not circle or limb[LIMB_VALUE_LEAST] > BESIDE_SEAM - pi:
+                    break
+                if other[LIMB_VALUE_MOST] < limb[LIMB_VALUE_LEAST] + TURN:
+                    continue
             if limb[LIMB_LOW] >= other[LIMB_HIGH] or other[LIMB_LOW] >= limb[LIMB_HIGH]:
                 continue
             if asks_spots and (
@@ -237,8 +242,8 @@ def add_limb_pairs(out: Array, count: int, limbs: Array, pieces: Array, work: Bl
                 continue
             if integers[one, CENTER] >= 0 and integers[one, CENTER] == integers[two, CENTER]:
                 continue
-            steady = first[STEADY] * second[STEADY] == 1.0 and not circle
-            if steady and not may_meet(first, second, 0.0, 0.0):
+            steady = first[STEADY] * second[STEADY] == 1.0
+            if steady and not may_meet(first, second, 0.0, period):
                 continue
             if not work.counting and heads_share_a_line(integers[one], integers[two], loose, lattice):
                 continue
