@@ -34,13 +34,14 @@ wheel: | $(BIN)/python
 test: $(INSTALLED_DEV)
 	$(BIN)/python -m pytest -n 3 --dist worksteal
 
-# What a change must pass: format, lint, types, layers, tests.
+# What a change must pass: format, lint, types, layers, the house, a true manual, tests.
 check: $(INSTALLED_DEV)
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/python building/house.py check
+	$(BIN)/python building/house.py
+	$(BIN)/python building/check_manual.py
 	$(MAKE) test
 
 # The wheel in an environment without numba against kernels compiled on first use: the same files, byte for byte.
