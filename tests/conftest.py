@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 # Before the first kernel is imported.
@@ -50,6 +51,11 @@ CHROMIUM = (
     shutil.which("chromium-headless-shell") or shutil.which("chromium") or shutil.which("chromium-browser")
 )
 PREPARE = "import sys; from workhold.kernels.preparing import prepared; list(prepared(*sys.argv[1:]))"
+# Rooms of which ``make test`` runs nothing: a browser, FreeCAD, STEP files, many processes, a report of hundreds of figures.
+THOROUGH_ROOMS = [
+    Path(__file__).parent.joinpath(*room.split("/"))
+    for room in ("batch", "files/step", "paper", "web/browser", "workbench")
+]
 # Parts of the kernels that take about as long to compile.
 SHARES = (("crossings", "matrices", "seats"), ("distances", "others", "clamps", "curves"))
 
@@ -70,13 +76,20 @@ def pytest_configure(config: pytest.Config) -> None:
             process.wait()
 
 
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """``make test`` does not even import the rooms of which it runs nothing."""
+    return True if collection_path in THOROUGH_ROOMS and "not thorough" in config.option.markexpr else None
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Leave all but one case in so many to ``make prove``, of laws that are tried on many like cases.
+    """Mark the tests of thorough rooms, and those that are left to ``make prove`` of laws tried on many like cases.
 
     Those whose places in their lists add up to a multiple of the number stay: of each list every value does.
     """
     for item in items:
+        if any(room in item.path.parents for room in THOROUGH_ROOMS):
+            item.add_marker(pytest.mark.thorough)
         if (mark := item.get_closest_marker("sampled")) and places_of(item) % mark.args[0]:
             item.add_marker(pytest.mark.prove)
 
