@@ -56,6 +56,8 @@ THOROUGH_ROOMS = [
     Path(__file__).parent.joinpath(*room.split("/"))
     for room in ("batch", "files/step", "paper", "web/browser", "workbench")
 ]
+# What the cases of a law are marked with that are left out, by the marker that says one in how many stays.
+LEFT_TO = {"sampled": pytest.mark.prove, "thinned": pytest.mark.thorough}
 # Parts of the kernels that take about as long to compile.
 SHARES = (("crossings", "matrices", "seats"), ("distances", "others", "clamps", "curves"))
 
@@ -83,20 +85,23 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the tests of thorough rooms, and those that are left to ``make prove`` of laws tried on many like cases.
+    """Mark the tests of thorough rooms, and of laws tried on many like cases those that are left to a longer run.
 
     Those whose places in their lists add up to a multiple of the number stay: of each list every value does.
     """
     for item in items:
         if any(room in item.path.parents for room in THOROUGH_ROOMS):
             item.add_marker(pytest.mark.thorough)
-        if (mark := item.get_closest_marker("sampled")) and places_of(item) % mark.args[0]:
-            item.add_marker(pytest.mark.prove)
+        for name, left_to in LEFT_TO.items():
+            if (mark := item.get_closest_marker(name)) and places_of(item) % mark.args[0]:
+                item.add_marker(left_to)
 
 
 def places_of(item: Any) -> int:
     """The sum of the places of a case in the lists that its test is tried on, of which the last changes fastest."""
-    first, *others = item.iter_markers("parametrize")
+    if not (lists := [*item.iter_markers("parametrize")]):
+        return sum(item.callspec.indices.values())
+    first, *others = lists
     names = first.args[0].split(",") if isinstance(first.args[0], str) else first.args[0]
     total, number = 0, item.callspec.indices[names[0]]
     for mark in reversed(others):

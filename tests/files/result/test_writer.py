@@ -381,6 +381,7 @@ def test_what_is_no_account_is_refused(tmp_path: Path, document: dict[str, Any],
         read_result(tmp_path / "d.json")
 
 
+@pytest.mark.thorough
 def test_the_bytes_do_not_depend_on_the_threads(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
