@@ -30,18 +30,19 @@ wheel: | $(BIN)/python
 	@rm -rf build dist/workhold-*.whl
 	$(BUILD) wheel -q --no-deps -w dist .
 
-# Every test and every example of the documentation.
+# Of each package the tests that see most in little time.
 test: $(INSTALLED_DEV)
-	$(BIN)/python -m pytest -n 3 --dist worksteal
+	$(BIN)/python -m pytest -n auto --dist worksteal -m 'not thorough and not prove and not wheel'
 
-# What a change must pass: format, lint, types, layers, tests.
+# What a change must pass: format, lint, types, layers, the house, a true manual, all tests but the long ones.
 check: $(INSTALLED_DEV)
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/python building/house.py check
-	$(MAKE) test
+	$(BIN)/python building/house.py
+	$(BIN)/python building/check_manual.py
+	$(BIN)/python -m pytest -n 3 --dist worksteal
 
 # The wheel in an environment without numba against kernels compiled on first use: the same files, byte for byte.
 wheel-test: $(INSTALLED_DEV)
@@ -63,8 +64,8 @@ paper: $(INSTALLED)
 	-$(INSTALL) distributed fsspec pyarrow
 	$(BIN)/python benchmarks/make_paper.py $(PAPER)
 
-# Fifteen hundred planted fixtures and more, ten thousand random SVG drawings against resvg, signals at every stage, the paper's
-# Table 2, then both engines on the complete sets, the paper's parts and random parts.
+# Fifteen hundred planted fixtures and more, ten thousand random SVG drawings against resvg, signals at every stage, how sharp the
+# constants are, the paper's Table 2, then both engines on the complete sets, the paper's parts and random parts.
 prove: $(INSTALLED_DEV)
 	$(BIN)/python -m pytest -n 2 --dist worksteal -m prove
 	$(BIN)/python benchmarks/prove.py

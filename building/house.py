@@ -1,138 +1,240 @@
-"""What the sources are measured by, so that they get no worse: run by ``make check``.
+"""What ``make check`` asks of the sources beyond the layers: ``python building/house.py`` says where it does not hold.
 
-``python building/house.py check`` compares the counts of ``house_rules.py`` with those in ``house.json`` and exits with 1
-where one has risen. ``record`` writes lower counts down; with ``--raise`` it writes down higher ones too. ``show`` lists
-every place that is counted, or those of the rules whose names begin with the words that follow.
+A kind of toolkit is data: only ``fixels`` asks which kind it has. A field of a toolkit is written down in few files, so that
+a new one costs few. A class name stands for one class. Exceptions stand here, each with its reason.
 """
 
 from __future__ import annotations
 
-import json
+import ast
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
-from house_rules import RULES, Finding, Rule, long_subjects, sources_of
-from house_words import replaced_words
+from attrs import field, frozen
 
 ROOT = Path(__file__).resolve().parent.parent
-SOURCES, GLOSSARY, RECORD = (
-    Path("src", "workhold"),
-    Path("docs", "glossary.md"),
-    Path("building", "house.json"),
-)
-# How many places a sentence names.
-PLACES = 6
-# Counts by rule, then by what the rule counts them for, such as a room.
-Counts = dict[str, dict[str, int]]
-Places = Mapping[str, Mapping[str, Sequence[str]]]
+# Where kinds of toolkits may be asked for, and where else it is done; a folder ends in a slash.
+MAY_ASK_FOR_KINDS = {
+    "fixels/": "kinds are described there",
+    "verification/": "it derives fixtures anew, and uses nothing of what the search asks",
+    "batch/durations.py": "how long searches take was measured kind by kind",
+    "files/supports_forms.py": "files of the first form have a vise in place of a toolkit",
+    "model/clamps.py": "a pair of clamps is made and measured there",
+    "model/fixture.py": "a fixture says whether it has a pair of clamps",
+    "seating/clamping.py": "only two clamps are tightened one after the other",
+    "statics/effective_error.py": "a part moves along a wall without an error",
+    "supports/holes.py": "what stands beside a wall has no holes there",
+}
+# A name of one of the tables of fields stands in the table, in the class, and in one place that asks for it.
+MOST_FILES_OF_A_FIELD = 3
+# Classes of one name in two rooms that do not know each other.
+NAMED_TWICE = {
+    "Curves": "of kernels a named tuple of arrays, of the raw block its outline",
+    "Edge": "of a plane map of drawings, and of the verification's own walk",
+    "Stretches": "of the cutter's path, and of the verification's own walk",
+}
+KIND_CLASSES = {"Vise", "OpeningVise", "Plate", "Fence", "FlatJaw"}
+KIND_NAMES = {"vise", "opening-vise", "gripper", "translating-clamp", "plate", "edge", "fence", "flat-jaw"}
+# Attributes by which a toolkit, a peg or a contact is asked for its kind.
+KIND_ATTRIBUTES = {"has_a_hole", "is_along_x", "is_on_wall", "is_wall", "needs_pairs", "wall"}
+# Fields whose names are words of other things too, and are not counted.
+COMMON_WORDS = {"columns", "directions", "rows"}
+# What variables that hold a toolkit are called, and those that hold its fields by name.
+HOLDERS, RECORDS = {"toolkit"}, {"fields", "given", "said"}
+# What of a row of a table is the name of another field.
+REFERRING = {"at_least", "follows", "name"}
 
 
-def rules_of(root: Path) -> tuple[Rule, ...]:
-    """Every rule of which findings are counted; those of words need the glossary."""
-    words = replaced_words(root / GLOSSARY)
-    return (
-        *RULES,
-        Rule("words that the glossary replaces", "use the word that stands beside it there", words),
-    )
+@frozen
+class Source:
+    """One file of Python below the root of the sources.
+
+    Parameters
+    ----------
+    name : its path from the root, with slashes.
+    text : what stands in it.
+    """
+
+    name: str
+    text: str
+    tree: ast.Module = field(init=False, repr=False)
+
+    def __attrs_post_init__(self) -> None:
+        object.__setattr__(self, "tree", ast.parse(self.text))
 
 
-def places_of(root: Path) -> Places:
-    """The places of all findings by rule and key, in the order of the files."""
-    sources = sources_of(root / SOURCES)
-    return {rule.name: by_key(list(rule.find(sources))) for rule in rules_of(root)}
+def sources_of(root: Path) -> list[Source]:
+    """Every file of Python below a folder, in the order of their names, but what is data of the package.
+
+    The checker of the benchmark lies there: it stands alone, in one file, and shares nothing on purpose.
+    """
+    names = [path for path in sorted(root.rglob("*.py")) if path.relative_to(root).parts[0] != "data"]
+    return [Source(path.relative_to(root).as_posix(), path.read_text()) for path in names]
 
 
-def by_key(findings: Sequence[Finding]) -> dict[str, list[str]]:
-    """The places of findings by their key."""
-    keys = sorted({one.key for one in findings})
-    grouped: dict[str, list[str]] = {key: [] for key in keys}
-    for one in findings:
-        grouped[one.key].append(one.place)
-    return grouped
+def lines_asking_for_kind(sources: Sequence[Source]) -> Iterator[str]:
+    """Each line that asks for the kind of a toolkit where nobody may."""
+    for source in sources:
+        if not source.name.startswith(tuple(MAY_ASK_FOR_KINDS)):
+            lines = {getattr(node, "lineno", 1) for node in ast.walk(source.tree) if asks_for_kind(node)}
+            yield from (
+                f"{source.name}:{line} asks for the kind of a toolkit: ask its data in fixels."
+                for line in sorted(lines)
+            )
 
 
-def counts_of(places: Places) -> Counts:
-    """How many places there are of each."""
-    return {name: {key: len(found) for key, found in keys.items()} for name, keys in places.items()}
+def asks_for_kind(node: ast.AST) -> bool:
+    """Whether a node of the syntax tree asks which kind of toolkit something is."""
+    match node:
+        case ast.Call(func=ast.Name(id="isinstance" | "issubclass"), args=[_, kinds]):
+            return bool({last_name(one) for one in ast.walk(kinds)} & KIND_CLASSES)
+        case ast.Compare(left=left, ops=ops, comparators=others):
+            sides = [left, *others]
+            if any(is_kind_name(one) for side in sides for one in items_of(side)):
+                return True
+            if all(isinstance(one, ast.Is | ast.IsNot) for one in ops):
+                return any(last_name(side) in KIND_CLASSES | {"pair"} for side in sides)
+        case ast.Attribute(attr=name, ctx=ast.Load()):
+            return name in KIND_ATTRIBUTES or (name == "kind" and last_name(node.value) in KIND_CLASSES)
+        case ast.Dict(keys=keys):
+            return sum(map(is_kind_name, keys)) > 1
+        case ast.MatchValue(value=value):
+            return is_kind_name(value)
+        case ast.MatchClass(cls=kind):
+            return last_name(kind) in KIND_CLASSES
+    return False
 
 
-def read_record(root: Path) -> Counts:
-    """The counts that were recorded; none where there is no record yet."""
-    path = root / RECORD
-    record: Counts = json.loads(path.read_text()) if path.exists() else {}
-    return record
+def last_name(node: ast.AST) -> str:
+    """The name of a variable or an attribute, and an empty text for anything else."""
+    return node.id if isinstance(node, ast.Name) else node.attr if isinstance(node, ast.Attribute) else ""
 
 
-def write_record(root: Path, counts: Counts) -> None:
-    """Writes counts, one a line and sorted, so that branches merge."""
-    (root / RECORD).write_text(json.dumps(counts, indent=1, sort_keys=True) + "\n")
+def items_of(node: ast.expr) -> list[ast.expr]:
+    """The entries of a written tuple, list or set, and any other expression alone."""
+    return node.elts if isinstance(node, ast.Tuple | ast.List | ast.Set) else [node]
 
 
-def raised(places: Places, record: Counts, rules: Sequence[Rule]) -> list[str]:
-    """A sentence for each count above the recorded one, with its places and what to do."""
-    remedies = {rule.name: rule.remedy for rule in rules}
-    found = []
-    for name, keys in places.items():
-        for key, where in keys.items():
-            most = record.get(name, {}).get(key, 0)
-            if len(where) > most:
-                named = ", ".join(dict.fromkeys(where[-PLACES:])) if name != "size" else str(SOURCES)
-                found.append(
-                    f"{name}, {key}: {len(where)} where {most} are recorded: {remedies[name]} ({named})."
-                )
-    return found
+def is_kind_name(node: ast.AST | None) -> bool:
+    """Whether a text in the source is the name of a kind."""
+    return isinstance(node, ast.Constant) and node.value in KIND_NAMES
 
 
-def check(root: Path) -> int:
-    """Says which counts have risen and which subjects of commits are too long; 1 where there are any."""
-    places, recorded = places_of(root), read_record(root)
-    offences = [*raised(places, recorded, rules_of(root)), *long_subjects(root, RECORD)]
+def scattered_fields(sources: Sequence[Source], names: Sequence[str] = ()) -> Iterator[str]:
+    """Each field of toolkits that too many files name.
+
+    Carriers, lattices and pegs have attributes of the same names, and some forms of values are called like a field. Of
+    these a file may speak freely. The name of a toolkit's field is
+
+    - an attribute of ``toolkit``, and of ``self`` in a kind, which is a class that is made from a table;
+    - a keyword argument of a kind's constructor, or of ``evolve`` with a toolkit;
+    - a text in a call that makes a row of a table, or in ``getattr`` with a toolkit;
+    - a text by which ``fields``, ``given``, ``said`` or ``toolkit`` is asked, in brackets, by ``get`` or by ``pop``;
+    - a text in a tuple, a list, a set, or among the keys of a mapping, all of which are fields of toolkits;
+    - a text that is compared with ``name``.
+    """
+    wanted = set(names or field_names())
+    every = COMMON_WORDS | wanted
+    places: dict[str, list[str]] = {}
+    for source in sources:
+        kinds = [
+            node
+            for node in ast.walk(source.tree)
+            if isinstance(node, ast.ClassDef) and "made_from_table" in map(last_name, node.decorator_list)
+        ]
+        in_kinds = {node for kind in kinds for node in ast.walk(kind)}
+        found: set[str] = set()
+        for node in ast.walk(source.tree):
+            owners = HOLDERS | {"self"} if node in in_kinds else HOLDERS
+            found |= wanted & fields_named(node, owners, every)
+        for name in found:
+            places.setdefault(name, []).append(source.name)
+    for name, files in sorted(places.items()):
+        if len(files) > MOST_FILES_OF_A_FIELD:
+            yield f"{len(files)} files name the field {name}: take it from its table ({', '.join(files)})."
+
+
+def field_names() -> tuple[str, ...]:
+    """The names of the fields of toolkits that are words of nothing else."""
+    from workhold.fixels.kinds import TABLES
+
+    return tuple(sorted({row.name for table in TABLES.values() for row in table.fields} - COMMON_WORDS))
+
+
+def fields_named(node: ast.AST, owners: set[str], every: set[str]) -> set[str]:
+    """The names of fields, and other words, by which a node of the syntax tree asks a toolkit or its data.
+
+    Parameters
+    ----------
+    node : see the list in ``scattered_fields``.
+    owners : what variables that hold a toolkit are called.
+    every : the names of all fields.
+    """
+    match node:
+        case ast.Attribute(value=value, attr=name) if last_name(value) in owners:
+            return {name}
+        case ast.Subscript(value=value, slice=key) if last_name(value) in HOLDERS | RECORDS:
+            return texts([key])
+        case ast.Call():
+            return fields_in_call(node, owners)
+        case ast.Dict(keys=[_, *_] as keys) if texts(keys) <= every:
+            return texts(keys)
+        case ast.Tuple(elts=items) | ast.List(elts=items) | ast.Set(elts=items) if len(items) > 1:
+            return texts(items) if all(texts([one]) and texts([one]) <= every for one in items) else set()
+        case ast.Compare(left=left, comparators=others) if "name" in map(last_name, [left, *others]):
+            return texts([left, *others])
+    return set()
+
+
+def fields_in_call(call: ast.Call, owners: set[str]) -> set[str]:
+    """The names of fields, and other words, by which a call asks a toolkit or its data."""
+    keywords = {one.arg or "" for one in call.keywords}
+    match last_name(call.func), call.args:
+        case ("get" | "pop", [key, *_]) if (
+            last_name(getattr(call.func, "value", call.func)) in HOLDERS | RECORDS
+        ):
+            return texts([key])
+        case "getattr", [owner, key, *_] if last_name(owner) in owners:
+            return texts([key])
+        case (("ToolkitField" | "shown"), _):
+            return texts([*call.args, *(one.value for one in call.keywords if one.arg in REFERRING)])
+        case (("evolve" | "replace"), [owner, *_]) if last_name(owner) in owners:
+            return keywords
+        case kind, _ if kind in KIND_CLASSES:
+            return keywords
+    return set()
+
+
+def texts(nodes: Iterable[ast.AST | None]) -> set[str]:
+    """The texts among written expressions."""
+    return {one.value for one in nodes if isinstance(one, ast.Constant) and isinstance(one.value, str)}
+
+
+def repeated_classes(sources: Sequence[Source]) -> Iterator[str]:
+    """Each definition of a class whose name an earlier one has."""
+    seen: dict[str, str] = {}
+    for source in sources:
+        for node in ast.walk(source.tree):
+            if isinstance(node, ast.ClassDef) and node.name not in NAMED_TWICE:
+                place = f"{source.name}:{node.lineno}"
+                if node.name in seen:
+                    yield f"{place} has a class {node.name} like {seen[node.name]}: give it a name of its own."
+                seen.setdefault(node.name, place)
+
+
+def main() -> int:
+    """Says what does not hold; 1 where there is anything."""
+    sys.path.insert(0, str(ROOT / "src"))
+    sources = sources_of(ROOT / "src" / "workhold")
+    offences = [
+        *lines_asking_for_kind(sources),
+        *scattered_fields(sources),
+        *repeated_classes(sources),
+    ]
     sys.stdout.write("".join(f"{sentence}\n" for sentence in offences))
-    if not offences:
-        fallen = counts_of(places) != recorded
-        lower = " Some counts have fallen: write them down with `record`." if fallen else ""
-        sys.stdout.write(f"The house is no worse than recorded.{lower}\n")
     return int(bool(offences))
 
 
-def record(root: Path, *, may_raise: bool) -> int:
-    """Writes the counts of now, unless one has risen and may not."""
-    places, before = places_of(root), read_record(root)
-    offences = [] if may_raise or not before else raised(places, before, rules_of(root))
-    if offences:
-        sys.stdout.write("".join(f"{sentence}\n" for sentence in offences))
-        sys.stdout.write("Nothing is recorded: mend these, or raise the record with --raise and say why.\n")
-        return 1
-    write_record(root, counts_of(places))
-    return 0
-
-
-def show(root: Path, wanted: Sequence[str]) -> int:
-    """Lists the places that are counted, but not those of the size."""
-    for name, keys in places_of(root).items():
-        if not name.startswith(tuple(wanted) or ""):
-            continue
-        for key, where in keys.items():
-            sys.stdout.write(f"{name}, {key}: {len(where)}\n")
-            if name != "size":
-                sys.stdout.write("".join(f"  {place}\n" for place in where))
-    return 0
-
-
-def main(words: Sequence[str]) -> int:
-    """Does what the words of the command ask for."""
-    sys.path.insert(0, str(ROOT / "src"))
-    match list(words):
-        case ["check"]:
-            return check(ROOT)
-        case ["record", *flags] if set(flags) <= {"--raise"}:
-            return record(ROOT, may_raise=bool(flags))
-        case ["show", *wanted]:
-            return show(ROOT, wanted)
-    sys.stderr.write("usage: python building/house.py check | record [--raise] | show [RULE ...]\n")
-    return 2
-
-
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main())

@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 # Before the first kernel is imported.
@@ -50,6 +51,13 @@ CHROMIUM = (
     shutil.which("chromium-headless-shell") or shutil.which("chromium") or shutil.which("chromium-browser")
 )
 PREPARE = "import sys; from workhold.kernels.preparing import prepared; list(prepared(*sys.argv[1:]))"
+# Rooms of which ``make test`` runs nothing: a browser, FreeCAD, STEP files, many processes, a report of hundreds of figures.
+THOROUGH_ROOMS = [
+    Path(__file__).parent.joinpath(*room.split("/"))
+    for room in ("batch", "files/step", "paper", "web/browser", "workbench")
+]
+# What the cases of a law are marked with that are left out, by the marker that says one in how many stays.
+LEFT_TO = {"sampled": pytest.mark.prove, "thinned": pytest.mark.thorough}
 # Parts of the kernels that take about as long to compile.
 SHARES = (("crossings", "matrices", "seats"), ("distances", "others", "clamps", "curves"))
 
@@ -70,20 +78,30 @@ def pytest_configure(config: pytest.Config) -> None:
             process.wait()
 
 
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """``make test`` does not even import the rooms of which it runs nothing."""
+    return True if collection_path in THOROUGH_ROOMS and "not thorough" in config.option.markexpr else None
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Leave all but one case in so many to ``make prove``, of laws that are tried on many like cases.
+    """Mark the tests of thorough rooms, and of laws tried on many like cases those that are left to a longer run.
 
     Those whose places in their lists add up to a multiple of the number stay: of each list every value does.
     """
     for item in items:
-        if (mark := item.get_closest_marker("sampled")) and places_of(item) % mark.args[0]:
-            item.add_marker(pytest.mark.prove)
+        if any(room in item.path.parents for room in THOROUGH_ROOMS):
+            item.add_marker(pytest.mark.thorough)
+        for name, left_to in LEFT_TO.items():
+            if (mark := item.get_closest_marker(name)) and places_of(item) % mark.args[0]:
+                item.add_marker(left_to)
 
 
 def places_of(item: Any) -> int:
     """The sum of the places of a case in the lists that its test is tried on, of which the last changes fastest."""
-    first, *others = item.iter_markers("parametrize")
+    if not (lists := [*item.iter_markers("parametrize")]):
+        return sum(item.callspec.indices.values())
+    first, *others = lists
     names = first.args[0].split(",") if isinstance(first.args[0], str) else first.args[0]
     total, number = 0, item.callspec.indices[names[0]]
     for mark in reversed(others):

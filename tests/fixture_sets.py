@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-import check_result
+import check_toolkit
 from workhold import Result, Vise, Workpiece, design
 from workhold.fixels.vise import OpeningVise
 from workhold.model.fixture import Fixture
@@ -79,24 +79,16 @@ class Judge:
 
     def __init__(self, workpiece: Workpiece, vise: Vise) -> None:
         self.vise = vise_fields(vise)
-        self.by_loop = check_result.segments([loop.tolist() for loop in workpiece.loops])
-        self.segments = [s for loop in self.by_loop for s in loop]
-        self.face = check_result.run_of(self.by_loop)
-        self.runs: dict[int, list[int]] = {}
-        for segment, face in self.face.items():
-            self.runs.setdefault(face, []).append(segment)
+        self.part = check_toolkit.Part([loop.tolist() for loop in workpiece.loops])
 
     def check(self, fixture: Listed) -> tuple[list[str], bool]:
         """Faults of a fixture, and whether it is within 1e-6 of a rule's edge."""
-        return check_result.check(fixture, self.vise, self.by_loop, self.segments, self.face, self.runs)  # type: ignore[no-any-return]
+        return check_toolkit.check_vise(fixture, self.vise, self.part)  # type: ignore[no-any-return]
 
     def identity(self, fixture: Listed) -> tuple[Any, float, tuple[float, float]]:
         """What names a fixture: its pattern of faces and holes, its orientation in radians, its place on the part in mm."""
-        key, sign = check_result.canonical(
-            fixture["pegs"], self.face, *self.vise["pitch"], self.vise["row_offset"]
-        )
-        theta = (radians(fixture["pose"]["theta_deg"]) + (0 if sign == 1 else pi)) % tau
-        return key, theta, tuple(check_result.on_part(fixture))  # type: ignore[return-value]
+        key, theta, place = check_toolkit.identity(fixture, self.vise, self.part.rep)
+        return key, theta % tau, tuple(place)
 
 
 def near_an_end(judge: Judge, fixture: Listed, within: float = 1e-6) -> bool:
@@ -105,9 +97,9 @@ def near_an_end(judge: Judge, fixture: Listed, within: float = 1e-6) -> bool:
     turn = np.array([[np.cos(theta), np.sin(theta)], [-np.sin(theta), np.cos(theta)]])
     for peg in fixture["pegs"]:
         point = turn @ (np.array([peg["x"], peg["y"]]) - [fixture["pose"]["x"], fixture["pose"]["y"]])
-        face = judge.face[peg["segment"]]
-        others = [s for k, s in enumerate(judge.segments) if judge.face[k] != face]
-        if min(check_result.nearest(point, s)[0] for s in others) < judge.vise["peg_radius"] + within:
+        face = judge.part.rep[peg["segment"]]
+        others = [s for k, s in enumerate(judge.part.segs) if judge.part.rep[k] != face]
+        if min(check_toolkit.nearest(point, s)[0] for s in others) < judge.vise["peg_radius"] + within:
             return True
     return False
 

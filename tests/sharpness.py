@@ -1,9 +1,9 @@
 """Whether the hand-counted constants of the proof are as sharp as they are said to be.
 
-A bound that is right by a wide margin hides a fault in it: leaving a factor out, nobody would see. So every constant is held
-against the true value on many inputs, among them those for which its own term matters most, with the constant as it is and
-with the constant at a tenth: the bound must hold as it is, and must fail at a tenth. How far it is from the worst that was
-seen stands in docs/belief.md, in the table "How sharp", which is compared with what is seen here.
+A bound that is right by a wide margin hides a fault in it: leaving a factor out, nobody would see. So ``make prove`` holds
+every constant against the true value on many inputs, among them those for which its own term matters most, with the constant
+as it is and with the constant at a tenth: the bound must hold as it is, and must fail at a tenth. How far it is from the
+worst seen stands in docs/belief.md, in the table "How sharp", which is compared with what is seen here.
 """
 
 from __future__ import annotations

@@ -81,6 +81,7 @@ def test_an_import_before_the_question_is_found() -> None:
     assert imported_first("import pytest\npytest.importorskip('OCP')\nimport OCP\n") == set()
 
 
+@pytest.mark.thorough
 def test_the_examples_of_the_sources_are_collected_without_extras() -> None:
     """Also of modules that ask a library for something later on; those that import it as they are loaded are left out."""
     environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT / "src"), str(TESTS)])}

@@ -113,12 +113,14 @@ def tried_apart(cases: Sequence[tuple[bool, Loops, dict[str, object]]]) -> list[
     return done.stdout.splitlines()
 
 
+@pytest.mark.thorough
 def test_refused_in_one_sentence() -> None:
     said = tried_apart([(False, loops, vise) for loops, vise, _ in REFUSED])
     for (_, _, words), sentence in zip(REFUSED, said, strict=True):
         assert words in sentence
 
 
+@pytest.mark.thorough
 def test_what_lies_within_the_limits_is_designed() -> None:
     vises: list[dict[str, object]] = [{"columns": 25_000}, {"rows": 12_500}, {"max_opening": 1e6}]
     said = tried_apart([(True, [PLATE, HOLE], vise) for vise in vises])

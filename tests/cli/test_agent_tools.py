@@ -291,6 +291,7 @@ def spoken(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Spoken]:
         assert process.wait(60) == 0
 
 
+@pytest.mark.thorough
 def test_the_protocol_lists_the_tools(spoken: Spoken) -> None:
     """With what each does and the schema of its arguments, all of which are described where their names do not tell."""
     tools = {tool["name"]: tool for tool in spoken.ask("tools/list")["tools"]}
@@ -316,6 +317,7 @@ def test_the_protocol_calls_a_tool(spoken: Spoken) -> None:
     assert wrong["isError"] and wrong["content"][0]["text"].startswith("none.json")
 
 
+@pytest.mark.thorough
 def test_a_program_and_its_forces(folder: Path) -> None:
     """Fixtures keep clear of its tools; a fixture says which line asks for the force, and what of it cuts."""
     Path("p.nc").write_text("(T1 D=8. - end mill)\nG21 G90\nT1 M6\nG0 X-30 Y12 Z9\nG1 Z-1 F90\nX70\nM30\n")

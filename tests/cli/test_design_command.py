@@ -320,6 +320,7 @@ def test_a_refusal_of_the_search_leaves_the_earlier_output(
     assert (tmp_path / "r.json").read_text() == OURS
 
 
+@pytest.mark.thorough
 def test_both_engines_write_the_same_counts(run: Any, tmp_path: Path) -> None:
     """``--engine algebra`` searches by the paper's polynomials and lists the same fixtures, the first with seating."""
     counts, seatings = [], []

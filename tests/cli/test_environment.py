@@ -19,6 +19,8 @@ from workhold.files.result.reader import read_result
 from workhold.files.result.writer import write_result
 from workhold.model.workpiece import Workpiece
 
+pytestmark = pytest.mark.thorough
+
 NO_MEMORY = (
     "this needs more memory than there is: close other programs, use fewer threads, or raise the limit."
 )

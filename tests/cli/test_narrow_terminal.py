@@ -55,6 +55,7 @@ def test_a_help_fits_80_columns_and_breaks_no_option(run: Any, command: str) -> 
     assert not [line for line in outcome.stdout.splitlines() if line.rstrip().endswith("-")]
 
 
+@pytest.mark.thinned(7)
 @pytest.mark.parametrize("case", SEARCHES)
 def test_what_a_command_prints_fits_80_columns(
     run: Any, case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

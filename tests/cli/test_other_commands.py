@@ -148,6 +148,7 @@ def test_the_help_imports_no_command() -> None:
     assert subprocess.run([sys.executable, "-c", words], capture_output=True, check=False).returncode == 0
 
 
+@pytest.mark.thorough
 def test_a_search_loads_nothing_that_it_does_not_need() -> None:
     """Neither ball arithmetic, which searches on fences need, nor what works out seating."""
     words = "import sys; from workhold import Query, Vise, answer, load; "

@@ -70,6 +70,7 @@ def test_what_is_read_is_not_written_over(run: Any, folder: Path, command: str, 
     assert (folder / read).read_bytes() == before
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(
     ("command", "name"),
     [

@@ -13,6 +13,8 @@ from typing import Any
 
 import pytest
 
+pytestmark = pytest.mark.thorough
+
 VISE = ("--pitch", "10,12.7", "--columns", "3", "--peg-radius", "3")
 # How an earlier output of the same name begins.
 OURS = '{"format": "workhold-result/1"}'

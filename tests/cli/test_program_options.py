@@ -49,6 +49,7 @@ def test_the_program_reaches_the_search_as_it_was_typed(
     assert query.ranking[1] == "program_clearance"
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("place", ["corner", "centre", "hole 1"])
 def test_its_zero_is_named_as_on_the_sheet(
     run: Any, searched: dict[str, Any], file: Path, place: str
@@ -137,6 +138,7 @@ def test_show_says_what_comes_nearest(run: Any, file: Path, tmp_path: Path) -> N
     assert said["program_clearance"] == entry
 
 
+@pytest.mark.thorough
 def test_explore_and_batch_take_a_program(run: Any, file: Path, tmp_path: Path) -> None:
     words = ["--program", file, "--thickness", "10"]
     table = run("explore", "widget", *HELD, *words, "--prefer", "roomy")

@@ -60,6 +60,7 @@ def words_in(path: Path) -> str:
     return " ".join(" ".join(page.get_textpage().get_text_bounded() for page in document).split())
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize(
     ("name", "start"),
     [("a.pdf", b"%PDF-"), ("a.SVG", b"<?xml"), ("a.png", b"\x89PNG"), ("a.dxf", b"  0\nSECTION")],
@@ -118,6 +119,7 @@ def test_paper_unit_and_name(run: Any, folder: Path) -> None:
     assert f"{diamond()[0].jaw_separation / 25.4:.4f} in" in words
 
 
+@pytest.mark.thorough
 def test_lengths_of_loads_are_in_the_unit_of_the_sheet(run: Any, folder: Path) -> None:
     """A force half an inch off the corner gives the reactions of one 12.7 mm off; one 0.5 mm off gives others. In inches
     they are in pounds, rounded up."""
@@ -272,6 +274,7 @@ def test_bad_requests_are_one_sentence(
     assert not list(folder.glob("a.*"))
 
 
+@pytest.mark.thorough
 def test_explore_says_none_where_a_part_has_no_edge(run: Any, folder: Path) -> None:
     """Each toolkit has its own figures in its row, and the first choice those of its own."""
     loop = [(-30, -20, 0), (30, -20, 1), (30, 20, 0), (-30, 20, 1)]

@@ -243,6 +243,7 @@ def test_the_manual_lists_every_preset() -> None:
     assert sum(page.count(f"\n| `{kind}") for kind in kinds) == len(preset_names())
 
 
+@pytest.mark.thorough
 def test_a_toolkit_in_inches_is_shown_in_inches(
     run: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

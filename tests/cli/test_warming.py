@@ -18,6 +18,8 @@ from workhold.cli import warming
 from workhold.kernels import preparing
 from workhold.kernels.base import compiling
 
+pytestmark = pytest.mark.thorough
+
 SOURCES = str(Path(workhold.__file__).parents[1])
 COUNTS = {
     warming.WORDS: sum(map(preparing.kernel_count, preparing.SEARCH)),

@@ -7,6 +7,7 @@ from random import Random
 from typing import Any
 
 import numpy as np
+import pytest
 from flint import arb
 
 from exact_chords import exactly
@@ -55,6 +56,7 @@ CONSTANT = Constant(
 CONSTANTS = [CONSTANT]
 
 
+@pytest.mark.prove
 def test_a_tenth_of_the_constant_would_not_do() -> None:
     """The bound holds on every part, and with a tenth of the constant it does not."""
     check_sharpness(CONSTANT)

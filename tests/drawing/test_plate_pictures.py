@@ -60,6 +60,7 @@ def test_a_body_is_a_capsule_from_its_hole_to_its_tip(way: str) -> None:
     )
 
 
+@pytest.mark.thinned(8)
 @pytest.mark.parametrize("way", WAYS)
 @BOLTED
 @pytest.mark.parametrize("size", [0.01, 1.0, 40.0], ids=["tiny", "usual", "huge"])
@@ -88,6 +89,7 @@ def test_a_picture_shows_tip_body_and_bolt_to_scale(way: str, bolted: bool, size
     assert fixture.pegs[3].hole in words
 
 
+@pytest.mark.thinned(8)
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("way", WAYS)
 @BOLTED

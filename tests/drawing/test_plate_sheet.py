@@ -45,6 +45,7 @@ def facts(pages: tuple[str, ...]) -> str:
     return " ".join(word for page in pages for word in texts(page))
 
 
+@pytest.mark.thinned(7)
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("way", WAYS)
 @BOLTED
@@ -92,6 +93,7 @@ def test_the_clamp_can_be_set_up_from_the_sheet(way: str, bolted: bool) -> None:
     assert all(peg.hole in words for peg in fixture.pegs[:3]) and "Locators Ø 10 mm" in words
 
 
+@pytest.mark.thinned(8)
 @pytest.mark.parametrize("way", WAYS)
 @BOLTED
 def test_all_may_be_moved_as_far_as_there_are_holes(way: str, bolted: bool) -> None:

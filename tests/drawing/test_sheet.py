@@ -81,6 +81,7 @@ def test_nothing_is_covered_or_cut_off(
 
 
 # The last ones are crowds in which the opening lay under a peg's name, or the letters of two jaws ran together.
+@pytest.mark.thinned(8)
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("seed", [*range(60), 64, 148, 184, 190, 232])
 def test_no_two_labels_overlap_on_any_sheet(seed: int) -> None:
@@ -354,6 +355,7 @@ def test_names_in_other_scripts_and_without_end_are_drawn() -> None:
         assert all(page_of(page).contains(box) for _, box in words_of(page))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "vise",
     [

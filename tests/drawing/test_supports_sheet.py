@@ -30,6 +30,7 @@ def supports_of_sheet(name: str, loaded: bool = False) -> ChosenSupports:
     return found
 
 
+@pytest.mark.thinned(7)
 @pytest.mark.parametrize("name", NAMES)
 def test_supports_stand_on_the_plan_in_the_holes_that_are_named(name: str) -> None:
     """Each sign is at the place of a hole, whose name stands on the plan; the clamp is where it presses."""
@@ -63,6 +64,7 @@ def test_supports_stand_on_the_plan_in_the_holes_that_are_named(name: str) -> No
         assert any(place == pytest.approx(peg, abs=2e-3) for peg in pegs)
 
 
+@pytest.mark.thinned(6)
 @pytest.mark.parametrize("unit", [MILLIMETRE, INCH])
 @pytest.mark.parametrize("zero", [None, "centre", "hole 1"])
 def test_clamp_is_told_from_the_zero_that_the_sheet_uses(zero: str | None, unit: object) -> None:
@@ -80,6 +82,7 @@ def test_clamp_is_told_from_the_zero_that_the_sheet_uses(zero: str | None, unit:
     assert f"tipping arm {lengths.words(found.clamp.arm)}" in words
 
 
+@pytest.mark.thinned(7)
 @pytest.mark.parametrize("name", NAMES)
 def test_clamp_is_drawn_where_it_needs_the_least_force(name: str) -> None:
     """Under loads that is not where its arm is the longest."""
@@ -92,6 +95,7 @@ def test_clamp_is_drawn_where_it_needs_the_least_force(name: str) -> None:
     assert at == pytest.approx(found.recounted.fixture.pose.apply(*found.triple.best.at), abs=2e-3)
 
 
+@pytest.mark.thinned(7)
 @pytest.mark.parametrize("name", NAMES)
 def test_forces_are_those_of_the_loads(name: str) -> None:
     """Clamp force wanted, largest support force and tipping moment stand in the PDF, rounded to the safe side."""
@@ -111,6 +115,7 @@ def test_forces_are_those_of_the_loads(name: str) -> None:
     assert f"mm with at least {needed} N, inside the triangle" in words
 
 
+@pytest.mark.thorough
 def test_without_loads_the_moment_is_told_for_a_round_force() -> None:
     """100 N times the arm; whether the part stands by itself is said, and how much the side clamp lifts."""
     found = supports_of_sheet("plate")
@@ -141,6 +146,7 @@ def test_without_loads_the_moment_is_told_for_a_round_force() -> None:
     )
 
 
+@pytest.mark.thinned(7)
 @pytest.mark.parametrize("name", NAMES)
 def test_hardware_is_counted(name: str) -> None:
     """Pegs, clamps, bolts, supports and walls of the set-up, each with its size, as the PDF has them."""
@@ -166,6 +172,7 @@ def test_hardware_is_counted(name: str) -> None:
         assert f"{one.count} {one.name} {diameter} {length}" in words
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", ["plate", "vise", "fence", "two clamps"])
 @pytest.mark.parametrize(("high", "said"), [(8.5, True), (21.9, True), (22.5, False)])
@@ -186,6 +193,7 @@ def test_pegs_as_high_as_the_part_may_be_as_short_as_they_press(name: str, high:
     assert "do as well" not in printed(sheet(design(chosen_height, TOOLKITS[name], best=1)))
 
 
+@pytest.mark.thorough
 def test_a_part_that_lies_on_no_face_is_said_to_do_so() -> None:
     """And a part that would fit turned over is told apart by the file's axis, as its sides may differ."""
     assert SOLID.solid is not None

@@ -121,6 +121,7 @@ def touched(peg: Peg) -> str:
     return f"{peg.face}" if peg.beside is None else f"{peg.face}/{peg.beside}"
 
 
+@pytest.mark.thinned(8)
 @pytest.mark.sampled(2)
 @EVERY
 def test_a_picture_tells_the_fixture(held: Held) -> None:
@@ -158,6 +159,7 @@ def test_a_picture_tells_the_fixture(held: Held) -> None:
         assert has_run(words, ["Clamp freedom", f"{fixture.quality['clamp_freedom']:.1f}°"])
 
 
+@pytest.mark.thinned(8)
 @EVERY
 def test_arrows_and_names_stand_at_what_they_tell_of(held: Held) -> None:
     """Each clamp's block arrow points its way, and the name of each hole stands at, or leads to, its peg or bolt."""
@@ -213,6 +215,7 @@ def numbers(path: str) -> list[tuple[float, float]]:
     return list(zip(found[::2], found[1::2], strict=True))
 
 
+@pytest.mark.thinned(8)
 @pytest.mark.sampled(2)
 @EVERY
 def test_a_sheet_tells_what_stands_where(held: Held) -> None:
@@ -271,6 +274,7 @@ def above(force: float) -> str:
     return f"{-(-force // 1):.0f}"
 
 
+@pytest.mark.thinned(8)
 @EVERY
 def test_a_sheet_tells_pose_calipers_and_figures(held: Held) -> None:
     """Part zero where the pose carries it, what calipers read over two pegs at their places, and the figures of quality."""
@@ -375,6 +379,7 @@ def test_the_terminal_tells_the_fixture(
         assert [f"cut {number}", *ranges, "yes"] in lines
 
 
+@pytest.mark.thinned(8)
 @EVERY
 def test_files_and_thumbnails_tell_the_fixture(held: Held) -> None:
     """The words in a drawing for a CAM system and below a thumbnail, and the list of pins."""

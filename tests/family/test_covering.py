@@ -120,6 +120,7 @@ def test_a_bound_of_the_solver_is_rounded_up(monkeypatch: pytest.MonkeyPatch) ->
     assert cover(sets) == Cover((0, 1, 2, 3), 3)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("seed", range(3))
 def test_larger_covers_are_proven_too(seed: int) -> None:
     random = Random(seed)

@@ -162,6 +162,7 @@ TOOLKITS: dict[str, Toolkit] = {
 }
 
 
+@pytest.mark.thinned(6)
 @pytest.mark.parametrize("name", TOOLKITS)
 def test_plans_in_every_toolkit_are_proven(name: str) -> None:
     family = family_of(asked(TWENTY[:4], TOOLKITS[name]), threads=1)
@@ -276,6 +277,7 @@ def test_many_fixtures_are_kept_on_the_disk(monkeypatch: pytest.MonkeyPatch) -> 
     assert spilled.table == kept.table and (spilled.words == kept.words).all()
 
 
+@pytest.mark.thorough
 def test_the_file_is_what_the_contract_says(twenty: Family) -> None:
     text = family_text(twenty)
     assert text == family_text(family_of(asked(TWENTY, WIDE), threads=2))

@@ -48,6 +48,7 @@ def on_page(svg: str) -> bool:
     return all(page_of(svg).contains(box) for _, box in words_of(svg))
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize(
     ("name", "place", "unit"),
     [("vise", 0, MILLIMETRE), ("vise", 3, INCH), ("largest opening", 0, MILLIMETRE), ("two clamps", 0, INCH)],
@@ -78,6 +79,7 @@ def test_sheets_tell_every_part_of_every_set_up(
     assert pages == draw_setups(plan, family.figure, DAY, unit)
 
 
+@pytest.mark.thorough
 def test_many_parts_of_a_set_up_go_on_further_pages(families: dict[str, Family]) -> None:
     setup = families["vise"].plans[0].setups[0]
     one = setup.holdings[0]
@@ -91,6 +93,7 @@ def test_many_parts_of_a_set_up_go_on_further_pages(families: dict[str, Family])
         assert not collisions(page) and on_page(page)
 
 
+@pytest.mark.thorough
 def test_a_name_however_long_stays_in_its_place(families: dict[str, Family]) -> None:
     family = families["vise"]
     long = [

@@ -17,6 +17,8 @@ from workhold.errors import InputError
 from workhold.files import fork_server
 from workhold.files.apart import run_apart
 
+pytestmark = pytest.mark.thorough
+
 if not fork_server.CAN_FORK:
     pytest.skip("no process is forked here", allow_module_level=True)
 

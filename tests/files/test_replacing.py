@@ -74,6 +74,7 @@ WRITERS: dict[str, Callable[[Result, Any], Write]] = {
 }
 
 
+@pytest.mark.thinned(6)
 @pytest.mark.parametrize("name", WRITERS)
 def test_foreign_files_are_kept_until_it_is_asked_for_and_own_ones_replaced(
     result: Result, supports: Any, tmp_path: Path, name: str
@@ -93,6 +94,7 @@ def test_foreign_files_are_kept_until_it_is_asked_for_and_own_ones_replaced(
     assert [one.name for one in tmp_path.iterdir()] == [name]
 
 
+@pytest.mark.thinned(6)
 @pytest.mark.parametrize("name", WRITERS)
 def test_where_nothing_can_be_written_a_sentence_says_so(
     result: Result, supports: Any, tmp_path: Path, name: str

@@ -200,6 +200,7 @@ def test_a_line_that_turns_back_is_no_line() -> None:
     assert departure(polynomial_pieces([(0, 0), (60, 0), (60, 0), (30, 0)]), line, 1.0) == np.inf
 
 
+@pytest.mark.thinned(8)
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("fit", [0.2, 0.01, 0.001])
 @pytest.mark.parametrize("shape", ["ellipse", "wave 1", "wave 2", "rational", "closed"])

@@ -46,6 +46,7 @@ def carried(table: FixtureTable, angle: float) -> FixtureTable:
     return evolve(table, theta=(table.theta - angle) % tau)
 
 
+@pytest.mark.thinned(5)
 @pytest.mark.parametrize("corners", [3, 4, 5, 6])
 @pytest.mark.parametrize("name", TOOLKITS)
 def test_what_is_turned_has_the_same_smallest_image(name: str, corners: int) -> None:

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import pypdfium2
-import pypdfium2.raw as raw
 from attrs import define, field, frozen
+from pypdfium2 import raw
 
 # Elements whose digits are no results: commands, quotations, labels, references, formulas and pictures.
 MARKED = {"code", "q", "b", "cite", "var", "svg", "style", "title", "h1", "small"}

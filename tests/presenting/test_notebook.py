@@ -249,6 +249,7 @@ def test_pictures_of_one_page_share_no_ids() -> None:
     assert "<svg" not in html and " id=" not in html
 
 
+@pytest.mark.thorough
 def test_what_is_shown_is_small() -> None:
     """Also of a part with thousands of segments, whose pictures are of pixels."""
     assert len(RESULT._repr_html_()) < 100_000

@@ -42,6 +42,7 @@ def test_complete_set_is_reproduced(path: Path, tmp_path: Path) -> None:
     assert ": 0 missing, 0 extra" in checked(result, tmp_path / "result.json", path)
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("listing", ["best", "all"])
 @pytest.mark.parametrize(
@@ -73,6 +74,7 @@ def counted(n: int) -> int:
     return (n - 1) * n * (2 * n - 1) // 6
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(("size", "pitch"), [((100.0, 60.0), (20, 20)), ((57.0, 45.0), (16, 14))])
 def test_a_square_rectangle_is_counted_by_hand(size: tuple[float, float], pitch: tuple[float, float]) -> None:
     """Two locators below, one beside, clamps opposite, and every other way; without limits of the plate."""
@@ -451,6 +453,7 @@ def test_a_part_far_too_large_for_the_pitch_is_refused_with_one_that_does() -> N
             assert ranges.shares >= 1
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("pitch", [20.0, (25.0, 10.0)], ids=str)
 def test_the_pitch_that_a_refusal_names_is_counted(pitch: float | tuple[float, float]) -> None:
     """Of a panel with many slanted holes, in which more contacts are left than the number of holes lets expect."""

@@ -85,6 +85,7 @@ def limited(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     return tried
 
 
+@pytest.mark.thinned(9)
 @pytest.mark.parametrize("kit", ["plate", "two clamps"])
 @pytest.mark.parametrize("part", PARTS)
 def test_the_best_are_the_first_of_all(part: str, kit: str, limited: list[float]) -> None:
@@ -98,6 +99,7 @@ def test_the_best_are_the_first_of_all(part: str, kit: str, limited: list[float]
     assert bool(limited) == bool(len(everything))
 
 
+@pytest.mark.thorough
 def test_what_limits_save_is_told(limited: list[float]) -> None:
     """How many boxes were looked at and ruled out, and far fewer contacts than a whole search examines."""
     query = Query(rectangle(150.0, 90.0), Plate(pitch=15, peg_radius=3, clamps=2), tolerance=TOLERANCE)
@@ -124,6 +126,7 @@ def found_errors(search: ToolkitSearch, **asked: Any) -> tuple[np.ndarray[Any, A
     return keys.error / PER_MM, keys.is_fine
 
 
+@pytest.mark.thinned(9)
 @pytest.mark.parametrize("times", [1.02, 1.2, 1.6])
 @pytest.mark.parametrize("kit", ["plate", "vise", "opening"])
 @pytest.mark.parametrize("part", ["flange", "widget", "bores", "rectangle"])
@@ -159,6 +162,7 @@ def one_way(query: Query) -> Query:
     return query if len(ways) == 1 else one_clamp(query, ways[0])
 
 
+@pytest.mark.thorough
 def test_spots_join_what_fixtures_touch() -> None:
     """The three spots that locators of a fixture touch are marked at its own error, and hardly any far below."""
     query = Query(PARTS["bores"], KITS["plate"], tolerance=TOLERANCE, best=5)

@@ -76,6 +76,7 @@ def test_complete_set_is_reproduced(path: Path, tmp_path: Path) -> None:
     assert "0 missing, 0 extra" in checked(result, tmp_path / "result.json", path)
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("loop", "fence"),
@@ -93,6 +94,7 @@ def test_a_separate_slow_search_finds_the_same(loop: list[tuple[float, ...]], fe
     assert len(seen(result)) == len(result) > 10
 
 
+@pytest.mark.thinned(6)
 @pytest.mark.parametrize("loop", [KITE, NOTCHED, FEET, L], ids=["kite", "notched", "feet", "l"])
 @pytest.mark.parametrize(
     "fields",

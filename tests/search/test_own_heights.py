@@ -77,6 +77,7 @@ def held(name: str) -> Result:
     return design(stepped(own), toolkit)
 
 
+@pytest.mark.thinned(5)
 @pytest.mark.sampled(2)
 @HELD
 def test_every_fixture_is_proven_against_the_outline_of_each_carrier(name: str, tmp_path: Path) -> None:
@@ -117,6 +118,7 @@ def key_of(fixture: Any, count: int) -> tuple[Any, ...]:
     return tuple((peg.carrier, peg.hole, peg.face % count) for peg in fixture.pegs), *places
 
 
+@pytest.mark.thinned(6)
 @pytest.mark.parametrize("name", PRISMS)
 def test_a_prism_gives_the_same_list_whatever_the_heights(name: str) -> None:
     """Of a drawing there is one outline; of a solid that is a prism all are alike.
@@ -138,6 +140,7 @@ def test_a_prism_gives_the_same_list_whatever_the_heights(name: str) -> None:
         assert len(found) == len(usual) + more
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled(5)
 @pytest.mark.parametrize(
     ("name", "rows"), [("plate", 3), ("two clamps", 3), ("roof", 3), ("plate", 4), ("roof", 4)]
@@ -165,6 +168,7 @@ def fence_places(result: Result) -> set[tuple[Any, ...]]:
     return out
 
 
+@pytest.mark.thorough
 def test_a_slow_search_of_a_fence_finds_the_same() -> None:
     """The part lies flush with one outline, the locator touches another and the clamp a third."""
     toolkit, own = OWN["fence"]
@@ -216,6 +220,7 @@ def lattice_pairs(vise: Vise, part: Any) -> Iterable[tuple[tuple[int, int], Any,
     return product(steps, faces, faces, (0, 1))
 
 
+@pytest.mark.thorough
 def test_two_left_pegs_and_two_right_ones_are_found_by_a_slow_search() -> None:
     """Chords of the left pegs' outline and of the right pegs', whose rows differ by whole pitches.
 
@@ -344,6 +349,7 @@ def test_a_peg_on_a_face_of_another_outline_is_refuted() -> None:
     assert verify(other).proven == 0
 
 
+@pytest.mark.thorough
 def test_an_avoided_face_is_avoided_on_every_outline_over_it() -> None:
     """Faces of the solid that two outlines share are avoided in both; others of the clamp by their own number."""
     toolkit, _ = OWN["plate"]

@@ -167,6 +167,7 @@ def test_a_part_of_arcs_about_one_centre_is_held_by_nothing() -> None:
     assert ring.notes
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("columns", [2, 3])
 def test_which_fixtures_of_a_plate_a_vise_can_hold(columns: int) -> None:
     """The paper's claim, made exact: with the same pitch and radius, a vise's fixtures of Type II are those of a plate whose
@@ -193,6 +194,7 @@ def test_which_fixtures_of_a_plate_a_vise_can_hold(columns: int) -> None:
     assert rest > len(held)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "seed", [1, *(pytest.param(seed, marks=pytest.mark.prove) for seed in (2, 5, *range(6, 60)))]
 )
@@ -311,6 +313,7 @@ def test_directions_left_out_are_those_that_a_turn_of_the_plate_does_not_make() 
         assert Plate(peg_radius=3, **fields).directions == ("-x", "-y")
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("loop", [NOTCHED, [(0, 0, 0), (60, 0, 0), (60, 40, 0.2), (0, 40, 0)]])
 def test_both_engines_list_the_same_fixtures(loop: list[tuple[float, ...]]) -> None:
     """The paper's algebra knows three pegs and one: with a clamp of the locators' radius it serves a plate."""

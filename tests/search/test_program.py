@@ -95,6 +95,7 @@ def differences(seed: int, kind: str) -> tuple[list[str], int, int]:
     return wrong, len(some), len(full)
 
 
+@pytest.mark.thinned(6)
 @pytest.mark.parametrize("kind", KINDS)
 def test_what_is_listed_is_what_a_slow_walk_leaves(kind: str) -> None:
     wrong, some, full = differences(5 if kind != "opening" else 2, kind)
@@ -110,6 +111,7 @@ def test_of_fifteen_random_pairs_as_well(kind: str) -> None:
     assert sum(0 < some < full for _, some, full in cases) >= 5
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("kind", KINDS)
 def test_more_clearance_adds_no_fixture(kind: str) -> None:
@@ -119,6 +121,7 @@ def test_more_clearance_adds_no_fixture(kind: str) -> None:
     assert len(lists[-1]) < len(lists[0]) or kind == "opening"
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_program_high_above_all_pegs_changes_nothing(kind: str) -> None:
@@ -165,6 +168,7 @@ def test_a_program_shifted_with_its_zero_is_the_same(tmp_path: Path) -> None:
     np.testing.assert_allclose(one.table.quality, other.table.quality, atol=1e-9)
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_rapid_move_in_a_box_counts_as_all_that_is_in_it(kind: str) -> None:
@@ -184,6 +188,7 @@ def test_a_rapid_move_in_a_box_counts_as_all_that_is_in_it(kind: str) -> None:
     assert kind not in ("vise", "plate") or box < straight
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("seed", range(4))
 def test_no_contact_is_on_a_face_that_is_cut_away(seed: int) -> None:
     """A cut within the tool's radius of a face leaves no contact there, nor within the clearance of its ends."""
@@ -206,12 +211,14 @@ def cuts_of(program: Program) -> Any:
     return evolve(moves, **{name: getattr(moves, name)[cut] for name in names})
 
 
+@pytest.mark.thorough
 def test_both_engines_list_the_same() -> None:
     part, _, program = random_case(5, "vise")
     query = asked(part, Vise(12.5, 2, 3), program, arrangements="II")
     assert keys(answer(query, threads=1)) == keys(answer_by_algebra(query))
 
 
+@pytest.mark.thinned(5)
 @pytest.mark.parametrize("kind", ["vise", "bolted", "bolted pair", "fence pair", "flat"])
 def test_the_best_are_the_first_of_all(kind: str) -> None:
     part, toolkit, program = random_case(5, kind)
@@ -237,6 +244,7 @@ def test_a_shoulder_below_the_part_keeps_clear_of_what_is_swept_there() -> None:
     assert keys(listed(asked(part, shouldered, below))) < plain_below & free
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("kind", ["fence", "bolted fence", "fence pair", "flat"])
 def test_a_wall_is_kept_clear_however_far_from_the_pegs_a_tool_comes_down(kind: str) -> None:
     part, toolkit, _ = random_case(5, kind)
@@ -328,6 +336,7 @@ def test_heights_are_asked_for_where_nobody_knows_them() -> None:
         Query(part, Vise(10.0, 1, 3.0), ranking=["program-clearance"])
 
 
+@pytest.mark.thorough
 def test_an_explanation_says_that_tools_hit_the_body_of_a_clamp() -> None:
     """A path between tips and bolts leaves every peg and takes every clamp; farther out it takes nothing."""
     part = Workpiece.from_points("plate", [(0, 0), (60, 0), (60, 40), (0, 40)])

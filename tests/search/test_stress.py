@@ -22,6 +22,8 @@ from workhold.contact.features import contact_features
 from workhold.model.fixture import Fixture
 from workhold.verification import verify
 
+pytestmark = pytest.mark.thorough
+
 Family = Callable[[float], Workpiece]
 HAIRS = [1e-6, 1e-9, 1e-12]
 BOTH_WAYS = [1e-6, 1e-9, 1e-12, -1e-6, -1e-9, -1e-12]

@@ -43,6 +43,7 @@ def solver_and_jaws(case):
     return Solver(load(BRACKET), VISE).closing(pattern, is_turned_over)
 
 
+@pytest.mark.thinned(7)
 @pytest.mark.parametrize("case", CASES)
 def test_it_is_a_seat_and_nothing_is_unsettled(case):
     """The separation is least there, by differences of what three contacts leave free, and jaws that close lead there."""

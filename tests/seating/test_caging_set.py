@@ -111,6 +111,7 @@ def end_at_home(name: str, rank: int, share: float, which: list[int]) -> bool:
     return True
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("name", "rank"),
     [

@@ -125,6 +125,7 @@ def test_no_peg_is_in_the_part_on_its_way(ways):
             assert least_clearance(closing, closing.run(above, 0.005, level=level)[0]) > -2e-8
 
 
+@pytest.mark.thorough
 def test_a_part_leaves_where_no_peg_meets_it_on_the_way(ways):
     """Told by small steps along the direction that is told or, where none is, along many, of where ways down begin and
     end."""

@@ -199,6 +199,7 @@ WEDGE = Workpiece.from_points("wedge", [(0, 0), (70, 0), (25, 55)])
 FENCE = Fence(pitch=20, peg_radius=3, wall_offset=10, travel=(1, 60))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("part", "toolkit"),
     [

@@ -178,6 +178,7 @@ def random_fence(seed):
     return placed(random_part(seed), toolkit, locator, tip)[0]
 
 
+@pytest.mark.thorough
 def test_no_balance_that_sampling_finds_is_missed():
     """A few random parts in steps of 5e-3 radians; many more in small steps below."""
     told = [missing(random_fence(seed), 5e-3) for seed in SEEDS]

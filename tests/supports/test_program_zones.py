@@ -65,6 +65,7 @@ def rooms(program: Program, points: Array) -> tuple[Array, Array]:
     return bottom.room(points) - PAD, top.room(points) - TIP
 
 
+@pytest.mark.thinned(6)
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("number", range(12))
 def test_zones_leave_what_a_walk_leaves(number: int) -> None:
@@ -174,6 +175,7 @@ def test_the_clamps_place_is_the_best_of_a_fine_grid(number: int) -> None:
     assert (at.sides(points[found]).min(axis=1) >= 1.0 - 1e-8).all()
 
 
+@pytest.mark.thorough
 def test_a_limit_of_the_work_stops_at_the_same_fixture_every_time() -> None:
     """So many places and no more; what is listed before is what it is without a limit."""
     program = program_of(many_passes())

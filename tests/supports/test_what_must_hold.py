@@ -27,6 +27,7 @@ def found(one, request=None, loads=None, force=None, best=None):
     return supports_of(one.fixture, one.query, asked, one.loads if loads is None else loads, force, best)
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("name", NAMES)
 @given(height=st.floats(0.5, 11), more=st.floats(0, 1000))
 @settings(max_examples=20)
@@ -39,6 +40,7 @@ def test_with_all_bands_at_one_height_the_jaw_force_changes_nothing(name, height
         assert a.best.lift == pytest.approx(0, abs=1e-9)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", NAMES)
 @given(up=st.floats(0, 30))
 @settings(max_examples=20)
@@ -64,6 +66,7 @@ def test_a_thrust_inside_the_triangle_alone_needs_no_clamp(name):
         assert loaded[named(triple)].best.support_force == pytest.approx(500 / 3)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", NAMES)
 @given(more=st.floats(0, 3))
 @settings(max_examples=20)
@@ -74,6 +77,7 @@ def test_a_larger_pad_never_adds_a_triple(name, more):
     assert {named(t) for t in after.triples} <= {named(t) for t in before.triples}
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", NAMES)
 @given(x=st.floats(0, 1), y=st.floats(0, 1), radius=st.floats(0, 12), more=st.floats(0, 6))
 @settings(max_examples=8)
@@ -133,6 +137,7 @@ def same_figures(one: Case, other: Case, renamed) -> None:
     assert after.jaw_force == pytest.approx(before.jaw_force)
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("name", NAMES)
 @given(angle=st.floats(-360, 360), x=st.floats(-300, 300), y=st.floats(-300, 300))
 @settings(max_examples=4)
@@ -156,6 +161,7 @@ def test_a_vise_given_a_half_turn_has_the_same_figures(name):
     same_figures(case_of(name, truth), case_of(name, other), renamed)
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("name", NAMES)
 def test_at_the_clamp_force_needed_no_support_pulls_and_one_is_about_to_let_go(name):
     """The six equations of balance, solved anew at all corners of the bands under all loads."""

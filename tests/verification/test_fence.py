@@ -53,6 +53,7 @@ def edited(result: Result, tmp_path: Path) -> Callable[[Edit], Verification]:
     return lambda edit: verify_edited(data, edit, tmp_path)
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("loop", "fields", "asked"),
@@ -109,6 +110,7 @@ def moved(data: Data, by: int) -> None:
     first["pose"]["x"] += 10.0 * by
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(
     ("edit", "words"),
     [
@@ -154,6 +156,7 @@ def test_what_is_wrong_is_refuted_by_name(
     ]
 
 
+@pytest.mark.thinned(5)
 @pytest.mark.parametrize(
     ("edit", "words"),
     [

@@ -53,6 +53,7 @@ def test_a_part_that_is_never_held_has_a_note_that_follows(loop: Any, toolkit: F
         assert len(verify(evolve(result, notes=(note,))).faults) == 2
 
 
+@pytest.mark.thinned(6)
 @pytest.mark.parametrize(
     ("loop", "toolkit", "asked"),
     [
@@ -110,6 +111,7 @@ def plus(values: Any, place: Any, by: float) -> None:
     values[place] += by
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize(
     ("edit", "words"),
     [
@@ -168,6 +170,7 @@ def test_files_with_something_unusable(edited: Any, edit: Edit, words: str) -> N
         edited(lambda content: edit(content["fixtures"][0]))
 
 
+@pytest.mark.thorough
 def test_the_account_is_held_to_what_is_listed(results: dict[str, Result], edited: Any) -> None:
     """Seats, pairs, repetitions, the order, and what all pairs of a seat are."""
 
@@ -190,6 +193,7 @@ def test_the_account_is_held_to_what_is_listed(results: dict[str, Result], edite
     assert verify(every).faults == ()
 
 
+@pytest.mark.thorough
 def test_another_pair_of_the_seat_is_not_the_best(results: dict[str, Result]) -> None:
     """Each pair of a seat in place of its best: proven just where it is as good."""
     best, every = results["best"], results["all"]

@@ -60,6 +60,7 @@ def test_the_walk_agrees_with_the_closed_form(seed: int, direction: CuttingDirec
         assert wide.contains(ball.mid()) and (wide.rad() > 1e-4 or not program.forces.force.any())
 
 
+@pytest.mark.thinned(6)
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_fixture_of_a_list_with_forces_is_proven(kind: str, tmp_path: Path) -> None:

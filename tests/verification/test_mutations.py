@@ -19,6 +19,8 @@ from workhold.model.requirements import Load, Restrictions, circle_zone
 from workhold.model.search_report import undecided_note
 from workhold.verification import verify_file
 
+pytestmark = pytest.mark.thorough
+
 Data = dict[str, Any]
 Where = tuple[Any, ...]
 

@@ -73,6 +73,7 @@ def edited(data: Data, tmp_path: Path) -> Callable[[Edit], Verification]:
     return lambda edit: verify_edited(data, edit, tmp_path)
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("loop", "fields", "asked"),
@@ -241,6 +242,7 @@ def test_a_vise_does_not_list_clamps(edited: Any) -> None:
         edited(edit)
 
 
+@pytest.mark.thorough
 def test_the_account_is_held_to_what_is_listed(edited: Any) -> None:
     """Counts, order, repetitions, notes and the proof."""
 
@@ -319,6 +321,7 @@ def bolted_in(fixture: Fixture, hole: tuple[int, int], plate: Plate) -> Fixture:
     return attrs.evolve(fixture, pegs=tuple(moved), pose=pose, jaw_separation=travel, quality={})
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("loop", "limits"),
     [
@@ -488,6 +491,7 @@ def test_undecided_entries_are_real_places(result: Result) -> None:
     assert tried >= 8
 
 
+@pytest.mark.thorough
 def test_results_of_several_directions_say_what_is_so_of_all() -> None:
     """What is undecided is counted together; a direction without a fixture is not told where another has some."""
     query = Query(part(NOTCHED), LIMITED)
@@ -542,6 +546,7 @@ def agrees_with_the_checker(seed: int, path: Path) -> int:
     return len(result)
 
 
+@pytest.mark.thorough
 def test_what_is_found_on_random_parts_is_proven(tmp_path: Path) -> None:
     assert sum(agrees_with_the_checker(seed, tmp_path / "r.json") > 0 for seed in range(8)) >= 4
 

@@ -49,6 +49,7 @@ def plate(**fields: Any) -> Plate:
     return Plate(**given)
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("loop", "toolkit", "asked"),
@@ -212,6 +213,7 @@ def test_files_with_something_unusable(edited: Any, edit: Callable[[Data], objec
         edited(lambda content: edit(content["fixtures"][0]))
 
 
+@pytest.mark.thorough
 def test_the_account_is_held_to_what_is_listed(edited: Any) -> None:
     """Pairs, seats, repetitions and the order, of both listings."""
 
@@ -343,6 +345,7 @@ def test_a_clamp_that_holds_alone_needs_no_other() -> None:
     assert looked_at > 3
 
 
+@pytest.mark.thorough
 def test_clamps_that_touch_each_other_are_none() -> None:
     """Two tips side by side on one face, nearer than both their radii."""
     workpiece = part(BLOCK)

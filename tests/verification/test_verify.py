@@ -39,6 +39,7 @@ NOTCHED = [
 WEDGE = [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]]
 
 
+@pytest.mark.thinned(6)
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("part", "vise"),
@@ -64,6 +65,7 @@ def test_everything_a_search_lists_is_proven(
     assert verify(result) == outcome
 
 
+@pytest.mark.thorough
 def test_contact_margins_are_proven() -> None:
     """Also along arcs and beside tangent joints, where a peg comes near to the next face only slowly."""
     outcome = verify(design(load("widget"), Vise(pitch=8, columns=1, peg_radius=3), contact_margin=0.5))
@@ -103,6 +105,7 @@ def test_a_contact_exactly_at_a_tangent_joint_is_proven() -> None:
     assert outcome.proven == outcome.fixtures > 0
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", SETS)
 def test_complete_sets_are_proven(name: str) -> None:
     """Everything found for the parts and vises of the complete sets."""

@@ -20,6 +20,8 @@ from running_server import RunningServer, running_server
 
 from workhold.web.origins import Origins
 
+pytestmark = pytest.mark.thorough
+
 ROOT = Path(__file__).parents[2]
 CLIENTS = ROOT / "examples" / "clients"
 PAGE = (ROOT / "docs" / "server.md").read_text(encoding="utf-8")

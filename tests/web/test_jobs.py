@@ -79,6 +79,7 @@ def test_downloads_are_the_files_the_program_writes(server: RunningServer, job: 
         assert answer.headers["content-disposition"] == f'attachment; filename="widget.{ending}"'
 
 
+@pytest.mark.thorough
 def test_pages_join_to_the_whole_list(server: RunningServer, job: str) -> None:
     whole = rows(server, job)
     pages = [
@@ -91,6 +92,7 @@ def test_pages_join_to_the_whole_list(server: RunningServer, job: str) -> None:
 ELSEWHERE = ("clamp_freedom", "jaw_contact")
 
 
+@pytest.mark.thorough
 def test_what_is_not_known_leaves_the_order_of_ranks(server: RunningServer, job: str) -> None:
     """Nobody says how high pegs press here, and there is one clamp."""
     for key in (*ELSEWHERE, *PIN_KEYS):
@@ -99,6 +101,7 @@ def test_what_is_not_known_leaves_the_order_of_ranks(server: RunningServer, job:
         ]
 
 
+@pytest.mark.thinned(10)
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     "key", [one.key for one in FIGURES if one.unit != "N" and one.key not in (*ELSEWHERE, *PIN_KEYS)]
@@ -404,6 +407,7 @@ def test_all_kinds_are_compared_and_others_refused(server: RunningServer) -> Non
         refused(server.client.post("/api/explore", json={"workpiece": WIDGET, "toolkits": [other]}))
 
 
+@pytest.mark.thorough
 def test_toolkits_are_compared(server: RunningServer) -> None:
     toolkits = [
         {**VISE, "title": "one"},

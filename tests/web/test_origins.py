@@ -30,6 +30,7 @@ def crossing(headers: dict[str, str]) -> dict[str, str]:
     return {key: value for key, value in headers.items() if key.startswith("access-control-")}
 
 
+@pytest.mark.thorough
 def test_a_page_of_a_named_site_searches(shared: RunningServer) -> None:
     """As a browser does it: it asks without the token, sends with it, and reads the answer."""
     headers = {"Origin": SHOP, "Sec-Fetch-Site": "cross-site"}

@@ -18,6 +18,8 @@ from running_server import LONG, PATIENCE
 from workhold.cli.main import app
 from workhold.cli.serving_commands import FIRST_RUN
 
+pytestmark = pytest.mark.thorough
+
 COMMAND = [sys.executable, "-m", "workhold", "serve"]
 
 

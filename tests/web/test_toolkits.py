@@ -107,6 +107,7 @@ def test_the_words_are_of_the_toolkit() -> None:
     assert [one["name"] for one in told["translating-clamp"]["types"]] == ["clamp"]
 
 
+@pytest.mark.thorough
 def test_fixtures_of_a_plate_are_told_apart_by_their_direction(server: RunningServer) -> None:
     """The job tells what there is; each direction by itself, and both by the name they share."""
     url = server.done(request(workpiece=RECTANGLE, toolkit=PLATE))

@@ -12,6 +12,8 @@ from pathlib import Path
 import pytest
 from running_server import LONG, RunningServer, request, running_server
 
+pytestmark = pytest.mark.thorough
+
 
 @pytest.fixture(scope="module")
 def pair() -> Iterator[RunningServer]:

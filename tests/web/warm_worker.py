@@ -5,11 +5,10 @@
 
 from __future__ import annotations
 
-import multiprocessing.forkserver as forkserver
 import os
 import sys
 from functools import cache
-from multiprocessing import get_context
+from multiprocessing import forkserver, get_context
 from typing import Any
 
 import pytest

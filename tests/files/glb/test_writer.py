@@ -27,6 +27,7 @@ def bodies_of(name: str) -> list[ReadBody]:
     return read_glb(fixture_glb(*held(name), SIZES))[1]
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("name", TOOLKITS)
 def test_bodies_are_closed_and_enclose_area_times_height(name: str) -> None:
     """Volumes are those of the prisms with their arcs, which chords shorten by no more than the sagitta all along them."""

@@ -83,6 +83,7 @@ def test_what_is_not_a_plain_subprogram_is_refused(tmp_path: Path, text: str, li
         read_text(tmp_path, HEAD + text)
 
 
+@pytest.mark.thorough
 def test_calls_in_calls_end(tmp_path: Path) -> None:
     """Repeats of repeats come to more blocks than a program may have."""
     calls = "".join(f"M98 P{number} L9999\nM99\nO{number}\n" for number in range(3, 7))

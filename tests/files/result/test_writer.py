@@ -14,7 +14,7 @@ import attrs
 import numpy as np
 import pytest
 
-import check_result
+import check_toolkit
 from fakes import fake_proof, fake_result
 from workhold import Vise, design, load
 from workhold.errors import InputError
@@ -381,6 +381,7 @@ def test_what_is_no_account_is_refused(tmp_path: Path, document: dict[str, Any],
         read_result(tmp_path / "d.json")
 
 
+@pytest.mark.thorough
 def test_the_bytes_do_not_depend_on_the_threads(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -395,9 +396,9 @@ def test_the_bytes_do_not_depend_on_the_threads(
         files.append(tmp_path / f"{threads}.json")
         write_result(result, files[-1])
     assert len({path.read_bytes() for path in files}) == 1
-    monkeypatch.setattr("sys.argv", ["check_result.py", str(files[0])])
+    monkeypatch.setattr("sys.argv", ["check_toolkit.py", str(files[0])])
     with pytest.raises(SystemExit) as ended:
-        check_result.main()
+        check_toolkit.main()
     assert ended.value.code == 0
     assert capsys.readouterr().out.endswith(" fixtures, 0 faulty\n")
 

@@ -33,6 +33,7 @@ def nested(count: int, inner: str) -> str:
     return "<g>" * count + inner + "</g>" * count
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("body", "words"),
     [
@@ -261,6 +262,7 @@ def test_path_data_is_resolved_over_the_joints_of_its_batches(monkeypatch: pytes
         assert drawing(body).chains == whole
 
 
+@pytest.mark.thorough
 def test_random_faults_are_refused_in_a_sentence(tmp_path: Path) -> None:
     """Drawings with one thing replaced are read, or refused by name; no other exception comes out."""
     place = Path(__file__).parents[1] / "fuzzing" / "svg_files.py"

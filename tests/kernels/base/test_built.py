@@ -47,6 +47,7 @@ def checked(library: built.Library, kernel: Any) -> built.CheckedKernel:
     return library.checked(kernel.py_func)
 
 
+@pytest.mark.thorough
 def test_the_library_tells_of_which_sources_it_is(library):
     assert library.source_hash == built.source_hash()
     assert set(library.kernels) == {kernel.__name__ for kernel, _ in PARTS["distances"]()}

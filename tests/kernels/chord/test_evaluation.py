@@ -21,6 +21,7 @@ def difference(values: np.ndarray, step: float) -> float:
     return float(weights @ values) / step
 
 
+@pytest.mark.thinned(9)
 @pytest.mark.parametrize("kinds", PAIRS)
 def test_tail_and_head_touch_their_features(kinds):
     """u lies on a, u + d (cos alpha, sin alpha) lies on b, and r_a, r_b are the contact directions there."""

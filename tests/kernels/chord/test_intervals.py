@@ -39,6 +39,7 @@ def counts(a, b, d, alphas, slack):
     return np.array(out)
 
 
+@pytest.mark.thinned(9)
 @pytest.mark.parametrize("kinds", PAIRS)
 def test_ranges_count_the_chords_of_every_direction(kinds):
     """At each direction as many ranges hold as there are solutions of the chord equations inside both features."""
@@ -62,6 +63,7 @@ def test_ranges_count_the_chords_of_every_direction(kinds):
     assert alive > 60
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("kinds", PAIRS)
 def test_inside_its_range_a_branch_lies_on_both_features(kinds):
     """Every direction of a range gives a chord whose tail and head are on the carriers of their features, ends included,

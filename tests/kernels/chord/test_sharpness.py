@@ -485,6 +485,7 @@ CONSTANTS = [
 
 
 @pytest.mark.parametrize("constant", CONSTANTS, ids=lambda constant: constant.name)
+@pytest.mark.prove
 def test_a_tenth_of_a_constant_would_not_do(constant: Constant) -> None:
     """The bound holds on every input, and with a tenth of the constant it does not."""
     check_sharpness(constant)

@@ -193,6 +193,7 @@ CONSTANTS = [
 
 
 @pytest.mark.parametrize("constant", CONSTANTS, ids=lambda constant: constant.name)
+@pytest.mark.prove
 def test_a_tenth_of_a_constant_would_not_do(constant: Constant) -> None:
     """What keeps a rule is kept, and with a tenth of the constant it is not."""
     check_sharpness(constant)
