@@ -420,7 +420,6 @@ class Face:
 
 
 def merged(run: Sequence[Segment]) -> Segment:
-    """One segment for a run of segments of the same line or circle."""
     first = run[0]
     if len(run) == 1:
         return first

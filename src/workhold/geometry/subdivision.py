@@ -471,9 +471,7 @@ def border_pieces(
 def sides(places: Sequence[tuple[CutCarrier, float, float]], inside: Inside) -> list[tuple[bool, bool]]:
     """Whether points beside positions of carriers, on the left and the right of each, are inside.
 
-    Parameters
-    ----------
-    places : carrier, position, and how far beside it in mm.
+    A place is a carrier, a position, and how far beside it in mm.
     """
     points: list[Point] = []
     for carrier, position, beside in places:

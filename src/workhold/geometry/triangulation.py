@@ -126,7 +126,6 @@ class Sweep:
         )
 
     def connect(self, v: int, other: int) -> None:
-        """Adds a diagonal."""
         self.diagonals.setdefault(v, []).append(other)
         self.diagonals.setdefault(other, []).append(v)
 
@@ -161,11 +160,8 @@ class Sweep:
 
 
 def monotone_triangles(piece: Sequence[int], points: Sequence[Point]) -> list[Triangle]:
-    """Triangles of a piece that every horizontal line meets in one span.
-
-    Parameters
-    ----------
-    piece : numbers of its vertices, counter-clockwise.
+    """Triangles of a piece that every horizontal line meets in one span, given the numbers of its vertices,
+    counter-clockwise.
     """
     count = len(piece)
     order = sorted(range(count), key=lambda k: (-points[piece[k]][1], points[piece[k]][0], piece[k]))
