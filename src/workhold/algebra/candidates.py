@@ -63,11 +63,8 @@ def sector_of(psi: Array) -> IntArray:
 
 
 def facing(rows: Array, spread: float) -> BoolArray:
-    """Whether a feature has a normal within ``spread`` radians of the middle of a sector, (F, SECTORS).
-
-    Parameters
-    ----------
-    rows : (F, 10) feature rows.
+    """Whether features (F, 10) have a normal within ``spread`` radians of the middle of a sector, (F,
+    SECTORS).
     """
     straight = rows[:, IS_ARC] == 0.0
     x, y = rows[:, AXIS_X], rows[:, AXIS_Y]
@@ -154,15 +151,11 @@ class PegPairs:
 def wedge_sectors(
     one: FeaturePieces, two: FeaturePieces, distance: float, direction: float
 ) -> BoolArray | None:
-    """Orientations at which a peg pair fits each piece of the first feature (sections 3.3 and 3.4).
+    """Orientations at which a peg pair fits each piece of the first feature (sections 3.3 and 3.4), (P,
+    SECTORS).
 
-    Parameters
-    ----------
-    distance, direction : of the step from the first peg to the second, in mm and radians.
-
-    Returns
-    -------
-    (P, SECTORS) array, or None where no wedge holds the step's length
+    The step from the first peg to the second has a length in mm and a direction in radians. None where no
+    wedge holds its length.
     """
     between = two.middle[None, :] - one.middle[:, None]
     spread = one.radius[:, None] + two.radius[None, :] + WEDGE_SLACK
@@ -193,17 +186,10 @@ def tail_bounds(one: FeaturePieces, tails: BoolArray) -> tuple[Array, Array]:
 
 
 def peg_pairs(rows: Array, frame: Frame, diameter: float) -> PegPairs:
-    """Every peg pair that its annulus wedges allow (section 3.4).
+    """Every peg pair that its annulus wedges allow (section 3.4); refuses too many of them.
 
-    Parameters
-    ----------
-    rows : (F, 10) contact features about the centre of the part.
-    diameter : largest distance in mm between two peg centres.
-
-    Raises
-    ------
-    InputError
-        When there are too many.
+    Features (F, 10) are about the centre of the part. ``diameter`` is the largest distance in mm between two
+    peg centres.
     """
     pieces = [pieces_of(row, diameter * PIECE) for row in rows]
     most = max(len(p.middle) for p in pieces)

@@ -70,7 +70,6 @@ def ball(value: complex) -> acb:
 
 
 def constant(value: complex) -> Laurent:
-    """A constant."""
     return Laurent(acb_poly([ball(complex(value))]), 0)
 
 
