@@ -326,7 +326,6 @@ def record_in_balls(row: Array, problem: Problem, course: Course) -> BoxOutcome 
 
 
 def undecided(row: Array, problem: Problem, reason: str) -> Undecided:
-    """A record that is not decided, for the account."""
     feature, column, line = peg_integers(row[None])
     faces = problem.faces[feature[0]].tolist()
     standing = np.abs(row[[record.STANDING]]).astype(np.int64)

@@ -121,12 +121,10 @@ def touched(records: Array, rows: Array, lattice: Lattice) -> list[TouchedFeatur
 
 
 def dot(a: Points, b: Points) -> Array:
-    """Scalar products of vectors."""
     return np.asarray((np.conj(a) * b).real)
 
 
 def cross(a: Points, b: Points) -> Array:
-    """Cross products of vectors."""
     return np.asarray((np.conj(a) * b).imag)
 
 
