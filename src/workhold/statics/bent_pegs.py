@@ -74,7 +74,6 @@ class BentPegs:
 
     @property
     def hardest(self) -> BentPeg:
-        """The peg that is bent hardest."""
         return max(self.pegs, key=lambda peg: peg.stress)
 
     @property

@@ -249,10 +249,8 @@ def scale(touched: Touched) -> Array:
 def reactions(free: Array, held: Array) -> Array:
     """Functions (N, P (P - 1), 3) of the load, of which the largest value is the load reaction.
 
-    Parameters
-    ----------
-    free : (N, P, 3) peg forces per unit of load where the jaw keeps its force.
-    held : (N, P) the same per unit of jaw force.
+    ``free`` are peg forces (N, P, 3) per unit of load where the jaw keeps its force, ``held`` (N, P) those
+    per unit of jaw force.
     """
     count = held.shape[1]
     one, other = np.nonzero(~np.eye(count, dtype=bool))
