@@ -95,11 +95,6 @@ def holes_named(name: str, carriers: Iterable[str], noun: str) -> Holes:
     name : in any mixture of capitals, with or without the hyphen.
     carriers, noun : the names of the carriers it may be on, and what one of them is called.
 
-    Raises
-    ------
-    InputError
-        When it is no such name.
-
     Examples
     --------
     >>> holes_named("R-A3", ("left", "right"), "jaw")

@@ -88,13 +88,7 @@ LIMITS = FieldTable(
 
 
 def refuse_wrong(hardware: Hardware) -> None:
-    """Refuses lengths that cannot be.
-
-    Raises
-    ------
-    InputError
-        Naming the table, the entry and the remedy.
-    """
+    """Refuses lengths that cannot be."""
     for row in hardware.table.fields:
         value, words = getattr(hardware, row.name), f"{hardware.table.noun.replace('_', '-')}: {row.words}"
         if row.form in ("length", "stress") and value is not None:
