@@ -50,11 +50,8 @@ def counted_on(
 ) -> Fixture:
     """A fixture with its holes counted further on.
 
-    Parameters
-    ----------
-    move : by how much part and pegs stand further on, x and y in mm.
-    shifts : by how many columns and rows the holes of each plate count further on, by its name.
-    travel : of what moves, in mm, before the move.
+    Part and pegs stand further on by ``move``, x and y in mm, and the holes of a plate count further on by
+    columns and rows, by its name. ``travel`` is that of what moves in mm before the move.
     """
     dx, dy = move
 

@@ -133,10 +133,7 @@ def unlike(values: Iterable[Value]) -> Iterator[Value]:
 def outer_count(name: str, shapes: Sequence[LoopShape]) -> int:
     """How many loops lie in no other, or in a hole (loops are known not to meet).
 
-    Raises
-    ------
-    InputError
-        Where they do not come before the others.
+    Refuses loops of which these do not come before the others.
     """
     boxes = np.array([shape.box for shape in shapes])
     around = [
@@ -159,10 +156,7 @@ def outer_count(name: str, shapes: Sequence[LoopShape]) -> int:
 def refuse_misplaced_holes(name: str, shapes: Sequence[LoopShape], comparisons: Comparisons) -> None:
     """Refuses holes outside the outer loop and holes inside one another (loops are known not to meet).
 
-    Raises
-    ------
-    InputError
-        Naming the hole; also for more comparisons than may be made.
+    Refuses as well what takes more comparisons than may be made.
     """
     boxes = np.array([shape.box for shape in shapes])
     for index, hole in enumerate(shapes[1:], start=1):

@@ -51,7 +51,6 @@ def tolerance_given(value: Tolerance | None) -> Tolerance:
 
 
 def loads_of(loads: Iterable[Load]) -> tuple[Load, ...]:
-    """Loads as a tuple."""
     return listed("loads", loads)
 
 

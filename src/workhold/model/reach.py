@@ -51,12 +51,8 @@ def cells_in_reach(carrier: Carrier, travelled: float, reach: Box, held: Point) 
     """Columns and rows of a carrier in reach, at least one of each.
 
     A lattice without an end has those before the first ones too that lie under what is held, whose lower left
-    corner is ``held`` in mm. Rows that are counted from a wall begin there.
-
-    Raises
-    ------
-    InputError
-        For so many holes that no fixture of a search has them in reach.
+    corner is ``held`` in mm. Rows that are counted from a wall begin there. Refuses so many holes that no
+    fixture of a search has them in reach.
     """
     x, y = carrier.place(0, 0, travelled)
     columns = in_reach(reach.x0 - x, reach.x1 - x, carrier.pitch[0], carrier.columns, held[0] - x)

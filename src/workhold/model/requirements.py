@@ -44,7 +44,6 @@ ANY_DIRECTION = (0.0, 360.0)
 
 
 def point_pairs(points: Iterable[Iterable[float]]) -> tuple[tuple[float, float], ...]:
-    """Points as pairs of floats."""
     return tuple((real(x), real(y)) for x, y in points)
 
 
@@ -236,7 +235,6 @@ def angle_pairs(ranges: Iterable[Iterable[float]]) -> tuple[Angles, ...]:
 
 
 def all_zones(zones: Iterable[Zone]) -> tuple[Zone, ...]:
-    """Zones as a tuple."""
     return tuple(zones)
 
 

@@ -386,5 +386,4 @@ def length(value: float | None) -> float | None:
 
 
 def pose_fields(pose: Pose) -> dict[str, float | None]:
-    """A pose as files have it."""
     return {"theta_deg": length(pose.theta_deg), "x": length(pose.x), "y": length(pose.y)}

@@ -304,10 +304,7 @@ def stretches_in(
 def near(paths: Curves, reach: Floats, border: Border) -> tuple[Integers, Floats, Floats]:
     """The parts of paths within a border or nearer to it than some reach (N,) each.
 
-    Returns
-    -------
-    tuple
-        Numbers (K,) of the paths, rising, and the shares (K,) at which each part begins and ends.
+    Numbers (K,) of the paths, rising, and the shares (K,) at which each part begins and ends.
     """
     half = paths.length / 2
     middle = paths.at(np.full((len(paths), 1), 0.5))[:, 0]

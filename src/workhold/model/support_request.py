@@ -81,13 +81,7 @@ def span_of(value: Any) -> Span:
 
 
 def loops_of(loops: Iterable[Any]) -> Loops:
-    """Loops of (x, y, bulge) vertices as read-only arrays.
-
-    Raises
-    ------
-    InputError
-        For a loop that is none.
-    """
+    """Loops of (x, y, bulge) vertices as read-only arrays; refuses what is no loop."""
     return tuple(
         checked_vertices(loop, f"face: loop {number}", partial("face: loop {}, side {}".format, number))
         for number, loop in enumerate(loops, 1)

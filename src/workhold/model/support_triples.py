@@ -269,10 +269,8 @@ def moves(toolkit: Toolkit, start: Hole) -> Iterator[Hole]:
 def shift_of(plate: Carrier, first: Carrier, move: Hole, opened: float) -> Hole:
     """Columns and rows by which a plate's holes count further on.
 
-    Parameters
-    ----------
-    move : by how many columns and rows of the first plate all stands further on.
-    opened : how much farther than before the plate that slides has travelled, in mm.
+    All stands ``move`` columns and rows of the first plate further on, and the plate that slides has
+    travelled by ``opened`` mm more than before.
     """
     shift = [
         round((steps * own - (0.0 if plate.travel is None else opened * along)) / pitch)
