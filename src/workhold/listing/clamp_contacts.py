@@ -179,13 +179,10 @@ def contacts_of_candidates(c: Candidates, problem: Problem) -> ClampContacts:
 def sharpened(
     c: Candidates, taken: Array, push: Array, push_off: Array, doubt: Array, problem: Problem
 ) -> tuple[Array, Array, Array]:
-    """Forces of the locators (N, 3), pushes and doubts (N,) of contacts.
+    """Forces of the locators (N, 3), pushes and doubts (N,) of contacts, in balls where doubles leave forces
+    in doubt.
 
-    They are computed in balls where doubles leave forces in doubt.
-
-    Parameters
-    ----------
-    push_off, doubt : (N,) how far pushes and forces may be off.
+    ``push_off`` and ``doubt`` (N,) are how far pushes and forces may be off.
     """
     from workhold.proof.exact_contacts import sharp_reactions
 
@@ -234,13 +231,10 @@ def box_beside(
 
 
 def is_one_of_two(taken: Array, push: Array) -> BoolArray:
-    """Which clamps (N,) may be one of two: those that do not hold the part alone, and press no locator with
-    more than ``MOST_FORCE`` times their own force.
+    """Which clamps (N,) may be one of two: they neither hold the part alone nor press a locator too hard.
 
-    Parameters
-    ----------
-    taken : (N, 3) forces of the locators per unit of that on the clamp's face.
-    push : (N,) force of the clamp per unit of that on its face.
+    That is with more than ``MOST_FORCE`` times their own force. Forces ``taken`` (N, 3) of the locators and
+    ``push`` (N,) of the clamp are per unit of that on the clamp's face.
     """
     needs_another = taken.min(axis=1, initial=inf) <= NO_REACTION * (1.0 + np.abs(taken).sum(axis=1))
     return np.asarray(needs_another & (np.abs(taken).max(axis=1, initial=0.0) <= MOST_FORCE * push))

@@ -296,7 +296,6 @@ class ResultCollector:
         return Needed()
 
     def decide(self, block: NDArray[np.float64]) -> None:
-        """Has a block decided."""
         self.deciding.append(self.pool.submit(self.decided, block))
         while len(self.deciding) > self.ahead:
             self.keep(*self.deciding.popleft().result())
@@ -307,7 +306,6 @@ class ResultCollector:
         return self.by_their_holes(candidates), account
 
     def by_their_holes(self, candidates: Candidates) -> SortedRun:
-        """Fixtures sorted by their holes."""
         key = key_of(*packed_holes(candidates, most_holes(self.problem)))
         return SortedRun.of(key, astuple(candidates, recurse=False))
 
@@ -399,7 +397,6 @@ class ResultCollector:
         measured.close()
 
     def ranked_run(self, part: Callable[[], SortedRun]) -> SortedRun:
-        """Measured fixtures in the order of their ranks."""
         run = part()
         *columns, error = run.columns
         if self.is_part and not self.course.is_stopped:

@@ -60,7 +60,6 @@ class Arranged:
 
 
 def arranged(c: Candidates, problem: Problem) -> Arranged:
-    """The place of every fixture on the carriers."""
     angles, frame = problem.restrictions.angles, problem.frame
     clear = bodies_clear(c, frame)
     found = placed_as_is(c, frame)
@@ -169,11 +168,8 @@ def placed_as_is(c: Candidates, frame: Frame) -> Arranged:
 def clear_of_blocked(found: Arranged, frame: Frame, room: IntArray, spare: IntArray) -> Arranged:
     """Moves fixtures on until no peg stands in a blocked hole.
 
-    Parameters
-    ----------
-    room : (N, 4) fewest and most columns outward in all, and columns free on the standing and on the moving
-        carrier.
-    spare : (N,) rows free above the topmost peg, where the carriers have an end.
+    ``room`` (N, 4) has the fewest and most columns outward in all, and the columns free on the standing and
+    on the moving carrier; ``spare`` (N,) the rows free above the topmost peg, where the carriers have an end.
     """
     c = found.candidates
     standing = is_standing(c.standing)

@@ -139,7 +139,6 @@ def collected_result(collector: ResultCollector, work: Work, progress: Progress 
 
 
 def with_table(result: Result, collector: ResultCollector, progress: Progress | None = None) -> Result:
-    """The result of what a collector was given, with its fixtures."""
     tables, listed = list(collector.tables(progress)), collector.listed
     # If somebody asked to stop since, millions are not put together any more.
     enough = 1 + int(np.searchsorted(np.cumsum([len(table) for table in tables]), listed))
@@ -181,7 +180,6 @@ def result_of(
 
 
 def proof_of(account: Account, work: Work) -> Proof:
-    """The account of a search for the result."""
     # A pair of chords that was given up counts as one candidate.
     examined = work.examined
     candidates = account.records if examined is None else examined + account.given_up - account.left
@@ -386,7 +384,6 @@ def summed(counts: Iterable[Mapping[str, int]]) -> dict[str, int]:
 
 
 def joined_proofs(proofs: Sequence[Proof]) -> Proof:
-    """Several accounts as one."""
     return Proof(
         cells=sum(proof.cells for proof in proofs),
         candidates=sum(proof.candidates for proof in proofs),
