@@ -116,7 +116,6 @@ def antipodal_contacts(boundary: ObstacleBoundary) -> list[AntipodalContacts]:
 
 
 def pocket_pieces(boundary: ObstacleBoundary, pocket: int) -> tuple[int, ...]:
-    """The two pieces of a pocket."""
     return tuple(boundary.pocket_pieces[pocket].tolist())
 
 

@@ -214,7 +214,6 @@ def in_balance(candidates: Array, given: Given, size: float) -> Array:
 
 
 def wall_manifolds(finder: ManifoldFinder) -> list[Manifolds]:
-    """All equilibrium manifolds on a wall."""
     wall = WallEquilibria(finder.boundary, finder.pattern)
     return sliding_on_wall(finder, wall) + turning_on_wall(finder, wall)
 

@@ -193,9 +193,7 @@ def on_parallel_lines(
 ) -> list[SelfMotion]:
     """Self-motions on parallel faces: the middle one of three pegs presses against the outer two.
 
-    Parameters
-    ----------
-    slides : (S, 7) of the two pegs of one jaw.
+    ``slides`` (S, 7) are those of the two pegs of one jaw.
     """
     if not len(slides):
         return []
@@ -286,7 +284,6 @@ def of_pattern(found: Sequence[tuple[PegSubset, SelfMotions]]) -> SelfMotions:
 
 
 def joined(parts: Sequence[Manifolds]) -> Manifolds:
-    """Manifolds, one after the other."""
     rows, configs, _, closed, across = (
         np.concatenate(same) for same in zip(NO_MANIFOLDS, *parts, strict=True)
     )

@@ -122,16 +122,9 @@ class Solver:
     ) -> list[Seating]:
         """The seatings of many fixtures, in their order; patterns are shared out among threads.
 
-        Parameters
-        ----------
-        with_cage : see :meth:`of`.
-        threads : how many; None for one on each processor. The seatings do not depend on it.
-
-        Raises
-        ------
-        InputError
-            As ``Pattern.of``, for a number of threads that is too large, and for a fixture of another part or
-            toolkit.
+        None stands for a thread on each processor; the seatings do not depend on it. For ``with_cage`` see
+        :meth:`of`. Raises InputError as ``Pattern.of`` does, for a number of threads that is too large, and
+        for a fixture of another part or toolkit.
         """
         fixtures = list(fixtures)
         for fixture in fixtures:
@@ -246,7 +239,6 @@ class FixtureInPattern:
         return int(np.argmin(away)) if len(away) and away.min() <= AGREES else None
 
     def as_candidate(self) -> Array:
-        """The fixture as a candidate of the solved pattern."""
         closing, faces = self.solver.closing(self.known, False), [peg.face for peg in self.fixture.pegs]
         touched = [faces[number] for number in self.order]
         return as_candidate(closing.boundary, self.known, self.own - self.shift, touched, closing.size)
