@@ -255,9 +255,7 @@ class TouchableFace:
 def offset_curves(loop: Loop, radius: float, left: bool) -> tuple[list[Curve], list[Curve]]:
     """Lines, unit normal and distance, and circles on which the middle of a disc is that touches a loop.
 
-    Parameters
-    ----------
-    left : whether the disc is on the left of the loop.
+    ``left`` says whether the disc is on the left of the loop.
     """
     lines: list[Curve] = []
     circles: list[Curve] = []

@@ -174,13 +174,9 @@ def support_forces(
 ) -> tuple[Array, Array]:
     """Least and largest forces (N,) of supports without the clamp, over all loads and heights.
 
-    Parameters
-    ----------
-    lines : beta_j of N supports; or distances from the sides that face them, which makes all forces larger by
-        the heights of the supports over these.
-    bands : (P, 2) of the pegs.
-    loads : with their heights written out.
-    jaw_force : on what moves, F.
+    ``lines`` are beta_j of N supports; or distances from the sides that face them, which makes all forces
+    larger by the heights of the supports over these. Bands (P, 2) are those of the pegs, loads have their
+    heights written out, and the jaw force is that on what moves, F.
     """
     x, y = lines.normals[..., 0], lines.normals[..., 1]
     out = []
@@ -226,10 +222,7 @@ class WeakJawError(InputError):
 def needed_jaw_force(pegs: PegForces, loads: Sequence[SpatialLoad], jaw_force: float | None) -> float:
     """The jaw force asked for, or the one that keeps all pegs in contact under every load.
 
-    Raises
-    ------
-    WeakJawError
-        When the one asked for is too small, naming the load.
+    Raises WeakJawError, naming the load, when the one asked for is too small.
     """
     needs = [needed_for(pegs, load) for load in loads]
     if jaw_force is None:

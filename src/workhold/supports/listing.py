@@ -226,7 +226,6 @@ def clamp_figures(choice: TripleChoice, corners: Corners, points: Array) -> list
 
 
 def support_in(room: CarrierRoom, hole: int) -> SupportPad:
-    """The support in a hole."""
     holes = room.holes
     x, y = holes.points[hole].tolist()
     name = room.toolkit.carriers[holes.carrier[hole]].name
@@ -240,13 +239,7 @@ def spatial(loads: Iterable[Load | SpatialLoad], thickness: float) -> tuple[Spat
 
 
 def checked_force(jaw_force: float | None) -> float | None:
-    """A jaw force in N, or None.
-
-    Raises
-    ------
-    InputError
-        For one that is negative or no number.
-    """
+    """A jaw force in N, or None; refuses one that is negative or no number."""
     if jaw_force is None:
         return None
     if not (isfinite(real(jaw_force)) and real(jaw_force) >= 0):
@@ -302,10 +295,8 @@ def supports_one_by_one(
 ) -> Iterator[Supports]:
     """Yields the supports of each of some fixtures of a query as they are found.
 
-    Parameters
-    ----------
-    each : how many triples of each fixture, None for all; others as of :func:`supports_of`.
-    drops_weak_force : whether a jaw force that is too small for a load is left out, not refused.
+    ``each`` is how many triples of each fixture, None for all; others are as of :func:`supports_of`.
+    ``drops_weak_force`` says whether a jaw force that is too small for a load is left out, not refused.
     """
     acting = acting_on(query, request.thickness) if loads is None else loads
     asked = spatial(acting, request.thickness)
