@@ -262,9 +262,7 @@ def place_findings(
 ) -> Iterator[Finding]:
     """Whether a line, a tool and a contact are those of the worst value.
 
-    Parameters
-    ----------
-    functions, own : of each contact, what the load does to it, and what it has without.
+    ``functions`` are what the load does to each contact, ``own`` what the contact has without it.
     """
     if said["line"] is None:
         return

@@ -155,7 +155,6 @@ class StatedSeating:
         yield from self.pass_faults(mine)
 
     def seat_faults(self, seat: Mapping[str, Any], own: Mapping[str, Any]) -> Iterator[str]:
-        """What is wrong with a seat."""
         apart = seat["jaw_separation"] - own["jaw_separation"]
         if abs(apart - seat["difference"]) > ROUNDED:
             yield "has a difference that is not that of the separations"

@@ -177,10 +177,7 @@ def touching_faults(contacts: Sequence[StatedContact], on_wall: Sequence[int], w
 def stop_of(pegs: Sequence[Peg], toolkit: Toolkit, separation: float) -> float | None:
     """The travel in mm at which what moves is stopped without the part; None where nothing stops it.
 
-    Parameters
-    ----------
-    pegs : of a fixture.
-    separation : the travel there, in mm.
+    ``separation`` is the travel in mm at which a fixture has its pegs.
     """
     moved = [peg for peg in pegs if toolkit.carrier(peg.carrier).travel is not None]
     still = [peg for peg in pegs if peg not in moved and toolkit.carrier(peg.carrier).contact.is_placed]

@@ -131,9 +131,7 @@ class SupportPlaces:
     def hanging_at(self, point: tuple[float, float], slack: float = 0.0) -> int:
         """How the tip stands: 0 with the part under all of it, 1 under its middle, 2 with air below.
 
-        Parameters
-        ----------
-        slack : in mm, by which the middle and the border of the tip may be over air and yet count as not.
+        By so much ``slack`` in mm the middle and the border of the tip may be over air and yet count as not.
         """
         for level in self.top_levels:
             if any(all(side * reach(one, point) > -AGREEMENT for one, side in face) for face in level.faces):
@@ -296,10 +294,8 @@ def missing_triples(
 ) -> tuple[list[str], int]:
     """What speaks against a list that says it is complete, and for how many triples nobody can say.
 
-    Parameters
-    ----------
-    listed : the triples of the list, their holes in any order.
-    positions : how many holes could hold a support, as the list says.
+    Triples have their holes in any order. ``positions`` is how many holes could hold a support, as the list
+    says.
     """
     rooms = {hole: rules.pad_room(hole) for hole in holes_near(rules)}
     sure = sorted(hole for hole, room in rooms.items() if room > AGREEMENT)

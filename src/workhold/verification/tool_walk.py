@@ -99,7 +99,6 @@ class Stretches:
         return Stretches(self.move[chosen], *(values[chosen] for values in rest))
 
     def halves(self) -> Stretches:
-        """Both halves of each."""
         middle = (self.first + self.last) / 2
         both = [np.concatenate([v, v]) for v in (self.move, self.under, self.over, self.radius)]
         first, last = np.concatenate([self.first, middle]), np.concatenate([middle, self.last])
@@ -289,7 +288,6 @@ def do_cross(one: Array, other: Array, start: Array, end: Array) -> NDArray[np.b
 
 @lru_cache(maxsize=8)
 def walk_of(program: Program) -> ToolWalk:
-    """The walk along a program."""
     return ToolWalk.of(program)
 
 

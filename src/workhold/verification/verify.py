@@ -122,7 +122,6 @@ class Judge:
         return ruling
 
     def ruling_at(self, bits: int, fixture: Fixture) -> Ruling:
-        """The ruling at the precision in force."""
         if bits not in self.measures:
             self.measures[bits] = Measure.of(self.wrench_length, self.diameter, self.query)
         doubt = ""

@@ -293,9 +293,7 @@ class ToolkitRules:
     ) -> Iterator[Finding]:
         """Whether a jaw with ends reaches the part where it is pressed, and the pegs' columns are the best.
 
-        Parameters
-        ----------
-        contacts, shares : those of an endless wall, and their null vector.
+        Contacts and shares are those of an endless wall, and their null vector.
         """
         if self.jaw is None:
             return

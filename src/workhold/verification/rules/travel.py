@@ -98,7 +98,6 @@ OPPOSITE = {"-x": "+x", "+x": "-x", "-y": "+y", "+y": "-y"}
 
 
 def directions_of(fixture: Fixture) -> tuple[str, ...]:
-    """The directions of a fixture's clamps."""
     return tuple((fixture.direction or "").split())
 
 
@@ -277,5 +276,4 @@ def between(piece: LineSide, side: Side) -> Iterator[tuple[arb, arb]]:
 
 
 def along(piece: LineSide, place: arb) -> Point:
-    """The point of a piece's line at a place."""
     return piece.start[0] + place * piece.tangent[0], piece.start[1] + place * piece.tangent[1]
