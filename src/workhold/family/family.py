@@ -271,7 +271,6 @@ def listed(entries: list[dict[str, Any]]) -> str:
 
 
 def plan_text(plan: Plan, family: Family) -> str:
-    """A point of the curve with its plan."""
     numbers = {id(member): number for number, member in enumerate(family.members)}
     point = {
         "setups": plan.point.setups,
@@ -309,7 +308,6 @@ def peg_entry(peg: Peg, toolkit: Toolkit) -> dict[str, Any]:
 
 
 def holding_entry(one: Holding, toolkit: Toolkit, number: int) -> dict[str, Any]:
-    """How a member lies, as it is written."""
     fixture = one.fixture
     entry = {
         "part": number,
@@ -337,7 +335,6 @@ def opening_entry(fixture: Fixture, toolkit: Toolkit) -> dict[str, Any]:
 
 
 def length(value: float) -> float:
-    """A length as it is written."""
     return float(rounded(np.array([value]), LENGTH_STEPS)[0])
 
 

@@ -78,7 +78,6 @@ def draw_curve(family: Family, chosen: Point | None = None) -> str:
 
 
 def draw_axes_and_points(scene: Scene, room: Box, points: list[Point], chosen: Point | None) -> None:
-    """Draws the axes with their numbers, and the points with theirs."""
     last, most = points[-1].setups, points[0].loss
     step = nice_step(max(most - 1.0, 0.02) / MOST_LINES)
     top = 1.0 + step * max(ceil((most - 1.0) / step - 1e-9), 1)
@@ -312,7 +311,6 @@ def grid(count: int, room: Box) -> list[Box]:
 
 
 def table_head(one: Holding, titles: Titles) -> list[str]:
-    """The headings of the table of parts."""
     sign, of = titles.lengths.sign, titles.figure.unit
     settings = settings_of(one.fixture, one.member.query.toolkit)
     unit = sign if of == "mm" else of
@@ -386,9 +384,7 @@ def draw_table(
 ) -> None:
     """Draws the table of parts, numbers on the right of their columns, and the notes below it.
 
-    Parameters
-    ----------
-    most : lines of a name.
+    Names have ``most`` lines at most.
     """
     widths = column_widths(head, rows, room.width)
     heads = [in_two(words) for words in head]
@@ -424,7 +420,6 @@ def in_two(words: str) -> tuple[str, str]:
 
 
 def draw_foot(scene: Scene, titles: Titles, page: str) -> None:
-    """Writes date, program and page at the foot."""
     width, height = LANDSCAPE
     words = f"{titles.day.isoformat()} · workhold {__version__} · {page}"
     scene.text((width - EDGE, height - EDGE - 4), words, 11, "end", fill=GREY)
