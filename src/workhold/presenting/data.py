@@ -311,13 +311,7 @@ def to_arrow(result: Result) -> Any:
 
 
 def library(name: str) -> Any:
-    """Imports a library of an extra.
-
-    Raises
-    ------
-    InputError
-        When it is not installed.
-    """
+    """Imports a library of an extra."""
     try:
         return import_module(name)
     except ImportError as error:

@@ -208,9 +208,7 @@ class LivePicture:
     def draw_set(self, scene: Scene, chosen: ChosenSupports, ways: Mapping[str, Point | None]) -> None:
         """Draws a set of three with the names of its holes; each moves with the jaw that it stands on.
 
-        Parameters
-        ----------
-        ways : in which each carrier clamps, by its name; None for those that stand still.
+        ``ways`` has by its name in which way each carrier clamps; None for those that stand still.
         """
         planned, view = PlannedSupports.of(chosen), self.view
         corners, radius = [view(place) for place in planned.places], size_of(planned.pad_radius, view)

@@ -158,7 +158,6 @@ def count_sentences(result: Result, shown: Entries) -> list[str]:
 
 
 def thumbnail(fixture: Fixture) -> Markup:
-    """The small picture of a fixture of a result."""
     result = fixture.listing.result
     drawn = draw_thumbnail(fixture, result.workpiece, result.toolkit)
     return image(drawn, f"{fixture_title(fixture)}: {fixture_words(fixture, result.toolkit)}", SMALL, False)
@@ -222,7 +221,6 @@ def supports_html(supports: Supports) -> str:
 
 
 def supports_picture(supports: Supports, rank: int) -> Markup:
-    """The small picture of a fixture on a set of three."""
     chosen = ChosenSupports.of(supports, rank)
     query = supports.query
     bench = bench_of(chosen.recounted.fixture, query.workpiece, query.toolkit)
