@@ -53,9 +53,7 @@ def reading_seconds(ending: str, size: int) -> float:
 def measures(faces: int, size: tuple[float, float], toolkit: Toolkit) -> tuple[str, float, float]:
     """The law that holds for a toolkit, and the logarithms of what it grows with: faces and steps.
 
-    Parameters
-    ----------
-    size : width and height of the part in mm.
+    Width and height of the part are in mm.
     """
     carrier = toolkit.plates[0]
     diameter = hypot(*size) + 2.0 * carrier.peg_radius

@@ -275,7 +275,6 @@ def cell(content: str, *, key: str | None = None, name: str = "", bad: bool = Fa
 
 
 def figure(value: float | None, decimals: int) -> str:
-    """A cell with a number."""
     if value is None:
         return cell("", name="n")
     return cell(f"{value:,.{decimals}f}", key=f"{value:.12g}", name="n")
@@ -315,13 +314,7 @@ def write_results(
 
 
 def sheet_of(row: JobRow, store: Store, folder: Path) -> Path | None:
-    """The setup sheet of a job's first choice, written if it is not there; None without a fixture.
-
-    Raises
-    ------
-    InputError
-        When it cannot be written.
-    """
+    """The setup sheet of a job's first choice, written if it is not there; None without a fixture."""
     if row.row["state"] != "held":
         return None
     name = re.sub(r"[^\w.-]+", "_", f"{Path(row.row['part']).stem} in {row.job.held_in.name}")[:LONGEST_NAME]

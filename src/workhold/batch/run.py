@@ -118,13 +118,7 @@ class Part:
 
 
 def reading_of(request: Request) -> Reading:
-    """The task that reads a part.
-
-    Raises
-    ------
-    InputError
-        When its file cannot be opened.
-    """
+    """The task that reads a part."""
     path = request.listed.path
     content = read_bytes(path)
     ending = Path(path).suffix.lower()
@@ -218,14 +212,8 @@ class BatchRun:
     ) -> tuple[dict[str, Outcome], int]:
         """Does the tasks of items that are not done, longest first, each name once.
 
-        Returns
-        -------
-        The outcome of each task that was done now, by its name, and how many were done before.
-
-        Raises
-        ------
-        InputError
-            When a record cannot be kept.
+        Returns the outcome of each task that was done now, by its name, and how many were done before.
+        Refuses to go on when a record cannot be kept.
         """
         by_name: dict[str, T] = {}
         for item in items:

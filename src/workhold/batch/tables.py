@@ -78,7 +78,6 @@ class JobRow:
 
 
 def job_rows(jobs: Sequence[Job], store: Store, measured: Measured) -> Iterator[JobRow]:
-    """The rows of jobs, in their order."""
     for job in jobs:
         part, query = job.part, job.held_in.query
         listed = part.request.listed
@@ -169,13 +168,7 @@ def table_names() -> tuple[str, str]:
 
 
 def write_tables(rows: Iterator[JobRow], folder: Path) -> Iterator[JobRow]:
-    """Writes both tables of a folder and passes the rows on; files take their names at the end.
-
-    Raises
-    ------
-    InputError
-        When a table cannot be written.
-    """
+    """Writes both tables of a folder and passes the rows on; files take their names at the end."""
     table = parquet_table if has_parquet() else csv_table
     with ExitStack() as files:
         add_results, add_best = (

@@ -109,13 +109,7 @@ class Task:
         raise NotImplementedError
 
     def record(self) -> bytes:
-        """Does the work.
-
-        Raises
-        ------
-        InputError
-            For what cannot be read or asked.
-        """
+        """Does the work; refuses what cannot be read or asked."""
         raise NotImplementedError
 
 
@@ -280,10 +274,7 @@ class UnfitWorkerError(WorkholdError):
 def make_ready(task: Task) -> None:
     """Prepare for a task.
 
-    Raises
-    ------
-    UnfitWorkerError
-        When the worker has another program, or lacks something.
+    Raises UnfitWorkerError when the worker has another program, or lacks something.
     """
     if task.program != program():
         raise UnfitWorkerError(

@@ -49,7 +49,6 @@ def memory_share(workers: int) -> int:
 
 
 def worker(connection: Connection, memory_bytes: int) -> None:
-    """The main function of a worker."""
     worker_main(connection, memory_bytes, {"task": lambda task, _: done(task)}, lambda: None)
 
 
@@ -204,13 +203,7 @@ class LocalWorkers:
         self.watcher.ended(one.title)
 
     def refuse_failed_starts(self, one: Worker) -> None:
-        """Raises an error when one worker after the other ends before it is ready.
-
-        Raises
-        ------
-        InputError
-            With what ended the last of them.
-        """
+        """Raises an error when one worker after the other ends before it is ready."""
         self.failed_starts += 1
         if self.failed_starts >= MOST_FAILED_STARTS:
             raise InputError(
