@@ -324,10 +324,8 @@ def draw_inset(
 ) -> None:
     """Draws the unturned part with its touched faces and contacts into a page box.
 
-    Parameters
-    ----------
-    zero : part zero in the part's coordinates, mm, to mark where it lies within the part's extent; holes are
-        numbered too.
+    Part zero, in the part's coordinates in mm, is marked where it lies within the part's extent; holes are
+    numbered too then.
     """
     if box.height < LOWEST:
         return

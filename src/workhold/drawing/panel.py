@@ -313,12 +313,10 @@ WORDS = 11.5
 
 
 def peg(scene: Scene, at: Point) -> None:
-    """Draws a peg."""
     scene.circle(at, 7, PEG_FILL, BLACK, 1.2)
 
 
 def hole(scene: Scene, at: Point) -> None:
-    """Draws an empty hole."""
     scene.circle(at, 7, "#ffffff", GREY, 0.9)
 
 
@@ -333,7 +331,6 @@ def line(scene: Scene, at: Point) -> None:
 
 
 def wall(scene: Scene, at: Point) -> None:
-    """Draws a piece of a wall."""
     draw_wall(scene, Box(at[0] - 15, -at[1] - 6, at[0] + 16, -at[1] + 3), View(1.0, 0.0, 0.0))
 
 
@@ -345,7 +342,6 @@ def force(scene: Scene, at: Point) -> None:
 
 
 def face(scene: Scene, at: Point) -> None:
-    """Draws a face that is touched."""
     ends = [(at[0] - 15, at[1]), (at[0] + 16, at[1])]
     scene.line(ends, TOUCHED, 8)
     scene.line(ends, BLACK, 2.2)

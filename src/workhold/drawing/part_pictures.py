@@ -90,7 +90,6 @@ def draw_header(scene: Scene, page: tuple[float, float], name: str, words: str) 
 
 
 def part_words(workpiece: Workpiece, bounds: Box, peg_radius: float | None, lengths: LengthUnit) -> str:
-    """What the part is, and what is drawn of it."""
     faces, holes = len(workpiece.faces), len(workpiece.hole_segments)
     words = [plural(faces, "face"), plural(holes, "hole") if holes else "no holes"]
     words.append(f"{lengths.number(bounds.width)} × {lengths.words(bounds.height)}")
@@ -156,7 +155,6 @@ def draw_leader(scene: Scene, place: Place) -> None:
 
 
 def write_number(scene: Scene, place: Place, number: int, size: float) -> None:
-    """Writes a number in a frame with round ends."""
     scene.rectangle(place.box, "#ffffff", LEADER, 0.9, place.box.height / 2)
     scene.text(place.box.center, str(number), size, "middle", bold=True)
 

@@ -84,7 +84,6 @@ def bounds_of(program: Program, workpiece: Workpiece | None) -> Box:
 
 
 def draw_zero(scene: Scene, at: tuple[float, float]) -> None:
-    """Draws the program's X0 Y0 with its axes."""
     group = scene.group("program-zero")
     x, y = at
     group.arrow((x, y), (x + 34, y), BLACK, 1.4, 8)
@@ -124,7 +123,6 @@ def draw_legend(scene: Scene, program: Program, lengths: LengthUnit, box: Box) -
 
 
 def write_program(column: TextColumn, sheet: Sheet) -> None:
-    """Writes the program of a setup sheet."""
     details = sheet.details
     assert details.program is not None
     heading(column, "Program")
@@ -142,12 +140,7 @@ def write_program(column: TextColumn, sheet: Sheet) -> None:
 
 
 def write_path(column: TextColumn, path: PlannedPath, lengths: LengthUnit, fill: str = BLACK) -> None:
-    """Writes where a program runs, its tools in their colours with their lines, and where they come nearest.
-
-    Parameters
-    ----------
-    fill : colour of the words.
-    """
+    """Writes where a program runs, its tools in their colours with their lines, and where they come nearest."""
     program = path.program
     x, y = program.zero
     name = shortened(program.name, BODY, 0.75 * column.width, bold=True)

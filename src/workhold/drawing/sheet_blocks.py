@@ -211,7 +211,6 @@ def blocks_of(sheet: Sheet) -> tuple[list[Block], list[Block]]:
 
 
 def write_title(column: TextColumn, sheet: Sheet) -> None:
-    """Writes which fixture of which part this is."""
     size = next(
         (s for s in NAME_SIZES if text_width(sheet.name, s, bold=True) <= column.width), NAME_SIZES[-1]
     )
@@ -230,7 +229,6 @@ def write_title(column: TextColumn, sheet: Sheet) -> None:
 
 
 def write_zero(column: TextColumn, sheet: Sheet) -> None:
-    """Writes part zero, its place, the part's turn, and the lines to program a control with."""
     zero, lengths = sheet.zero, sheet.lengths
     (x, y), turn = sheet.zero_place, sheet.fixture.pose.written_deg
     heading(column, "Part zero X0 Y0 and angle")
@@ -264,14 +262,12 @@ def write_zero(column: TextColumn, sheet: Sheet) -> None:
 
 
 def write_cautions(column: TextColumn, sheet: Sheet) -> None:
-    """Writes what to beware of, each behind a sign."""
     heading(column, "Beware")
     for caution in sheet.cautions:
         column.item("▲", caution.sentence, BODY)
 
 
 def write_steps(column: TextColumn, sheet: Sheet) -> None:
-    """Writes what to do, in order."""
     heading(column, "Setting up")
     given = "as given under part zero X0 Y0, or touch off the part there"
     zero = f"Set the machine's zero, G54, from {sheet.datum.name} {given}."
@@ -281,7 +277,6 @@ def write_steps(column: TextColumn, sheet: Sheet) -> None:
 
 
 def write_legend(column: TextColumn, sheet: Sheet) -> None:
-    """Explains the signs of the plan."""
     heading(column, "Signs")
     of_supports = ((draw_pad, "support below the part"), (draw_tip, "clamp on top, presses down"))
     draw_legend(column, sheet.toolkit, BLACK, of_supports if sheet.details.supports is not None else ())

@@ -83,7 +83,6 @@ def peg_size(sheet: Sheet, carrier: Carrier) -> str:
 
 
 def write_flush(column: TextColumn, sheet: Sheet, wall: Carrier) -> None:
-    """Writes where the part lies flush on a wall, and how far the plate is from it."""
     plate, edge = sheet.toolkit.plates[0], sheet.datum.edge
     ends = list(dict.fromkeys(peg.touching for peg in sheet.fixture.pegs if peg.carrier == wall.name))
     lies = f"with {ends[0]}" if len(ends) == 1 else f"from {ends[0]} to {ends[1]}"
@@ -118,7 +117,6 @@ def touch_words(sheet: Sheet) -> str:
 
 
 def write_opening(column: TextColumn, sheet: Sheet) -> None:
-    """Writes the opening and how to measure it."""
     fixture, toolkit, lengths = sheet.fixture, sheet.toolkit, sheet.lengths
     first, moving = toolkit.plates[0], toolkit.moving
     heading(column, f"Opening S of the {moving.noun}s")
@@ -178,7 +176,6 @@ def clamp_writers(sheet: Sheet) -> list[Writer]:
 
 
 def write_clamp(column: TextColumn, sheet: Sheet, setting: LengthSetting, share: float) -> None:
-    """Writes a clamp's place, its direction, its stroke and its share of the force."""
     clamp, lengths = setting.carrier, sheet.lengths
     heading(column, f"{setting.label} {setting.place}")
     column.words(lengths.words(setting.length), 28 if sheet.is_closed_at_once else 22, bold=True, gap=0.4)
@@ -207,7 +204,6 @@ def needed_force(sheet: Sheet) -> float:
 
 
 def write_order(column: TextColumn, sheet: Sheet) -> None:
-    """Writes in which order two clamps are tightened, and in which ratio."""
     fixture, (first, second) = sheet.fixture, clamp_names(sheet.fixture)
     heading(column, "Order of tightening")
     column.paragraph(order_words(fixture), BODY, bold=True)
@@ -263,7 +259,6 @@ CLAMPS = MovingBlocks(clamp_writers, clamp_steps)
 
 
 def write_counting(column: TextColumn, sheet: Sheet) -> None:
-    """Writes how holes are counted."""
     heading(column, "Counting holes")
     several = len(sheet.toolkit.plates) > 1
     (write_jaws if several else write_plate)(column, sheet)

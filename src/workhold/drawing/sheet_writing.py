@@ -115,10 +115,7 @@ def heights_of(
 ) -> SheetHeights | None:
     """The heights of a set-up; None where nobody knows how thick the part is.
 
-    Raises
-    ------
-    InputError
-        For pegs that end below the part.
+    Refuses pegs that end below the part.
     """
     solid, supports = workpiece.solid, details.supports
     thickness = details.thickness

@@ -182,7 +182,6 @@ def write_supports(column: TextColumn, sheet: Sheet) -> None:
 
 
 def write_forces(column: TextColumn, sheet: Sheet, chosen: ChosenSupports) -> None:
-    """Writes the force wanted of the clamp on top and the largest on a support, or a line to write it on."""
     supports, clamp, unit = chosen.supports, chosen.clamp, sheet.lengths.unit
     noun = sheet.toolkit.moving.noun
     if supports.loads:

@@ -61,7 +61,6 @@ def write_side(column: TextColumn, sheet: Sheet) -> None:
 
 
 def write_part(column: TextColumn, sheet: Sheet) -> None:
-    """Draws the part as it was drawn."""
     x0, y0, x1, y1 = sheet.workpiece.bounds
     height = INSET_ROOM + min(HIGHEST_INSET, column.width * min(TALLEST_INSET, (y1 - y0) / (x1 - x0)))
     height = max(height, LOWEST)
@@ -91,7 +90,6 @@ class Mark:
     bend: int
 
     def is_like(self, other: Mark) -> bool:
-        """Whether the two look the same."""
         sizes = ((self.length, other.length), (self.radius, other.radius))
         return self.bend == other.bend and all(abs(a - b) <= SEEN * max(a, b) for a, b in sizes)
 
