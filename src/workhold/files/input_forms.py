@@ -179,13 +179,7 @@ WANTED = {
 
 
 def checked_toolkit(content: Mapping[str, Any]) -> dict[str, Any]:
-    """The entries of a toolkit's file that are given, each of the type it should have.
-
-    Raises
-    ------
-    InputError
-        Naming the first entry that is not of this shape.
-    """
+    """The entries of a toolkit's file that are given, each of the type it should have."""
     kind = content.get("kind", USUAL)
     noun = table_of(kind_of(kind)[0] if isinstance(kind, str) else None).noun
     try:
@@ -233,13 +227,7 @@ class WorkpieceFile(BaseModel):
 
 
 def checked_workpiece(content: dict[str, Any]) -> dict[str, Any]:
-    """Name (None when there is none), units and loops of a workpiece, each of the type it should have.
-
-    Raises
-    ------
-    InputError
-        Naming the place of the first thing that is not of this shape.
-    """
+    """Name (None when there is none), units and loops of a workpiece, each of the type it should have."""
     try:
         return WorkpieceFile.model_validate(content).model_dump()
     except ValidationError as error:

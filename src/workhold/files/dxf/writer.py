@@ -157,7 +157,6 @@ def layers_of(toolkit: Toolkit) -> dict[str, int]:
 
 
 def add_part(space: Modelspace, part: Workpiece) -> None:
-    """Adds the loops of the part in its pose."""
     number = 0
     for loop in part.loops:
         face = next(face for face in part.faces if number in face.segments)
@@ -216,7 +215,6 @@ def add_outline(space: Modelspace, outline: Sequence[Segment], layer: str) -> No
 
 
 def add_text(space: Modelspace, words: str, at: Point, seen: Shown) -> None:
-    """Adds a line of text about a point."""
     text = space.add_text(words, height=TEXT_HEIGHT * seen.pitch, dxfattribs={"layer": "TEXT"})
     text.set_placement(at, align=TextEntityAlignment.MIDDLE_CENTER)
 

@@ -153,11 +153,6 @@ def refuse_loops_across(part: DrawnPart, others: Sequence[DrawnPart], budget: Bu
     """Refuses a part that loops of other parts cross or touch: holes that were drawn half outside.
 
     Another outline may lie along its own, on the other side: neighbours of a nest that share a cut.
-
-    Raises
-    ------
-    InputError
-        Naming both segments and the point; also where time is up.
     """
     budget = budget or Budget(UNLIMITED)
     comparisons = Comparisons("the part")
@@ -205,10 +200,7 @@ def overlap(a: Sequence[float], b: Sequence[float]) -> bool:
 
 
 def chosen_part(parts: Sequence[DrawnPart], number: int | str | None) -> DrawnPart:
-    """The part of a number, or the largest.
-
-    Raises InputError when there is no part of that number, and for a name.
-    """
+    """The part of a number, or the largest; refuses a number of no part, and a name."""
     if number is None:
         return parts[0]
     if isinstance(number, str):

@@ -81,19 +81,11 @@ class Outlines:
 
 
 def outlines_of(chains: Sequence[Chain], tolerance: float, drawing: Drawing, budget: Budget) -> Outlines:
-    """The outlines that chains make.
+    """The outlines that chains make, in mm and without segments of zero length.
 
-    Parameters
-    ----------
-    chains : in mm, without segments of zero length.
-    tolerance : largest gap to close, in mm.
-    drawing : that they are of, for the layers and the looks of lines.
-    budget : what reading the file may still take.
-
-    Raises
-    ------
-    InputError
-        Where the tolerance cannot be meant, and where time is up.
+    Gaps up to the tolerance in mm are closed. The drawing is the one that they are of, for the layers and the
+    looks of lines, and ``budget`` what reading the file may still take. Refuses a tolerance that cannot be
+    meant.
     """
     joined = join(chains, tolerance, budget)
     remarks = list(joined.remarks)
@@ -278,11 +270,8 @@ def spots_once(spots: Sequence[BadSpot]) -> list[BadSpot]:
 def chosen_outline(outlines: Outlines, number: int | str | None) -> DrawnPart:
     """The part of a number, or the largest that can be told.
 
-    Raises
-    ------
-    InputError
-        Where there is none, where a bad spot lies in it, and where something larger that cannot be told may
-        be meant.
+    Refuses where there is none, where a bad spot lies in it, and where something larger that cannot be told
+    may be meant.
     """
     parts, spots = outlines.parts, outlines.spots
     if number is not None or not spots:
@@ -329,7 +318,6 @@ def spot_remarks(outlines: Outlines) -> list[str]:
 
 
 def shared_remarks(one: Cluster) -> list[str]:
-    """What to say of outlines that share lines."""
     if len(one.faces) < 2:
         return []
     places = listed([f"{label} from {at(start)} to {at(end)}" for label, start, end in one.shared])
@@ -348,18 +336,15 @@ def doubled_places(one: Cluster) -> list[str]:
 
 
 def stray_of(chain: Chain) -> Stray:
-    """An open piece."""
     return Stray(chain, without_segment(chain.labels[0]), without_segment(chain.labels[-1]))
 
 
 def chain_of(loop: Loop) -> Chain:
-    """A loop as a closed chain."""
     points = [(float(x), float(y)) for x, y in loop.vertices[:, :2]]
     return Chain((*points, points[0]), tuple(loop.vertices[:, 2].tolist()), loop.labels)
 
 
 def box_of(loop: Loop) -> tuple[float, float, float, float]:
-    """The bounding box of a loop."""
     return box_around(chain_of(loop).segments)
 
 

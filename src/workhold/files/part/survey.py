@@ -230,15 +230,8 @@ def survey(path: Path, *, called: Mapping[str, str] | None = None, **options: An
 def seen(told: Survey, path: Path, content: bytes, unit: str | None, options: Mapping[str, Any]) -> Survey:
     """A survey with what is drawn in the file, for which it is read again.
 
-    Parameters
-    ----------
-    unit : in which it is read, where its own is asked.
-    options : as in :func:`survey`.
-
-    Raises
-    ------
-    OverBudgetError
-        Where that takes too much.
+    It is read in ``unit`` where its own is asked; options are those of :func:`survey`. Raises OverBudgetError
+    where that takes too much.
     """
     kind = ""
     with suppress(InputError):
@@ -276,9 +269,8 @@ def seen(told: Survey, path: Path, content: bytes, unit: str | None, options: Ma
 
 @contextmanager
 def going_on() -> Iterator[None]:
-    """Passes over what is refused, but not over what takes too much: that is not tried once more.
-
-    Raises OverBudgetError then.
+    """Passes over what is refused, but not over what takes too much: an OverBudgetError is not tried once
+    more.
     """
     try:
         yield

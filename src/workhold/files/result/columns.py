@@ -90,13 +90,7 @@ class ColumnsSink:
 
 
 def write_columns(result: Result, path: str | Path) -> None:
-    """Writes a result file in columns; an earlier file of that name is replaced only when all went well.
-
-    Raises
-    ------
-    InputError
-        When the file cannot be written.
-    """
+    """Writes a result file in columns; an earlier file of that name is replaced only when all went well."""
     ColumnsSink(Path(path)).receive(result, len(result), [result.table])
 
 
@@ -166,13 +160,7 @@ class MappedTable(FixtureTable):
 
 
 def read_columns(path: Path) -> Result:
-    """The result of a file in columns, of which only the head and the fixtures' types are read yet.
-
-    Raises
-    ------
-    InputError
-        See :func:`read_result`.
-    """
+    """The result of a file in columns, of which only the head and the fixtures' types are read yet."""
     text, columns = mapped_archive(path, columns_said, HEAD)
     try:
         data = head_value(text)

@@ -297,13 +297,7 @@ class Head(FormPart):
     )
 
     def asked_toolkit(self) -> Toolkit:
-        """The toolkit.
-
-        Raises
-        ------
-        InputError
-            When there is no such toolkit, none at all, or two.
-        """
+        """The toolkit; refuses a head that has none at all, or two."""
         if self.vise is not None and self.toolkit is not None:
             raise InputError("it has the keys vise and toolkit, of which only one can be.")
         if self.vise is not None:
@@ -351,12 +345,8 @@ class Head(FormPart):
         )
 
     def asked_program(self) -> Program | None:
-        """The program that fixtures are to let pass.
-
-        Raises
-        ------
-        InputError
-            When it lacks something, or holds what cannot be.
+        """The program that fixtures are to let pass; refuses one that lacks something, or holds what cannot
+        be.
         """
         if self.program is None:
             return None

@@ -60,13 +60,7 @@ AT_ONCE = 2000
 
 
 def write_result(result: Result, path: str | Path) -> None:
-    """Writes a result file (MODEL, "Result file"), whole or not at all.
-
-    Raises
-    ------
-    InputError
-        When the file cannot be written.
-    """
+    """Writes a result file (MODEL, "Result file"), whole or not at all."""
     with text_file(path) as stream:
         stream.writelines(result_text(result))
 

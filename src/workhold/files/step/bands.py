@@ -126,9 +126,7 @@ def along(segment: Segment, points: NDArray[np.float64]) -> NDArray[np.float64]:
 def branches_of(places: NDArray[np.float64], cuts: frozenset[int] | tuple[()]) -> Iterator[tuple[int, int]]:
     """The numbers (first, last) of the points of each branch of an edge.
 
-    Parameters
-    ----------
-    cuts : numbers of points at which a branch ends in any case.
+    At the points that ``cuts`` numbers a branch ends in any case.
     """
     steps = np.diff(places)
     first, way = 0, 0.0
@@ -238,15 +236,10 @@ class Conic:
         return cls((place.X(), place.Y(), place.Z()), along, across)
 
     def height_at(self, carrier: Segment, place: float, first: float, last: float) -> float | None:
-        """The z in mm at which it passes a place on a carrier, between two parameters less than half a turn apart.
+        """The z in mm at which it passes a place on a carrier, between two parameters less than half a turn
+        apart.
 
-        Parameters
-        ----------
-        place : in mm on a line, in radians on a circle.
-
-        Returns
-        -------
-        None where there is none between them.
+        The place is in mm on a line and in radians on a circle. None where it is not passed between them.
         """
         if isinstance(carrier, Line):
             (px, py), (nx, ny), off = carrier.middle, carrier.tangent, place

@@ -98,7 +98,6 @@ def solid_faces(shape: Any) -> list[SolidFace]:
 
 
 def solid_face(face: Any) -> SolidFace:
-    """Look at one face."""
     low, high = bounding_box(face)
     written, surface = occ.BRepAdaptor_Surface(face), surface_of(face)
     lie = lie_of(surface, 2)

@@ -92,10 +92,7 @@ def remedy(error: ImportError) -> str:
 def guarded(read: Callable[[], T], *further: type[Exception]) -> T:
     """What some reading returns; ``further`` are errors that come of a damaged file as well.
 
-    Raises
-    ------
-    InputError
-        Its own, and one where the library or the arithmetic after it fails over what it was given.
+    Refuses what the library, or the arithmetic after it, fails over.
     """
     try:
         return read()

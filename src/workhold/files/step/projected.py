@@ -99,9 +99,7 @@ def projected_curves(
 ) -> ProjectedCurves:
     """Every curve that can bound the projection of the slab between two z in mm.
 
-    Parameters
-    ----------
-    folds_of : the folds of the face of a number, see :func:`folds`; they are the same for all slabs.
+    ``folds_of`` gives the folds of the face of a number, see :func:`folds`; they are the same for all slabs.
     """
     segments: list[Segment] = []
     cuts: list[tuple[Segment, Point]] = []
@@ -483,16 +481,8 @@ def refuse_others(
     """Refuses a curve that is neither line nor arc where material lies on one side of it only.
 
     The points farthest out are looked at first: where there is such a curve, it is most likely there.
-
-    Parameters
-    ----------
-    inside : which of some points (x, y) belong to the outline's region.
-    plain : lines and arcs that may be the border in its place.
-
-    Raises
-    ------
-    OtherCurveError
-        Naming the face.
+    ``inside`` says which of some points (x, y) belong to the outline's region; ``plain`` has lines and arcs
+    that may be the border in its place. The error is an OtherCurveError that names the face.
     """
     if not others:
         return
@@ -521,10 +511,7 @@ def border_places(
 ) -> NDArray[np.float64]:
     """Points (N, 2) of a curve at which it has the region on one side only; none is an end of it.
 
-    Parameters
-    ----------
-    points : (N, 2) along the curve, in mm.
-    looked : numbers of the points at which it is looked at.
+    Of points (N, 2) along the curve, in mm, those that ``looked`` numbers are looked at.
     """
     steps = points[looked + 1] - points[looked - 1]
     sizes = np.hypot(*steps.T)

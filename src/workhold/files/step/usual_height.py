@@ -76,10 +76,8 @@ def usual_height(
 ) -> UsualHeight:
     """How high pegs of a diameter reach beside a solid, no higher than they must; lengths in mm.
 
-    Parameters
-    ----------
-    rows : what other heights offer; of a prism they are not looked at.
-    room, least : what is kept free above the pegs, and the shortest band that may be touched.
+    ``rows`` are what other heights offer; of a prism they are not looked at. ``room`` is what is kept free
+    above the pegs, and ``least`` the shortest band that may be touched.
     """
     top = solid.height
     enough = SHARE * max((row.touchable for row in rows), default=0.0)
