@@ -221,13 +221,7 @@ def requests_of(
     reading: PartWords,
     folder: Path,
 ) -> list[Request]:
-    """Lists what is asked of each part, in the order of the command line.
-
-    Raises
-    ------
-    InputError
-        For words that mean nothing, parts that do not exist, and jobs without a toolkit.
-    """
+    """Lists what is asked of each part, in the order of the command line."""
     from workhold.cli.jobs import JOB_ENDINGS, read_jobs
 
     lists = varied.has_pitches or toolkit is not None
@@ -262,14 +256,7 @@ def requests_of(
 def requests_in(
     toolkits: Sequence[Named], parts: Sequence[str], words: AskedWords, reading: PartWords, folder: Path
 ) -> list[Request]:
-    """Lists what is asked of some parts, each of which is read once and held in all of some toolkits.
-
-    Raises
-    ------
-    InputError
-        For words that mean nothing, parts that do not exist, and toolkits that differ in the heights of a
-        carrier.
-    """
+    """Lists what is asked of some parts, each of which is read once and held in all of some toolkits."""
     from workhold.batch.run import ANY_PART, HeldIn, Request
     from workhold.files.part_list import part_list
 
@@ -304,13 +291,7 @@ def asked_toolkits(
     varied: ListWords,
     reading: PartWords,
 ) -> list[Named]:
-    """Lists the toolkits of names, files and lists; of several names one may be a kind.
-
-    Raises
-    ------
-    InputError
-        See :func:`workhold.cli.toolkit_lists.toolkits_to_try`.
-    """
+    """Lists the toolkits of names, files and lists; of several names one may be a kind."""
     from workhold.fixels.kinds import ALIASES, KINDS
 
     words = [word for text in names or () for word in words_of("--toolkit", text)]
@@ -329,13 +310,7 @@ def asked_toolkits(
 
 
 def asked_of(words: AskedWords, reading: PartWords) -> dict[str, Any]:
-    """Keyword arguments of a query.
-
-    Raises
-    ------
-    InputError
-        For words that mean nothing.
-    """
+    """Keyword arguments of a query."""
     wishes, seated_by, machined = words
     unit, has_program = length_unit(reading.unit), machined.program is not None
     asked = wishes.asked(unit, has_program, machined.has_forces) | seated_by.asked(unit)
@@ -353,13 +328,7 @@ def run_sentence(done: Batch, spent: float) -> str:
 def write_all(
     done: Batch, store: Store, measured: Measured, folder: Path, spent: float, events: list[str], sheets: bool
 ) -> Report:
-    """Writes tables, report and, where asked for, sheets.
-
-    Raises
-    ------
-    InputError
-        When they cannot be written.
-    """
+    """Writes tables, report and, where asked for, sheets."""
     from workhold.batch.report import Summary, write_results
     from workhold.version import __version__
 

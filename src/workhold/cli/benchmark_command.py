@@ -86,13 +86,7 @@ def benchmark(
 
 
 def chosen_sets(words: Sequence[str]) -> list[SetEntry]:
-    """The sets that words name: by name, by workpiece, or by what a name contains; all of them without words.
-
-    Raises
-    ------
-    InputError
-        For a word that names none.
-    """
+    """The sets that words name: by name, by workpiece, or by what a name contains; all of them without words."""
     from workhold.benchmark.catalogue import set_named, sets
 
     every, chosen = sets(), set[str]()
@@ -118,7 +112,6 @@ def list_sets(chosen: Sequence[SetEntry], as_json: bool) -> None:
 
 
 def set_data(entry: SetEntry) -> dict[str, Any]:
-    """A set as an object of JSON."""
     return {
         "name": entry.name,
         "workpiece": entry.part,

@@ -194,7 +194,6 @@ def pitch_words(pitch: tuple[float, float], unit: Unit) -> str:
 
 
 def limits_words(limits: Limits, unit: Unit) -> str:
-    """Two limits of a diameter."""
     return f"{unit.number(limits[0])} to {unit.text(limits[1])}"
 
 
@@ -275,11 +274,6 @@ def list_layers(part: str, reading: PartWords, unit: Unit, as_json: bool) -> Non
     """Prints the layers of a DXF file.
 
     In JSON sizes are in mm where the unit is known, else in units of the drawing.
-
-    Raises
-    ------
-    InputError
-        For other files.
     """
     from workhold.files.part.survey import drawn_layers
 
@@ -306,13 +300,7 @@ def list_layers(part: str, reading: PartWords, unit: Unit, as_json: bool) -> Non
 
 
 def list_solids(part: str, unit: Unit, as_json: bool) -> None:
-    """Prints the solids of a STEP file.
-
-    Raises
-    ------
-    InputError
-        For a file that cannot be read.
-    """
+    """Prints the solids of a STEP file."""
     from workhold.cli.tables import solid_table
     from workhold.files.part.loaded import solids_in
 
@@ -324,7 +312,6 @@ def list_solids(part: str, unit: Unit, as_json: bool) -> None:
 
 
 def list_parts(loaded: Loaded, unit: Unit, picture: Path | None, as_json: bool) -> None:
-    """Prints the parts of a file, and draws them."""
     table = Table(
         (">part", f">width {unit.abbreviation}", f">height {unit.abbreviation}", ">holes", "lowest corner")
     )

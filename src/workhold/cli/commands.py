@@ -191,7 +191,6 @@ def restore_hyphens(formatter: Any) -> None:
 
 
 def write_text(command: Any, formatter: Any) -> None:
-    """Writes the text of a command's help."""
     formatter.write_paragraph()
     with formatter.indentation():
         formatter.write_text(unbroken(cleandoc(command.help or "")))

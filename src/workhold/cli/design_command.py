@@ -225,12 +225,7 @@ def as_many_as_asked(
     """Returns the query, or one for the best fixtures where there are very many, and about how many these
     are.
 
-    A remark says so before the search.
-
-    Raises
-    ------
-    InputError
-        For all of very many without a file that can carry them.
+    A remark says so before the search. Refuses all of very many without a file that can carry them.
     """
     from workhold.limits import thread_count
     from workhold.model.search_report import round_to_two_digits

@@ -321,13 +321,7 @@ def write_all(
 
 
 def loss_of(text: str) -> float:
-    """Reads a largest loss.
-
-    Raises
-    ------
-    InputError
-        For what is no number from 1 upward.
-    """
+    """Reads a largest loss; refuses what is no number from 1 upward."""
     value = number(text)
     if not (isfinite(value) and value >= 1.0):
         raise InputError(
@@ -337,13 +331,7 @@ def loss_of(text: str) -> float:
 
 
 def threshold_of(text: str) -> Threshold:
-    """Reads a threshold from words such as ``location-error=0.05``.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
+    """Reads a threshold from words such as ``location-error=0.05``."""
     from workhold.family.members import threshold
 
     name, equals, value = text.partition("=")

@@ -47,12 +47,8 @@ def progress_bar(
     """A progress bar on stderr, as a function of the fraction done and a count; quiet in a pipe.
 
     It appears when there is progress after a moment, so that what is done at once is not kept waiting for it.
-
-    Parameters
-    ----------
-    doing : what is being done.
-    counted : what the count is of, the word behind the number.
-    first : what is said until the first progress; the bar appears with it at once.
+    ``doing`` is what is being done, ``counted`` the word behind the number, and ``first`` what is said until
+    the first progress; the bar appears with it at once.
     """
     if not sys.stderr.isatty():
         yield lambda fraction, count: None

@@ -127,7 +127,6 @@ def verify(
 
 
 def print_supports(outcome: Verification, count: int, seconds: float, as_json: bool) -> None:
-    """Prints what is shown of a file of supports."""
     if as_json:
         from workhold.presenting.data import verification_data
 
@@ -163,7 +162,6 @@ def scope(outcome: Verification, asked: bool, listing: Listing) -> list[str]:
 
 
 def summary(outcome: Verification) -> str:
-    """Says how many fixtures are proven, refuted and undecided."""
     return (
         f"{plural(outcome.fixtures, 'fixture')}: {outcome.proven} proven, {outcome.refuted} refuted, "
         f"{outcome.undecided} undecided at {outcome.bits} bits"

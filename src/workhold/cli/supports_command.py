@@ -210,10 +210,7 @@ def supports(
 def asked_thickness(wanted: bool, text: str | None, workpiece: Workpiece, unit: Unit) -> float | None:
     """How thick a part is in mm, where supports are wanted: as it is said, or as its solid is high.
 
-    Raises
-    ------
-    InputError
-        Where nobody knows, or it is said of a solid without supports.
+    Refuses where nobody knows, or it is said of a solid without supports.
     """
     if not wanted:
         if text is not None and workpiece.solid is not None:
@@ -269,13 +266,7 @@ def before_first(listed: Sequence[Triple]) -> list[str]:
 
 
 def lengths(name: str, text: str, mark: str, count: int, unit: Unit) -> tuple[float, ...]:
-    """Some lengths in mm with a mark between them.
-
-    Raises
-    ------
-    InputError
-        When there are more or fewer.
-    """
+    """Some lengths in mm with a mark between them."""
     words = text.split(mark)
     if len(words) != count:
         raise InputError(f"{name} {text!r} cannot be used: give {count} lengths with {mark!r} between them.")

@@ -52,7 +52,6 @@ class Table:
     spare: int = 0
 
     def add_row(self, *words: str) -> None:
-        """Adds a row at the end."""
         self.rows.append(words)
 
     def lines(self) -> list[str]:
@@ -151,7 +150,6 @@ def narrowed(widths: list[int], least: list[int], over: int) -> list[int]:
 
 
 def total(widths: list[int], gap: int) -> int:
-    """The width of a table in characters."""
     return sum(widths) + gap * (len(widths) - 1)
 
 

@@ -99,9 +99,7 @@ def unfit_sentence(unfit: int) -> str:
 def proof_sentences(result: Result, written: str | None = None) -> list[str]:
     """Says in a line how the search was proven, and below it names the first undecided candidates.
 
-    Parameters
-    ----------
-    written : the name of the JSON file that lists all of them, if there is one.
+    ``written`` is the name of the JSON file that lists all of them, if there is one.
     """
     proof = result.proof
     if proof is None:
@@ -189,13 +187,11 @@ def quality_table(
     jaw_force: float | None = None,
     longest: float = inf,
 ) -> Table:
-    """Tabulates the figures of quality of a fixture, and their meaning where ``mover`` (such as a jaw)
-    presses.
+    """Tabulates the figures of quality of a fixture, and their meaning where ``mover`` presses, such as a
+    jaw.
 
-    Parameters
-    ----------
-    jaw_force : in N, at which pegs bend; None where it is not known.
-    longest : the edge distance that stands for none, see :func:`no_edge`.
+    Pegs bend at a jaw force in N, None where it is not known. ``longest`` is the edge distance that stands
+    for none, see :func:`no_edge`.
     """
     from workhold.model.quality import FIGURES, PIN_KEYS, PROGRAM_FIGURE
     from workhold.statics.bent_pegs import at_force
@@ -397,9 +393,7 @@ def slides_always(workpiece: Workpiece, rows: Sequence[HeightRow]) -> list[str]:
 def other_heights(workpiece: Workpiece, rows: Sequence[HeightRow], unit: Unit) -> list[str]:
     """What may help where pegs as high as these hold a solid nowhere: other heights, and the other side up.
 
-    Parameters
-    ----------
-    rows : what other heights of the pegs offer; those with more to touch are named first.
+    ``rows`` are what other heights of the pegs offer; those with more to touch are named first.
     """
     solid = workpiece.solid
     if solid is None:

@@ -120,10 +120,7 @@ def query_of(workpiece: Workpiece, named: Named, asked: dict[str, Any]) -> Query
 def heights_of_all(toolkits: Sequence[Named]) -> dict[str, tuple[float, ...]]:
     """Finds the heights of carriers, by role, with which one reading of a part serves all toolkits.
 
-    Raises
-    ------
-    InputError
-        For toolkits that differ in the heights of a role.
+    Refuses toolkits that differ in the heights of a role.
     """
     from workhold.fixels.kinds import toolkit_of
 
@@ -158,17 +155,9 @@ def toolkits_to_try(
 ) -> list[Named]:
     """Lists the toolkits to try.
 
-    Parameters
-    ----------
-    names : names and files with commas between them, or None.
-    toolkit : one more of them, or a kind.
-    varied : the lists of figures, which are combined with each other and with each toolkit.
-    unit : of lengths without one.
-
-    Raises
-    ------
-    InputError
-        For words that mean nothing, lists that do not make a toolkit, and more than a thousand toolkits.
+    ``names`` are names and files with commas between them, and ``toolkit`` is one more of them, or a kind.
+    ``varied`` are the lists of figures, which are combined with each other and with each toolkit. The unit is
+    of lengths without one. Refuses lists that do not make a toolkit, and more than a thousand toolkits.
     """
     from workhold.fixels.kinds import ALIASES, KINDS, USUAL, kind_of, table_of
 
@@ -202,10 +191,7 @@ def named_toolkits(
 ) -> list[Named]:
     """Loads the toolkits that are named, or all presets that have every field that is varied.
 
-    Raises
-    ------
-    InputError
-        For names and files that are none, fields that a named toolkit does not have, and where none is left.
+    Refuses fields that a named toolkit does not have, and fields that none is left with.
     """
     from workhold.files.toolkit_file import load_toolkit, preset_names
     from workhold.fixels.kinds import table_of
@@ -240,13 +226,7 @@ def unknown_fields(table: FieldTable, given: list[tuple[ToolkitField, str]]) -> 
 
 
 def refuse_missing_fields(table: FieldTable, given: list[tuple[ToolkitField, str]]) -> None:
-    """Refuses to vary a field that a kind of toolkit does not have.
-
-    Raises
-    ------
-    InputError
-        Naming the first of them.
-    """
+    """Refuses to vary a field that a kind of toolkit does not have."""
     from workhold.fixels.kinds import owner_of
 
     for row in unknown_fields(table, given):
@@ -257,13 +237,7 @@ def refuse_missing_fields(table: FieldTable, given: list[tuple[ToolkitField, str
 
 
 def refuse_too_few(table: FieldTable, known: set[str], given: list[tuple[ToolkitField, str]]) -> None:
-    """Refuses lists that lack a figure without which there is no toolkit.
-
-    Raises
-    ------
-    InputError
-        Naming the options that are missing.
-    """
+    """Refuses lists that lack a figure without which there is no toolkit."""
     missing = [row.option for row in table.fields if row.is_required and row.name not in known]
     if missing:
         alone = "a list of pitches alone makes" if len(given) == 1 else "these lists alone make"
@@ -273,13 +247,7 @@ def refuse_too_few(table: FieldTable, known: set[str], given: list[tuple[Toolkit
 
 
 def read(row: ToolkitField, word: str, unit: Unit) -> Any:
-    """Reads an entry of the list of a field; lengths come in mm.
-
-    Raises
-    ------
-    InputError
-        For words that mean nothing, and counts that there are not.
-    """
+    """Reads an entry of the list of a field; lengths come in mm."""
     if row is PITCH:
         return pitch_of(word, unit)
     if row.form == TRAVEL.form and word.count(":") != 1:
@@ -306,13 +274,7 @@ def name_of(row: ToolkitField, word: str) -> str:
 
 
 def words_of(option: str, text: str) -> list[str]:
-    """Splits a list into its entries.
-
-    Raises
-    ------
-    InputError
-        When one is missing.
-    """
+    """Splits a list into its entries."""
     words = [word.strip() for word in text.split(",")]
     if not all(words):
         raise InputError(f"{option} {text!r} has an empty entry: give a list such as 1,2,4.")

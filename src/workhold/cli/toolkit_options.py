@@ -159,25 +159,13 @@ def lengths(option_name: str, text: str, unit: Unit) -> tuple[float, ...]:
 
 
 def span(option_name: str, text: str, unit: Unit) -> tuple[float, ...]:
-    """Reads the least and the most of a length; returns them in mm.
-
-    Raises
-    ------
-    InputError
-        For less or more than two lengths.
-    """
+    """Reads the least and the most of a length; returns them in mm."""
     remedy = "two lengths: give the least and the most, such as 10,35."
     return two_lengths(option_name, text, unit, remedy)
 
 
 def directions(option_name: str, text: str) -> list[str | tuple[str, ...]]:
-    """Reads directions such as ``-x,-y``, or pairs of them such as ``-x:-y,-x:+y``.
-
-    Raises
-    ------
-    InputError
-        For directions and pairs together.
-    """
+    """Reads directions such as ``-x,-y``, or pairs of them such as ``-x:-y,-x:+y``; refuses both together."""
     words = [word.strip() for word in text.split(",")]
     if len({":" in word for word in words}) == 2:
         raise InputError(
