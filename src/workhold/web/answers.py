@@ -106,7 +106,6 @@ def own_answer(workpiece: Workpiece) -> dict[str, Any]:
 
 
 def shape(segment: Segment, bulge: float) -> dict[str, Any]:
-    """Describes ends and circle of a segment."""
     arc = segment if isinstance(segment, Arc) else None
     return {
         "start": list(segment.start),
@@ -125,7 +124,6 @@ def face_answer(number: int, segment: Segment) -> dict[str, Any]:
 
 
 def figures_answer() -> list[dict[str, Any]]:
-    """Describes the figures of quality."""
     names = ("key", "words", "unit", "more_is_better", "meaning", "decimals")
     return [{name: getattr(figure, name) for name in names} for figure in FIGURES]
 
@@ -253,7 +251,6 @@ def draws_back(clamp: ShownClamp) -> float | None:
 
 
 def lattice_of_none(carrier: Carrier) -> dict[str, Any]:
-    """Describes the lattice of a carrier without holes."""
     return {
         "letter": "",
         "origin": carrier.place(0, 0),
@@ -279,11 +276,7 @@ def fixture_answer(
 
     Holes are named so, and plates lie so under the part. All places are in the frame of the fixture as it is
     listed; ``placed`` is by how much it stands further on. Where ``edgeless``, its edge distance stands for
-    none.
-
-    Parameters
-    ----------
-    longest : the edge distance that stands for none, where it is known already.
+    none. It is ``longest``, where that is known already.
     """
     longest = no_edge(workpiece, toolkit) if longest is None else longest
     move = middle_move(fixture, toolkit, workpiece)

@@ -47,13 +47,7 @@ class FamilyForm(Form):
     tolerance: ToleranceForm | None = None
 
     def queries(self, most_segments: int) -> tuple[tuple[str, Query], ...]:
-        """The query of each part, and what the part is called.
-
-        Raises
-        ------
-        InputError
-            For the first value that cannot be, and where the solver is not installed.
-        """
+        """The query of each part, and what the part is called; refuses where the solver is not installed."""
         from workhold.family.members import RANKINGS
         from workhold.family.solver import load_solver
 

@@ -132,7 +132,6 @@ def make_paper(payload: PaperOrder, order: Order) -> tuple[bytes, str | None]:
 
 
 def sheet(order: PaperOrder) -> tuple[bytes, str | None]:
-    """Draws the setup sheet."""
     from workhold.drawing.sheet import result_sheet
     from workhold.model.first_side import first_side
     from workhold.presenting.papers import pages_bytes
@@ -157,7 +156,6 @@ def sheet(order: PaperOrder) -> tuple[bytes, str | None]:
 
 
 def hash_of(result: Result) -> str:
-    """Returns the SHA-256 of the result's file."""
     from workhold.files.result.writer import result_text
 
     digest = sha256()
@@ -206,7 +204,6 @@ def picture(order: PaperOrder) -> tuple[bytes, str | None]:
 
 
 def bodies(order: PaperOrder) -> tuple[bytes, str | None]:
-    """Writes the fixture in three dimensions."""
     from workhold.presenting.assembly import Assembly
 
     chosen = order.chosen_supports()
@@ -264,12 +261,10 @@ class ClosingOrder:
 
 
 def words_of(held: Held, seating: Seating, unit: str) -> SeatingSentences:
-    """Makes the words for a seating."""
     return SeatingSentences(seating, held[0], held[2], lengths_of(held, unit))
 
 
 def lengths_of(held: Held, unit: str) -> LengthUnit:
-    """Returns the lengths of a unit as they are written for a fixture."""
     return LengthUnit.suiting(unit_named(unit), min(min(carrier.pitch) for carrier in held[2].carriers))
 
 

@@ -158,13 +158,7 @@ SeveralLoads = TypeAdapter(Annotated[list[LoadForm], Field(max_length=MOST_LOADS
 
 
 def asked_loads(text: str | None) -> tuple[Load, ...] | None:
-    """The loads of an address, JSON as in a search; None where none are given.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
+    """The loads of an address, JSON as in a search; None where none are given."""
     if text is None:
         return None
     return tuple(form.load() for form in of_address(SeveralLoads, "loads", text))
@@ -227,13 +221,7 @@ class JobForm(SearchForm):
     foolproof: bool = False
 
     def queries(self, most_segments: int) -> tuple[tuple[str, Query], ...]:
-        """The query, which has no name.
-
-        Raises
-        ------
-        InputError
-            For the first value that cannot be.
-        """
+        """The query, which has no name."""
         query = self.query(self.toolkit.toolkit(), most_segments)
         query = evolve(query, best=self.best)
         return (("", evolve(query, seating=self.seating, opening=self.opening, foolproof=self.foolproof)),)
@@ -245,13 +233,7 @@ class ExploreForm(SearchForm):
     toolkits: list[NamedHeldIn] | None = Field(default=None, min_length=1, max_length=MOST_TOOLKITS)
 
     def queries(self, most_segments: int) -> tuple[tuple[str, Query], ...]:
-        """The queries, one for each toolkit, and what the toolkits are called.
-
-        Raises
-        ------
-        InputError
-            For the first value that cannot be.
-        """
+        """The queries, one for each toolkit, and what the toolkits are called."""
         from workhold.files.toolkit_file import preset, preset_names
 
         if self.toolkits is not None:

@@ -197,12 +197,7 @@ class Jobs:
     def refuse_more(self, address: str) -> None:
         """Refuses a further job.
 
-        Raises
-        ------
-        TooManyError
-            When this address has too many that are not over.
-        BusyError
-            When too many wait.
+        Raises TooManyError when this address has too many that are not over, BusyError when too many wait.
         """
         running = sum(not job.is_over and job.address == address for job in self.by_name.values())
         if running >= self.limits.jobs:

@@ -94,13 +94,7 @@ class Form(BaseModel):
 
 
 def of_address(adapter: TypeAdapter[Asked], name: str, text: str) -> Asked:
-    """A value of an address that is JSON.
-
-    Raises
-    ------
-    InputError
-        For anything that the adapter does not take.
-    """
+    """A value of an address that is JSON."""
     try:
         return adapter.validate_json(text)
     except ValidationError as error:
@@ -236,10 +230,7 @@ def checked_part(
 ) -> Workpiece:
     """A part of loops in mm, with how far they may be from what was drawn.
 
-    Raises
-    ------
-    InputError
-        For loops that cannot be used, and for more segments than this server takes.
+    Refuses more segments than this server takes.
     """
     refuse_many(sum(map(len, loops)), most_segments)
     with numbers_too_large():
@@ -247,13 +238,7 @@ def checked_part(
 
 
 def refuse_many(count: int, most: int) -> None:
-    """Refuses a part of more segments than a server takes.
-
-    Raises
-    ------
-    InputError
-        With both numbers.
-    """
+    """Refuses a part of more segments than a server takes."""
     if count > most:
         raise InputError(
             f"The part has {count} segments, more than the {most} this server takes: draw its outline with "
@@ -263,13 +248,7 @@ def refuse_many(count: int, most: int) -> None:
 
 @contextmanager
 def numbers_too_large() -> Iterator[None]:
-    """Says of numbers with which arithmetic fails that they are too large or too small.
-
-    Raises
-    ------
-    InputError
-        Instead of errors of arithmetic.
-    """
+    """Says of numbers with which arithmetic fails that they are too large or too small."""
     try:
         yield
     except (ArithmeticError, ValueError) as error:
@@ -286,10 +265,7 @@ SeveralHeights = TypeAdapter(Annotated[dict[Name, Point], Field(max_length=MOST_
 def asked_heights(text: str | None) -> dict[str, tuple[float, float]] | None:
     """The heights of carriers in an address, JSON by role in mm; None where none are given.
 
-    Raises
-    ------
-    InputError
-        For anything else, and for heights of which the lower does not come first.
+    Refuses heights of which the lower does not come first.
     """
     if text is None:
         return None
@@ -372,11 +348,5 @@ class FirstSideForm(Form):
 
 
 def asked_of(form: type[AskedForm], name: str, text: str | None) -> AskedForm | None:
-    """A value of an address that is JSON of a form; None where none is given.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
+    """A value of an address that is JSON of a form; None where none is given."""
     return None if text is None else of_address(TypeAdapter(form), name, text)

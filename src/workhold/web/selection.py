@@ -99,13 +99,7 @@ class Selection:
 
 
 def angle_range(text: str) -> tuple[float, float]:
-    """Reads a range of angles in degrees such as ``-10..10``.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
+    """Reads a range of angles in degrees such as ``-10..10``."""
     low, dots, high = text.partition("..")
     try:
         ends = float(low), float(high)

@@ -206,10 +206,7 @@ def make_server(
 def bound_socket(host: str, port: int) -> socket.socket:
     """Opens a socket that listens at an address.
 
-    Raises
-    ------
-    InputError
-        When there is no such address, or another program listens there.
+    Refuses an address that there is not, or at which another program listens.
     """
     try:
         family, kind, protocol, _, address = socket.getaddrinfo(

@@ -82,7 +82,6 @@ def explore(payload: tuple[NamedQuery, ...], order: Order) -> None:
 
 
 def explanation(query: Query, order: Order) -> Explanation:
-    """Explains why there is no fixture."""
     from workhold.search.explaining import explain
 
     return explain(query)
@@ -105,7 +104,6 @@ def check_job(
 
 
 def make_lesson(payload: tuple[WorkpieceForm, int], order: Order) -> dict[str, Any]:
-    """Makes what the page that explains the method shows of a part."""
     from workhold.presenting.lesson import lesson
 
     form, most_segments = payload
@@ -113,7 +111,6 @@ def make_lesson(payload: tuple[WorkpieceForm, int], order: Order) -> dict[str, A
 
 
 def loads(payload: tuple[Fixture, Workpiece, Toolkit, LoadsForm], order: Order) -> list[dict[str, Any]]:
-    """Describes what loads do to a fixture."""
     from workhold.presenting.data import load_case_data
     from workhold.statics.loads import load_cases
 

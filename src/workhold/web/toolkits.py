@@ -130,7 +130,6 @@ DESCRIBED = tuple(Described(name, words) for name, words in PAGES.items())
 
 
 def kinds_answer() -> list[dict[str, Any]]:
-    """Describes all kinds for the page."""
     return [one.answer() for one in DESCRIBED]
 
 
