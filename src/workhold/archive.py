@@ -229,13 +229,7 @@ class CarefulFile(io.FileIO):
     """A file of which a directory of a sensible size can be read."""
 
     def read(self, size: int | None = -1, /) -> bytes:
-        """Reads so many bytes, or those to the end.
-
-        Raises
-        ------
-        BadZipFile
-            When they are too many.
-        """
+        """Reads so many bytes, or those to the end; raises BadZipFile when they are too many."""
         if size is not None and size > MOST_DIRECTORY:
             raise BadZipFile("its directory is too large")
         return super().read(MOST_DIRECTORY if size is None or size < 0 else size) or b""
@@ -292,13 +286,7 @@ def mapped_archive(
 
 
 def refuse_unlike(names: set[str], members: Sequence[ZipInfo], spans: list[tuple[int, int]]) -> None:
-    """Refuses members that are missing, there twice, or not apart from each other.
-
-    Raises
-    ------
-    BadZipFile
-        Naming the first.
-    """
+    """Refuses members that are missing, there twice, or not apart from each other; raises BadZipFile."""
     found = [info.filename for info in members]
     for one in sorted(names):
         if found.count(one) != 1:
@@ -311,12 +299,8 @@ def refuse_unlike(names: set[str], members: Sequence[ZipInfo], spans: list[tuple
 def span(info: ZipInfo, content: mmap.mmap) -> tuple[int, int]:
     """Where the content of a member begins and ends.
 
-    Raises
-    ------
-    BadZipFile
-        When it is packed or locked, or not inside the file.
-    struct.error
-        When its header is not.
+    Raises BadZipFile when it is packed or locked, or not inside the file, and struct.error when its header is
+    not.
     """
     if info.compress_type != ZIP_STORED or info.flag_bits & 1 or info.compress_size != info.file_size:
         raise BadZipFile(f"{info.filename} is packed, so it cannot be mapped into memory")
@@ -341,12 +325,8 @@ def checksum(content: mmap.mmap, first: int, end: int) -> int:
 def mapped(content: mmap.mmap, first: int, end: int, name: str, column: Column) -> NDArray[Any]:
     """A column (N, ...) in a mapped file, read-only.
 
-    Raises
-    ------
-    BadZipFile
-        When its header is not that of such a column of such a size.
-    struct.error
-        When it is too short for a header.
+    Raises BadZipFile when its header is not that of such a column of such a size, and struct.error when it is
+    too short for a header.
     """
     (length,) = struct.unpack_from("<H", content[first : min(first + 10, end)], 8)
     rows, rest = divmod(end - first - 10 - length, column.row_bytes)
