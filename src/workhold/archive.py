@@ -66,7 +66,6 @@ class Column:
 
     @property
     def row_bytes(self) -> int:
-        """Bytes of one row."""
         return int(np.dtype(self.kind).itemsize * np.prod(self.shape, dtype=np.int64))
 
 
@@ -139,7 +138,6 @@ class ArchiveWriter:
             start = member.content + size
 
     def put(self, place: int, content: Any) -> None:
-        """Writes bytes at a place."""
         self.stream.seek(place)
         self.stream.write(content)
 

@@ -182,7 +182,6 @@ def in_words(fixture: Fixture) -> str:
 
 
 def numbers_of(proof: Proof) -> dict[str, int]:
-    """The numbers of an account."""
     names = (attribute.name for attribute in fields(Proof) if attribute.name != "undecided")
     return {name: getattr(proof, name) for name in names}
 

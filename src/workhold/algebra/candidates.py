@@ -63,9 +63,7 @@ def sector_of(psi: Array) -> IntArray:
 
 
 def facing(rows: Array, spread: float) -> BoolArray:
-    """Whether features (F, 10) have a normal within ``spread`` radians of the middle of a sector, (F,
-    SECTORS).
-    """
+    """Whether features (F, 10) have a normal within ``spread`` radians of a sector's middle, (F, SECTORS)."""
     straight = rows[:, IS_ARC] == 0.0
     x, y = rows[:, AXIS_X], rows[:, AXIS_Y]
     middle = np.where(straight, np.arctan2(-x, y), np.arctan2(y, x))
@@ -151,11 +149,10 @@ class PegPairs:
 def wedge_sectors(
     one: FeaturePieces, two: FeaturePieces, distance: float, direction: float
 ) -> BoolArray | None:
-    """Orientations at which a peg pair fits each piece of the first feature (sections 3.3 and 3.4), (P,
-    SECTORS).
+    """Orientations (P, SECTORS) at which a peg pair fits each piece of the first feature.
 
-    The step from the first peg to the second has a length in mm and a direction in radians. None where no
-    wedge holds its length.
+    See sections 3.3 and 3.4. The step from the first peg to the second has a length in mm and a direction in
+    radians. None where no wedge holds its length.
     """
     between = two.middle[None, :] - one.middle[:, None]
     spread = one.radius[:, None] + two.radius[None, :] + WEDGE_SLACK

@@ -53,7 +53,6 @@ class Laurent:
         return self.polynomial.left_shift(by) if by else self.polynomial
 
     def powers(self, most: int) -> list[Laurent]:
-        """The powers from 0 to ``most``."""
         out = [constant(1.0)]
         for _ in range(most):
             out.append(out[-1] * self)

@@ -106,13 +106,7 @@ class Measured:
                     continue
 
     def add(self, outcome: Outcome) -> None:
-        """Writes down what a task took.
-
-        Raises
-        ------
-        InputError
-            When the file cannot be written.
-        """
+        """Writes down what a task took."""
         worker = plain(outcome.worker) or "-"
         self.known[outcome.name] = (outcome.seconds, worker)
         with plain_errors(self.path):

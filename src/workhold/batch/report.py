@@ -204,13 +204,7 @@ class Report:
         return f"<small>{link}<details><summary>setup sheet</summary>{code}</details></small>"
 
     def write(self, path: Path, summary: Summary) -> None:
-        """Writes the page.
-
-        Raises
-        ------
-        InputError
-            When it cannot be written.
-        """
+        """Writes the page."""
         headings = [
             "first choice",
             "part",
@@ -298,11 +292,6 @@ def write_results(
     Parameters
     ----------
     summary : what stands over the report.
-
-    Raises
-    ------
-    InputError
-        When they cannot be written.
     """
     with plain_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)

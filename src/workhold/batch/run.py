@@ -99,14 +99,12 @@ class Part:
 
     @classmethod
     def of(cls, request: Request) -> Part:
-        """A part before it is read."""
         try:
             return cls(request, reading_of(request).name)
         except InputError as error:
             return cls(request, refusal=str(error))
 
     def take(self, record: Mapping[str, Any]) -> None:
-        """Takes note of what was read."""
         self.refusal = record["refusal"]
         if not self.refusal:
             # What may be touched makes outlines of one shape two parts; a prism is its shape alone.
@@ -250,13 +248,7 @@ class BatchRun:
         return outcomes, len(by_name) - len(reckoned)
 
     def keep(self, outcome: Outcome) -> None:
-        """Keeps the record of a task, unless its worker has, and what it took.
-
-        Raises
-        ------
-        InputError
-            When that cannot be written.
-        """
+        """Keeps the record of a task, unless its worker has, and what it took."""
         try:
             self.measured.add(outcome)
             if outcome.record is not None:

@@ -55,7 +55,6 @@ FIRST, LAST = b'{"format": "workhold-', b"]}\n"
 
 
 def part_record(workpiece: Workpiece, remarks: Sequence[str]) -> bytes:
-    """The record of a drawing that was read."""
     about = {"format": PART, **workpiece_entry(workpiece), **solid_entry(workpiece.solid), "name": PART_NAME}
     heights = {
         role: (one.solid.low, one.solid.peg_height)
@@ -169,7 +168,6 @@ class FolderStore(Store):
         return str(self.path(name))
 
     def path(self, name: str) -> Path:
-        """The path of a record."""
         return self.folder / name[:FOLDER_LETTERS] / f"{name}.json"
 
     def read(self, name: str) -> bytes | None:
@@ -207,7 +205,6 @@ class UrlStore(Store):
     url: str
 
     def place(self, name: str) -> str:
-        """The URL of a record."""
         return f"{self.url}/{name[:FOLDER_LETTERS]}/{name}.json"
 
     def at(self, name: str) -> tuple[Any, str]:

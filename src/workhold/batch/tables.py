@@ -191,7 +191,6 @@ def write_tables(rows: Iterator[JobRow], folder: Path) -> Iterator[JobRow]:
 
 
 def cell(value: Any) -> Any:
-    """A value as a cell shows it."""
     if isinstance(value, str):
         return encodable(value)
     if isinstance(value, bool):

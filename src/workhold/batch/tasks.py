@@ -213,7 +213,6 @@ class FirstFixtures:
 
     @property
     def count(self) -> int:
-        """How many there are."""
         return 0 if self.table is None else len(self.table)
 
 

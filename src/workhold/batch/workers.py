@@ -152,7 +152,6 @@ class LocalWorkers:
         )
 
     def started(self, title: str) -> Worker:
-        """Starts a worker."""
         context = get_context("spawn")
         ours, theirs = context.Pipe()
         memory = memory_share(self.count) if self.memory_bytes is None else self.memory_bytes

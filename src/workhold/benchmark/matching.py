@@ -71,7 +71,6 @@ class EnteredPeg:
 
     @property
     def push(self) -> tuple[float, float]:
-        """The direction in which it pushes."""
         return PUSHES[self.role]
 
 
@@ -162,7 +161,6 @@ def role_of(peg: Mapping[str, Any], direction: str | None) -> str:
 
 
 def finite(value: Any) -> float:
-    """A finite number."""
     number = nan if isinstance(value, bool) else real(value)
     if not isfinite(number):
         raise ValueError(f"{str(value)[:40]!r} is no number")
@@ -315,7 +313,6 @@ class Index:
 
     @classmethod
     def of(cls, places: Sequence[Array], tolerance: float) -> Index:
-        """The index of some places."""
         sums = np.array([place[:, :2].sum(axis=0) for place in places]).reshape(-1, 2)
         return cls(places, sums, np.argsort(sums[:, 0], kind="stable"), tolerance)
 

@@ -262,7 +262,6 @@ class SheetArguments(ToolArguments):
 
 
 def checked_arguments(form: type[Arguments], given: dict[str, Any] | None) -> Arguments:
-    """Checks the arguments of a tool."""
     try:
         return form.model_validate(given or {})
     except ValidationError as error:

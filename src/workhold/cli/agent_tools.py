@@ -184,7 +184,6 @@ def held_in(name: str, fields: Mapping[str, Any]) -> tuple[Toolkit, Tolerance | 
 
 
 def loads_of(tables: list[LoadTable]) -> tuple[Load, ...]:
-    """Makes loads of their descriptions."""
     given = (table.model_dump(exclude_unset=True) for table in tables)
     return tuple(load_from_words(words, f"load {number}", 1.0) for number, words in enumerate(given, 1))
 

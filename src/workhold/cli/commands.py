@@ -127,11 +127,6 @@ class PlainGroup(TyperGroup):
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Parses the words before the subcommand; without any word it shows the help, unless a shell
         completes.
-
-        Raises
-        ------
-        typer.Exit
-            Without any word.
         """
         if not args and not ctx.resilient_parsing:
             typer.echo(ctx.get_help())

@@ -75,12 +75,10 @@ class JobWords:
         return evolve(typed, **self.options_of(type(typed)))
 
     def options_of(self, group: type[AttrsInstance]) -> dict[str, Any]:
-        """What the file says of a group of options."""
         return {name: self.options[name] for name in fields_dict(group) if name in self.options}
 
 
 def read_jobs(path: Path) -> list[JobWords]:
-    """Reads the jobs of a file."""
     from workhold.files.budget import LIMITS
     from workhold.files.tables import SAVED
     from workhold.files.text import read_text
@@ -134,7 +132,6 @@ def named(key: str) -> str:
 
 
 def job_of(entry: Mapping[str, Any], place: str, folder: Path) -> JobWords:
-    """Makes a job of its entries."""
     words: dict[str, Any] = {}
     for key, value in entry.items():
         name = named(key)

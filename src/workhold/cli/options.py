@@ -166,13 +166,7 @@ class PartWords:
     )
 
     def options(self) -> dict[str, Any]:
-        """Makes the keyword arguments of ``files.part.load.read_workpiece``.
-
-        Raises
-        ------
-        InputError
-            For words that mean nothing.
-        """
+        """Makes the keyword arguments of ``files.part.load.read_workpiece``."""
         from workhold.files.questions import number_or_name
 
         unit = length_unit(self.unit)

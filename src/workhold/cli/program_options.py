@@ -138,7 +138,6 @@ class ProgramWords:
 
     @property
     def files(self) -> tuple[str | None, ...]:
-        """The files that are read."""
         return self.program, self.tools
 
     @property

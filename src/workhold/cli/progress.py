@@ -131,7 +131,6 @@ class BatchProgress:
             self.bars.update(self.whole, advance=seconds, words=self.words)
 
     def begun(self, worker: str, title: str) -> None:
-        """Shows what a worker has begun."""
         if self.bars is None:
             return
         self.ended(worker)

@@ -243,7 +243,6 @@ def angles(text: str) -> tuple[float, float]:
 
 
 def asked_tolerance(text: str | None, unit: Unit) -> Tolerance | None:
-    """The tolerance asked for; None where none was typed."""
     from workhold.model.requirements import Tolerance
 
     if text is None:
@@ -265,7 +264,6 @@ def with_fit_of(asked: Tolerance | None, named: Tolerance | None) -> Tolerance |
 
 
 def asked_loads(loads: list[str] | None, file: str | None, unit: Unit) -> tuple[Load, ...]:
-    """The loads typed and those of a file."""
     if not loads and file is None:
         return ()
     from workhold.files.loads_file import read_loads

@@ -129,8 +129,9 @@ def with_friction(found: Supports, count: int | None, friction: float | None) ->
 
 
 def friction_words(friction: float, helped: list[float], unit: Unit) -> str:
-    """Says what friction could add to the sets that are listed, of which ``helped`` are the least clamp
-    forces in N.
+    """Says what friction could add to the sets that are listed.
+
+    ``helped`` are their least clamp forces in N.
     """
     forces = ", ".join(unit.force_words(force) for force in helped)
     sets = "that set" if len(helped) == 1 else "these sets, in their order,"

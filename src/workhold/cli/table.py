@@ -130,7 +130,6 @@ class Table:
 
 
 def longest_word(texts: Iterable[str]) -> int:
-    """The letters of the longest word in some texts."""
     return max((len(word) for text in texts for word in text.split()), default=0)
 
 

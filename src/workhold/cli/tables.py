@@ -187,8 +187,7 @@ def quality_table(
     jaw_force: float | None = None,
     longest: float = inf,
 ) -> Table:
-    """Tabulates the figures of quality of a fixture, and their meaning where ``mover`` presses, such as a
-    jaw.
+    """Tabulates the figures of quality of a fixture, and their meaning where ``mover`` (a jaw) presses.
 
     Pegs bend at a jaw force in N, None where it is not known. ``longest`` is the edge distance that stands
     for none, see :func:`no_edge`.

@@ -96,7 +96,6 @@ class Named:
     tolerance: Tolerance | None = None
 
     def changed(self, changes: list[tuple[str, dict[str, Any]]]) -> Named:
-        """Applies changes, each of which has a name."""
         name = ", ".join(filter(None, (self.name, *(words for words, _ in changes))))
         fields = {key: value for _, change in changes for key, value in change.items()}
         return Named(name, self.kind, self.fields | fields, self.tolerance)

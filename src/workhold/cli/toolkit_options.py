@@ -64,13 +64,7 @@ class ToolkitWords:
         min_opening: str | None
 
     def fields(self, unit: Unit) -> dict[str, Any]:
-        """Makes keyword arguments of a toolkit, in mm, of the options that were given.
-
-        Raises
-        ------
-        InputError
-            For words that mean nothing.
-        """
+        """Makes keyword arguments of a toolkit, in mm, of the options that were given."""
         return {
             row.name: READERS[row.form](row.option, words, unit)
             for row in OPTIONS
@@ -78,13 +72,7 @@ class ToolkitWords:
         }
 
     def refuse_others(self, kind: type[Toolkit]) -> None:
-        """Refuses options that a kind of toolkit does not have.
-
-        Raises
-        ------
-        InputError
-            Naming the first of them.
-        """
+        """Refuses options that a kind of toolkit does not have."""
         from workhold.fixels.kinds import owner_of
 
         known = {row.name for row in kind.table.fields}

@@ -78,7 +78,6 @@ def draw_fixture(
     Parameters
     ----------
     title : what to call the fixture, such as ``Fixture 3 of 70``.
-    unit : of the lengths written.
     path : of a program's tools, to draw as well.
 
     Returns

@@ -46,7 +46,6 @@ def draw_features(workpiece: Workpiece, *, peg_radius: float | None = None, unit
     Parameters
     ----------
     peg_radius : draw the contact features for pegs of this radius in mm as well.
-    unit : of the lengths written.
 
     Returns
     -------
@@ -208,10 +207,8 @@ def draw_parts(
 
     Parameters
     ----------
-    name : what to call the file.
     parts : for each part its loops, (N, 3) vertices in mm; part k + 1 is called by that number.
     chosen : the number of the part that is used, which has another colour.
-    unit : of the lengths written.
 
     Returns
     -------

@@ -48,7 +48,6 @@ def draw_program(program: Program, *, workpiece: Workpiece | None = None, unit: 
     Parameters
     ----------
     workpiece : the part, drawn below them.
-    unit : of the lengths written.
 
     Returns
     -------

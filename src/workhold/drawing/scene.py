@@ -265,7 +265,6 @@ class Scene:
     def path(
         self, d: str, stroke: str = "none", width: float = 1.0, fill: str = "none", **more: str
     ) -> ET.Element:
-        """Adds a path."""
         return self.add("path", {"d": d, "fill": fill}, stroke, width, **more)
 
     def line(
@@ -284,7 +283,6 @@ class Scene:
     def rectangle(
         self, box: Box, fill: str, stroke: str = "none", width: float = 1.0, round_by: float = 0.0
     ) -> ET.Element:
-        """Adds a rectangle."""
         attributes = {
             "x": number(box.x0),
             "y": number(box.y0),
@@ -305,7 +303,6 @@ class Scene:
         width: float = 1.0,
         **more: str,
     ) -> ET.Element:
-        """Adds a circle."""
         attributes = {"cx": number(center[0]), "cy": number(center[1]), "r": number(radius), "fill": fill}
         return self.add("circle", attributes, stroke, width, **more)
 
@@ -384,7 +381,6 @@ class LengthUnit:
 
     @classmethod
     def mm(cls, decimals: int = MILLIMETRE.decimals) -> LengthUnit:
-        """Millimetres."""
         return cls(MILLIMETRE, decimals)
 
     @classmethod

@@ -69,7 +69,6 @@ class SeatingSentences:
         return self.gauge.at(seat.jaw_separation)
 
     def reads(self, length: float) -> str:
-        """A reading in words."""
         return f"{self.sign} = {self.lengths.words(length)}"
 
     def bound(self, length: float) -> str:

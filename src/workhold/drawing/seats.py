@@ -50,7 +50,6 @@ def draw_seats(
     ----------
     seats : in the order in which they are numbered.
     title : what to call the fixture.
-    unit : of the lengths written.
 
     Returns
     -------

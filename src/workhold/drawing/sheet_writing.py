@@ -224,7 +224,6 @@ class Sheet:
 
     @property
     def zero(self) -> PartZero:
-        """Part zero."""
         return self.details.zero or part_zero(self.workpiece)
 
     @property

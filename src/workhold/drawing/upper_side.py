@@ -94,7 +94,6 @@ class Mark:
         return self.bend == other.bend and all(abs(a - b) <= SEEN * max(a, b) for a, b in sizes)
 
     def words(self, lengths: LengthUnit) -> str:
-        """What it is."""
         if self.hole:
             return f"hole {self.hole}" + (f", Ø {lengths.short(2 * self.radius, 4)}," if self.radius else "")
         if self.radius:

@@ -319,8 +319,7 @@ def curve_of(
     deadline: float | None = None,
     progress: Callable[[float], None] = lambda fraction: None,
 ) -> tuple[Point, ...]:
-    """The curve, from the fewest set-ups to the least loss; numbers that gain nothing over fewer are left
-    out.
+    """The curve, from the fewest set-ups to the least loss, without numbers that gain nothing over fewer.
 
     Losses larger than ``most_loss``, within which every member can be held, are not accepted. Points after
     the deadline, of the clock ``time.monotonic``, are what was known then.

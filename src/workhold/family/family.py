@@ -266,7 +266,6 @@ def family_text(family: Family) -> str:
 
 
 def listed(entries: list[dict[str, Any]]) -> str:
-    """A list with a line for each entry."""
     return "[\n" + ",\n".join(json.dumps(entry) for entry in entries) + "\n]" if entries else "[]"
 
 

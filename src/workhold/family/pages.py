@@ -168,7 +168,6 @@ def draw_setups(plan: Plan, figure: Figure, day: date, unit: Unit = MILLIMETRE) 
     ----------
     figure : of which losses are computed.
     day : the date written on the sheets.
-    unit : of the lengths written.
     """
     first = plan.setups[0].holdings[0].member.query.toolkit.carriers[0]
     titles = Titles(len(plan.setups), figure, LengthUnit.suiting(unit, min(first.pitch)), day)

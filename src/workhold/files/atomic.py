@@ -59,13 +59,7 @@ def refuse_unwritable_folder(path: str | Path) -> None:
 
 @contextmanager
 def text_file(path: str | Path) -> Iterator[IO[str]]:
-    """A text file (UTF-8, ``\\n`` line ends) that takes its name only when the block ends without an error.
-
-    Raises
-    ------
-    InputError
-        When the file cannot be written.
-    """
+    """A text file (UTF-8, ``\\n`` line ends) that takes its name only when the block ends without an error."""
     with (
         replacement(Path(path)) as descriptor,
         os.fdopen(descriptor, "w", encoding="utf-8", newline="\n") as stream,
@@ -89,13 +83,7 @@ def binary_file(path: str | Path) -> Iterator[BinaryIO]:
 
 
 def write_bytes(path: str | Path, content: bytes) -> None:
-    """Writes a whole file of bytes, or leave an earlier one as it was.
-
-    Raises
-    ------
-    InputError
-        When the file cannot be written.
-    """
+    """Writes a whole file of bytes, or leave an earlier one as it was."""
     with replacement(Path(path)) as descriptor, os.fdopen(descriptor, "wb") as stream:
         stream.write(content)
 

@@ -112,11 +112,6 @@ def refuse_other_ending(path: str | Path, own: Sequence[str], what: str) -> None
     ----------
     own : endings of such files, in small letters.
     what : such a file, in words.
-
-    Raises
-    ------
-    InputError
-        Naming the endings that it may have.
     """
     ending = Path(path).suffix.lower()
     if ending in ENDINGS and ending not in own:

@@ -116,7 +116,6 @@ def triple_of(
 
 
 def clamp_of(part: ReadFigures, point: tuple[float, float] | None) -> ClampFigures:
-    """The figures at one point of the clamp."""
     at = part.at or point or (0.0, 0.0)
     forces = part.clamp_needed, part.support_force
     return ClampFigures(at, *forces, part.arm, part.share, part.lift, part.hangs)
@@ -248,5 +247,4 @@ def triple_entry(triple: Triple) -> dict[str, Any]:
 
 
 def known(figures: ClampFigures) -> dict[str, Any]:
-    """Figures that are known."""
     return asdict(figures, filter=lambda _, value: value is not None and value is not False)

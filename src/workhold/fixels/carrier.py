@@ -83,7 +83,6 @@ class Holes:
 
     @property
     def name(self) -> str:
-        """What it is called."""
         return hole_name(self.carrier, self.column, self.row)
 
 

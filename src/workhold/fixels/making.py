@@ -60,8 +60,9 @@ def optional_length(value: float | None) -> float:
 def refuse_lattice(
     pitch: tuple[float, float], columns: int | None, rows: int | None, peg_radius: float, noun: str, peg: str
 ) -> None:
-    """Refuses a lattice that cannot be, and pegs too fat for neighbouring holes; ``noun`` and ``peg`` are
-    their names.
+    """Refuses a lattice that cannot be, and pegs too fat for neighbouring holes.
+
+    ``noun`` and ``peg`` are what the lattice and what stands in its holes are called.
     """
     for value in pitch:
         if not (isfinite(value) and value > 0):
@@ -81,13 +82,7 @@ def refuse_lattice(
 
 
 def refuse_many_holes(columns: int | None, rows: int | None, noun: str) -> None:
-    """Refuses more holes than can be looked through.
-
-    Raises
-    ------
-    InputError
-        With their number and the limit.
-    """
+    """Refuses more holes than can be looked through."""
     holes = (columns or 1) * (rows or 1)
     if holes > MOST_HOLES:
         raise InputError(
@@ -159,8 +154,9 @@ def two_lengths(value: Iterable[float] | None, *, wrong: str) -> tuple[float, fl
 
 
 def direction_names(value: str | Iterable[Any] | None) -> tuple[Any, ...]:
-    """Returns directions, or pairs of them, in the order of ``DIRECTIONS``; none for None, and refuses
-    anything else.
+    """Returns directions, or pairs of them, in the order of ``DIRECTIONS``; none for None.
+
+    Refuses anything else.
     """
     if value is None:
         return ()

@@ -161,7 +161,6 @@ def raised(pieces: Pieces, degree: int) -> Pieces:
 
 
 def joined_pieces(curves: list[Pieces]) -> Pieces:
-    """One curve of several that follow each other."""
     degree = max(pieces.shape[1] for pieces in curves) - 1
     return np.concatenate([raised(pieces, degree) for pieces in curves])
 
@@ -214,7 +213,6 @@ def cut(pieces: Pieces, first: float, last: float) -> Pieces:
 
 
 def point_at(pieces: Pieces, parameter: float) -> Point:
-    """The point of a curve at a parameter."""
     number = min(int(parameter), len(pieces) - 1)
     t = parameter - number
     n = pieces.shape[1] - 1

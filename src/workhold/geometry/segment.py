@@ -361,7 +361,6 @@ class Box:
 
     @classmethod
     def about(cls, center: Point, width: float, height: float) -> Box:
-        """The box of a width and a height about a point."""
         x, y = center
         return cls(x - width / 2, y - height / 2, x + width / 2, y + height / 2)
 
@@ -377,7 +376,6 @@ class Box:
 
     @property
     def center(self) -> Point:
-        """The middle."""
         return (self.x0 + self.x1) / 2, (self.y0 + self.y1) / 2
 
     @property

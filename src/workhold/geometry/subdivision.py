@@ -98,7 +98,6 @@ class CutCarrier:
         return self.segment.parameter(point)
 
     def at(self, position: float) -> Point:
-        """The point at a position."""
         return self.segment.at(position)
 
     def left(self, position: float) -> Point:
@@ -327,7 +326,6 @@ class Carriers:
 
     @classmethod
     def of(cls, carriers: Sequence[CutCarrier]) -> Carriers:
-        """Carriers as arrays."""
         is_line = np.array([isinstance(one.segment, Line) for one in carriers], dtype=bool)
         across, powers, radii = [], [], []
         for carrier in carriers:
@@ -395,7 +393,6 @@ class BorderPiece:
 
     @property
     def middle(self) -> Point:
-        """The point halfway."""
         return self.carrier.at((self.low + self.high) / 2)
 
     @property

@@ -160,8 +160,9 @@ class Sweep:
 
 
 def monotone_triangles(piece: Sequence[int], points: Sequence[Point]) -> list[Triangle]:
-    """Triangles of a piece that every horizontal line meets in one span, given the numbers of its vertices,
-    counter-clockwise.
+    """Triangles of a piece that every horizontal line meets in one span.
+
+    The piece is given by the numbers of its vertices, counter-clockwise.
     """
     count = len(piece)
     order = sorted(range(count), key=lambda k: (-points[piece[k]][1], points[piece[k]][0], piece[k]))

@@ -161,7 +161,6 @@ def tilted_keys(query: Query, problem: Problem) -> OrderKeys | None:
 
     Parameters
     ----------
-    query : what is asked.
     problem : the search of it, or of one of its directions.
     """
     toolkit, part = query.toolkit, query.workpiece

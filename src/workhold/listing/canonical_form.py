@@ -84,7 +84,6 @@ class Candidates(Rows):
 
 
 def candidates_of(records: Array, problem: Problem) -> Candidates:
-    """Proven records as candidates."""
     count = len(records)
     feature, column, row = peg_integers(records)
     point, gap, null, force = (np.empty((count, *shape)) for shape in ((4, 2), (), (4,), (4,)))

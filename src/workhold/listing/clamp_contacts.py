@@ -81,7 +81,6 @@ class ClampContacts:
 
     @classmethod
     def joined(cls, parts: Sequence[ClampContacts]) -> ClampContacts:
-        """The contacts of several directions as one."""
         names = [one.name for one in fields(ClampContacts) if one.name != "hole_of"]
         starts = np.cumsum([0, *(len(part.theta) for part in parts)])
         hole_of = np.concatenate([part.hole_of + start for part, start in zip(parts, starts, strict=False)])
@@ -179,10 +178,10 @@ def contacts_of_candidates(c: Candidates, problem: Problem) -> ClampContacts:
 def sharpened(
     c: Candidates, taken: Array, push: Array, push_off: Array, doubt: Array, problem: Problem
 ) -> tuple[Array, Array, Array]:
-    """Forces of the locators (N, 3), pushes and doubts (N,) of contacts, in balls where doubles leave forces
-    in doubt.
+    """Forces of the locators (N, 3), pushes and doubts (N,) of contacts.
 
-    ``push_off`` and ``doubt`` (N,) are how far pushes and forces may be off.
+    They are computed in balls where doubles leave forces in doubt. ``push_off`` and ``doubt`` (N,) are how
+    far pushes and forces may be off.
     """
     from workhold.proof.exact_contacts import sharp_reactions
 

@@ -205,7 +205,6 @@ class BestFixtures:
 
     @property
     def found_keys(self) -> OrderKeys:
-        """The keys of those kept."""
         self.decide()
         assert self.kept is not None
         table = measured(placed(self.kept, self.problem), self.problem)

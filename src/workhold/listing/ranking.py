@@ -126,12 +126,10 @@ class OrderKeys:
         return len(self.first)
 
     def take(self, chosen: NDArray[np.integer] | BoolArray | slice) -> OrderKeys:
-        """The keys of some."""
         error = None if self.error is None else self.error[chosen]
         return OrderKeys(self.first[chosen], error, self.rest[chosen])
 
     def followed_by(self, other: OrderKeys) -> OrderKeys:
-        """The keys, and others after them."""
         error = None
         if self.error is not None and other.error is not None:
             error = np.concatenate([self.error, other.error])

@@ -94,7 +94,6 @@ def listed_result(
 
     Parameters
     ----------
-    problem : what was searched.
     records : (N, 19) arrays of fixtures, laid out as ``kernels.contact.record`` says.
     progress : called as ``progress(fraction done, records that still may be fixtures)``.
     cancel : when set, records that cannot be decided quickly are left, and the result is incomplete.
@@ -224,7 +223,6 @@ class RankedTable:
         return int(self.count.found.sum()) + sum(map(len, self.waiting))
 
     def add(self, table: FixtureTable) -> None:
-        """Takes fixtures."""
         self.waiting.append(table)
         if sum(map(len, self.waiting)) > WAITING:
             self.measure()
@@ -249,7 +247,6 @@ class RankedTable:
 
     @property
     def keys(self) -> OrderKeys:
-        """The keys of what is kept."""
         self.measure()
         if self.known is None:
             return order_keys(self.together(), self.query, self.effective)
@@ -280,7 +277,6 @@ class RankedTable:
         return self.tables[0]
 
     def result(self, account: Account, work: Work) -> Result:
-        """The result of all."""
         query, table = self.query, self.together()
         keys = order_keys(table, query, self.effective)
         order = keys.order(keys.least)[: query.best]

@@ -107,7 +107,6 @@ class SortedRun:
 
     @classmethod
     def joined(cls, runs: Sequence[SortedRun]) -> SortedRun:
-        """Several runs as one."""
         if len(runs) == 1:
             return runs[0]
         columns = zip(*(run.columns for run in runs), strict=True)
@@ -126,7 +125,6 @@ class SortedRun:
         return int(np.searchsorted(self.keys, key)[0])
 
     def rows(self, first: int, end: int) -> SortedRun:
-        """Some of its rows."""
         return SortedRun(self.keys[first:end], tuple(column[first:end] for column in self.columns))
 
 
@@ -157,7 +155,6 @@ class Scratch:
         return place
 
     def read(self, place: int, size: int) -> bytes:
-        """Some bytes."""
         with self.lock:
             self.file.seek(place)
             return self.file.read(size)
@@ -197,7 +194,6 @@ class StoredRun:
         return first + int(np.searchsorted(self.array(0, first, min(first + STRIDE, self.count)), key)[0])
 
     def rows(self, first: int, end: int) -> SortedRun:
-        """Some of its rows."""
         keys, *columns = (self.array(number, first, end) for number in range(len(self.forms)))
         return SortedRun(keys, tuple(columns))
 

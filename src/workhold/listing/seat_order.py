@@ -106,7 +106,6 @@ def ordered_groups(
     ----------
     records : of each direction.
     problems : the search of each direction.
-    query : what is asked.
     """
     numbers = [
         seat_numbers(some, problem)

@@ -375,7 +375,6 @@ class ClampedSeats:
         return column, row, lowest
 
     def result(self, account: Account, work: Work) -> Result:
-        """The result of all."""
         account = evolve(account, undecided=(*account.undecided, *self.undecided))
         result = self.ranked.result(account, work)
         return result if self.ranked.has_dropped else evolve(result, pairs=self.pairs, seats=self.seats)

@@ -190,7 +190,6 @@ def fixture_bodies(
 
     Parameters
     ----------
-    fixture, workpiece, toolkit : the set-up.
     sizes : heights; those of :meth:`BodySizes.of` if None.
     more : further bodies, such as supports under the part.
 

@@ -133,7 +133,6 @@ class ShownClamp:
 
     @property
     def extent(self) -> Box:
-        """The box of the body."""
         one, other = (
             Box(x, y, x, y).grown(self.carrier.peg_radius) for x, y in (self.back, (self.tip.x, self.tip.y))
         )

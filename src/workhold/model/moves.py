@@ -154,7 +154,6 @@ class Moves:
         return cls(*columns[:3], *ends, *columns[5:])
 
     def cut_to(self, stretches: Stretches) -> Moves:
-        """The stretches of these moves as moves."""
         move, first, last = stretches.move, stretches.first, stretches.last
         start, end, bulge = self.start[move], self.end[move], self.bulge[move]
         places = []

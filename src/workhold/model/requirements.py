@@ -230,7 +230,6 @@ def zone_of(vertices: Sequence[Sequence[float]]) -> Zone:
 
 
 def angle_pairs(ranges: Iterable[Iterable[float]]) -> tuple[Angles, ...]:
-    """Ranges of angles as pairs of floats."""
     return tuple((float(low), float(high)) for low, high in ranges)
 
 

@@ -271,8 +271,9 @@ def placed_boxes(
 
 
 def shown_beside(part: Box, fixture: Fixture, toolkit: Toolkit) -> Shown:
-    """What shows of a toolkit beside a part of an extent; refuses a part so far away that too many holes
-    would show.
+    """What shows of a toolkit beside a part of an extent.
+
+    Refuses a part and pegs so far apart that too many holes would show.
     """
     travelled = fixture.jaw_separation
     carriers = toolkit.plates

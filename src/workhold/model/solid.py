@@ -248,8 +248,9 @@ class SolidOutline:
         return self
 
     def reordered(self, order: Sequence[int], turned: Set[int] = frozenset()) -> SolidOutline:
-        """A copy with the bands of the segments in another order; segments ``turned`` run in the other
-        direction.
+        """A copy with the bands of the segments in another order.
+
+        Segments whose numbers are ``turned`` are run in the other direction.
         """
         return evolve(
             self,

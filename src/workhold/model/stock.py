@@ -53,7 +53,6 @@ AT_ONCE = 1 << 19
 
 
 def shape_of(value: Any) -> StockShape:
-    """A shape of the stock; refuses any other."""
     for shape in STOCK_SHAPES:
         if shape == value:
             return shape
@@ -154,7 +153,6 @@ class Curves:
 
     @classmethod
     def of(cls, start: Floats, end: Floats, bulge: Floats) -> Curves:
-        """The curves between some ends."""
         chord = end - start
         is_arc = (bulge != 0.0) & (chord != 0.0).any(axis=1)
         safe = np.where(is_arc, bulge, 1.0)
@@ -169,7 +167,6 @@ class Curves:
         return len(self.bulge)
 
     def take(self, chosen: Integers) -> Curves:
-        """The curves of some numbers."""
         return Curves.of(self.start[chosen], self.end[chosen], self.bulge[chosen])
 
     @property

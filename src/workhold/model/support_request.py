@@ -384,13 +384,7 @@ class SupportRequest:
         return np.array([others if band is None else band for band in bands], np.float64)
 
     def refuse_fat_pads(self, toolkit: Toolkit) -> None:
-        """Refuses pads that could overlap in neighbouring holes of a toolkit.
-
-        Raises
-        ------
-        InputError
-            With the distance that there is.
-        """
+        """Refuses pads that could overlap in neighbouring holes of a toolkit."""
         apart = least_apart(toolkit)
         if 2 * self.pad_radius > apart:
             raise InputError(

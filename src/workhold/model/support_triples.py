@@ -173,13 +173,7 @@ class Supports:
         return self.count == len(self.triples)
 
     def ranked(self, rank: int) -> Triple:
-        """The set of three of a rank from 1.
-
-        Raises
-        ------
-        InputError
-            When there is none.
-        """
+        """The set of three of a rank from 1."""
         count = len(self.triples)
         if not 1 <= rank <= count:
             there = f"{count} are listed" if count else "there is no set of three"
@@ -347,13 +341,7 @@ class ChosenSupports:
 
     @classmethod
     def of(cls, supports: Supports, number: int = 1) -> ChosenSupports:
-        """The set of a number.
-
-        Raises
-        ------
-        InputError
-            When there is none.
-        """
+        """The set of a number."""
         if not isinstance(supports, Supports):
             raise InputError("supports are what the fixture's own method of that name returns: give these.")
         triple = supports.ranked(number)

@@ -105,7 +105,6 @@ class TriedForce:
 
     @property
     def load(self) -> Load:
-        """The load that it is."""
         ways = (self.direction, self.direction)
         return Load(points=[(self.x, self.y)], force=self.size, directions=ways, name="pushed")
 

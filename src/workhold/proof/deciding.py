@@ -117,7 +117,6 @@ class Account:
 
     @classmethod
     def together(cls, accounts: list[Account]) -> Account:
-        """Several accounts as one."""
         lost = tuple(item for account in accounts for item in account.undecided)
         records, verified, escalated, given_up, left = (
             sum(getattr(account, name) for account in accounts)

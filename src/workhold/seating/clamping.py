@@ -101,7 +101,6 @@ class Gauge:
 
     @property
     def carrier(self) -> Carrier:
-        """What moves."""
         carriers = (self.toolkit.carrier(peg.carrier) for peg in self.fixture.pegs)
         return next(carrier for carrier in carriers if carrier.travel is not None)
 

@@ -138,7 +138,6 @@ class SubsetCache:
 
     @classmethod
     def empty(cls, _: ObstacleBoundary) -> SubsetCache:
-        """An empty cache."""
         return cls()
 
 

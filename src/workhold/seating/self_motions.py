@@ -270,7 +270,6 @@ NO_MOTIONS = SelfMotions.room(0, 0)
 
 
 def of_pattern(found: Sequence[tuple[PegSubset, SelfMotions]]) -> SelfMotions:
-    """The self-motions of subsets of pegs as those of their pattern."""
     some = [(subset, motions) for subset, motions in found if len(motions.counts)]
     if not some:
         return NO_MOTIONS
@@ -307,7 +306,6 @@ class ManifoldFinder:
 
     @property
     def rows(self) -> Array:
-        """The pieces."""
         return self.boundary.rows
 
     @cached_property

@@ -299,7 +299,6 @@ class FixtureInPattern:
         return tuple([seats[k] for k in np.lexsort((poses[0], rests.turned_over, separations)).tolist()])
 
     def seating(self, with_cage: bool) -> Seating:
-        """The seating of the fixture."""
         tree = self.trees[0]
         place = self.place
         assert place is not None

@@ -204,7 +204,6 @@ class TwoContactCurves:
 
     @classmethod
     def of(cls, boundary: ObstacleBoundary, pattern: Pattern) -> TwoContactCurves:
-        """The two-contact curves of a pattern on a part."""
         parts: list[tuple[NDArray[Any], ...]] = []
         jaws: dict[int, tuple[JawCurves, int, float]] = {}
         before = curves_before = 0

@@ -69,7 +69,6 @@ class BentPegs:
 
     @property
     def most(self) -> BentPeg:
-        """The peg that gives way most."""
         return max(self.pegs, key=lambda peg: peg.deflection)
 
     @property

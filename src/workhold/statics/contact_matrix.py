@@ -276,7 +276,6 @@ class Touched:
         return np.stack(rotated(along[..., 0], along[..., 1], -pose[:, :1]), axis=-1)
 
     def of_fixture(self, fixture: Fixture, toolkit: Toolkit) -> ContactMatrices:
-        """The contact matrix of one fixture in a toolkit."""
         pose = fixture.pose
         return self.contact_matrices(
             np.array([[(peg.x, peg.y) for peg in fixture.pegs]]),

@@ -281,7 +281,6 @@ def load_cases(
 
     Parameters
     ----------
-    fixture, workpiece, toolkit : the fixture, of what and in what.
     loads : see :class:`workhold.model.requirements.Load`.
     jaw_force : force in N that pushes the moving carrier; by default the one needed so that no peg lets go
         under any load.

@@ -214,7 +214,6 @@ class Blocks:
 
     @classmethod
     def of(cls, pieces: PathForces) -> Blocks:
-        """The blocks of pieces in their order."""
         first = np.arange(0, len(pieces), BLOCK)
         if not len(first):
             return cls(first, *(np.zeros(0) for _ in range(7)))

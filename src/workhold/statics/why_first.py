@@ -19,10 +19,6 @@ __all__ = ["why_first"]
 def why_first(result: Result, unit: Unit = MILLIMETRE) -> str:
     """Says why the first fixture of a result stands first; nothing where another order was asked for.
 
-    Parameters
-    ----------
-    unit : of lengths.
-
     Examples
     --------
     >>> import workhold

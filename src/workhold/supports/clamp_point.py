@@ -264,7 +264,6 @@ class Pieces:
 
     @classmethod
     def joined(cls, parts: Sequence[Pieces]) -> Pieces:
-        """All pieces of several."""
         return cls(
             np.concatenate([one.curves for one in parts]), np.concatenate([one.spans for one in parts])
         )

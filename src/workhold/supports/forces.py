@@ -138,7 +138,6 @@ class Triangles:
         return cls(corners, slopes, -(slopes * after).sum(axis=-1))
 
     def take(self, rows: NDArray[np.int64]) -> Triangles:
-        """Some of the triangles."""
         return Triangles(self.corners[rows], self.slopes[rows], self.constants[rows])
 
     @property
@@ -269,7 +268,6 @@ class Corners:
     heights: Array
 
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Corners:
-        """Some of the triangles."""
         return Corners(self.numbers[rows], self.sides[rows], self.heights[rows])
 
 

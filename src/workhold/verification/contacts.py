@@ -235,7 +235,6 @@ class Balance:
 
     @property
     def margin(self) -> arb:
-        """The closure margin."""
         return least(self.shares)
 
     @cached_property

@@ -74,7 +74,6 @@ class ForceWalk:
 
     @classmethod
     def of(cls, program: Program, forces: CuttingForces) -> ForceWalk:
-        """The walk along a program with its forces."""
         walk, stretches = walk_of(program), forces.stretches
         move = stretches.move
         first = np.arange(0, len(move), RUN)

@@ -202,12 +202,10 @@ class Listing:
 
     @property
     def is_whole(self) -> bool:
-        """Whether all that was found is listed."""
         return self.complete and dict(self.found) == dict(self.counts) and self.query.best is None
 
     @property
     def hardware(self) -> ToolkitRules:
-        """The rules of its toolkit."""
         return ToolkitRules.of(self.query)
 
 

@@ -73,7 +73,6 @@ class PartRotations:
 
     @classmethod
     def of(cls, workpiece: Workpiece) -> PartRotations:
-        """The rotations of a workpiece."""
         every = enumerate(workpiece.every_outline)
         marks = np.array([[*marks_of(face.segment), number] for number, one in every for face in one.faces])
         center = marks[:, 0].mean()

@@ -136,7 +136,6 @@ class SeatOnPlate:
         hardware: ToolkitRules,
         outline: BallOutline,
     ) -> SeatOnPlate:
-        """The seat of a fixture in a pose."""
         named = zip(hardware.names, fixture.pegs[:LOCATORS], contacts, strict=False)
         held = [(name, peg, contact) for name, peg, contact in named if not contact.is_flush]
         locators = [(name, contact) for name, _, contact in held]

@@ -65,7 +65,6 @@ class SeatingJudge:
 
     @cached_property
     def hardware(self) -> ToolkitRules:
-        """The rules of the toolkit."""
         return ToolkitRules(self.query.toolkit)
 
     @cached_property
@@ -98,12 +97,10 @@ class StatedSeating:
 
     @property
     def fields(self) -> Mapping[str, Any]:
-        """The fields of its seating as they are written."""
         return self.claim.fields
 
     @cached_property
     def moving(self) -> list[bool]:
-        """Which pegs move."""
         return [any(self.judge.hardware.way(peg)) for peg in self.fixture.pegs]
 
     @cached_property

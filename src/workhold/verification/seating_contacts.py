@@ -68,7 +68,6 @@ class PartPlacement:
 
     @classmethod
     def of(cls, pose: Mapping[str, float], mirrored: bool = False) -> PartPlacement:
-        """The placement of a pose by its fields."""
         return cls(pose["theta_deg"], pose["x"], pose["y"], mirrored)
 
     def turned(self, way: Point) -> Point:

@@ -266,7 +266,6 @@ class ClampCells:
         return False
 
     def tip_slack(self, cell: tuple[int, int, int], x: float, y: float) -> float:
-        """The slack of the tip at the middle of a cell."""
         if cell not in self.slack:
             self.slack[cell] = self.rules.tip_room((x, y))
         return self.slack[cell]

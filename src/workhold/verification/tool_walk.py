@@ -127,7 +127,6 @@ class ToolWalk:
 
     @classmethod
     def of(cls, program: Program) -> ToolWalk:
-        """The walk along a program."""
         moves = program.moves
         start, end, bulge = moves.start[:, :2], moves.end[:, :2], moves.bulge
         chord = end - start

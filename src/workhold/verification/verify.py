@@ -98,7 +98,6 @@ class Judge:
 
     @cached_property
     def hardware(self) -> ToolkitRules:
-        """The rules of the toolkit."""
         return ToolkitRules.of(self.query)
 
     @cached_property

@@ -85,7 +85,6 @@ def part_answer(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, 
 
 
 def face_numbers(workpiece: Workpiece) -> dict[int, int]:
-    """Returns the number of the face of every segment."""
     return {number: face.number for face in workpiece.faces for number in face.segments}
 
 

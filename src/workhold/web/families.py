@@ -80,7 +80,6 @@ class FamilyFound:
     text: str
 
     def answer(self) -> dict[str, Any]:
-        """Describes the family for the page."""
         family = self.family
         points = []
         for plan in self.plans:
@@ -104,13 +103,7 @@ class FamilyFound:
         }
 
     def plan(self, setups: int | None) -> Plan:
-        """Returns the plan with at most so many set-ups; None is the fewest.
-
-        Raises
-        ------
-        InputError
-            When there is none.
-        """
+        """Returns the plan with at most so many set-ups; None is the fewest."""
         fitting = [plan for plan in self.plans if setups is None or plan.point.setups <= setups]
         if not fitting:
             raise InputError("there is no plan with so few set-ups: ask for more.")
@@ -178,7 +171,6 @@ class FamilyPaper:
 
 
 def make_family_paper(payload: FamilyPaper, order: Order) -> bytes:
-    """Makes the bytes of what was ordered."""
     from workhold.family.pages import draw_curve, draw_setups
     from workhold.presenting.papers import pages_bytes
     from workhold.units import unit_named

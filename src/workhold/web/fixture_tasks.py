@@ -103,17 +103,11 @@ class PaperOrder:
 
     @property
     def fixture(self) -> Fixture:
-        """The fixture."""
         return self.result[self.index]
 
     def chosen_supports(self) -> ChosenSupports | None:
         """Finds the supports asked for and chooses a set of them; None where none are asked for,
         or none hold the part.
-
-        Raises
-        ------
-        InputError
-            When there is no such set.
         """
         if self.supports is None:
             return None

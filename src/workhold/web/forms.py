@@ -60,13 +60,6 @@ class ToolkitRequest(Form):
         kind: str
 
     def toolkit(self) -> Toolkit:
-        """The toolkit.
-
-        Raises
-        ------
-        InputError
-            When there is no such toolkit.
-        """
         return toolkit_of(self.kind, self.model_dump(exclude={"kind", "title"}))
 
 
@@ -180,13 +173,7 @@ class SearchForm(Form):
     program: ProgramForm | None = None
 
     def query(self, toolkit: Toolkit, most_segments: int) -> Query:
-        """What is asked of a toolkit.
-
-        Raises
-        ------
-        InputError
-            For the first value that cannot be.
-        """
+        """What is asked of a toolkit."""
         loads = tuple(form.load() for form in self.loads)
         workpiece = self.workpiece.workpiece(most_segments)
         program, height = (None, None) if self.program is None else self.program.passed(workpiece.solid)

@@ -72,7 +72,6 @@ WhenLeft = Annotated[
 
 
 async def begin(request: Request, form: JobForm | ExploreForm | FamilyForm, when_left: str) -> JSONResponse:
-    """Checks a request and begins its job."""
     state = state_of(request)
     address = address_of(request)
     state.jobs.refuse_more(address)

@@ -215,13 +215,7 @@ class Jobs:
         sent_bytes: int = 0,
         stops_when_left: bool = False,
     ) -> ServerJob:
-        """Begins a job; ``sent_bytes`` is the length of its request.
-
-        Raises
-        ------
-        BusyError
-            See :meth:`refuse_more`.
-        """
+        """Begins a job; ``sent_bytes`` is the length of its request."""
         self.refuse_more(address)
         weight = sent_bytes * BYTES_KEPT
         job = ServerJob(token_urlsafe(NAME_BYTES), request, queries, address, kind, weight, stops_when_left)
@@ -246,7 +240,6 @@ class Jobs:
         job.changed()
 
     async def run(self, job: ServerJob) -> None:
-        """Runs a job to its end."""
         payload: Any = job.queries
         if job.kind == "design":
             payload = job.queries[0][1], self.limits.fixtures, bool(job.request.get("every", False))

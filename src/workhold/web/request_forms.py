@@ -203,13 +203,7 @@ class WorkpieceForm(Form):
     outlines: Annotated[dict[Name, OwnOutlineForm], Field(max_length=MOST_RANGES)] = Field(default={})
 
     def workpiece(self, most_segments: int) -> Workpiece:
-        """The part.
-
-        Raises
-        ------
-        InputError
-            For loops that cannot be used, and for too many segments.
-        """
+        """The part; refuses loops that cannot be used, and too many segments."""
         solid = None if self.solid is None else SolidOutline(**self.solid.model_dump())
         workpiece = checked_part(self.name, self.loops, most_segments, self.departure, solid)
         if not self.outlines:
@@ -295,13 +289,6 @@ class SpatialLoadForm(Form):
     tilt: Point = Field(default=[0.0, 0.0])
 
     def load(self) -> SpatialLoad:
-        """The load.
-
-        Raises
-        ------
-        InputError
-            When it is none.
-        """
         return SpatialLoad(**self.model_dump())
 
 

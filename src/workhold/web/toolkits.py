@@ -49,7 +49,6 @@ class PageField:
 
 
 def page_fields(row: ToolkitField, table: str | None = None) -> Iterator[PageField]:
-    """Yields the fields of the page for a field of a toolkit."""
     for one in row.labels:
         choosing = "several" if one.several else "one"
         form = choosing if one.choices else PAGE_FORMS.get(row.form, row.form)

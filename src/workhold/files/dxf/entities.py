@@ -198,8 +198,9 @@ def through_fit_points(entity: Any) -> RawChain:
 
 
 def ellipse(entity: Any) -> RawChain:
-    """An ELLIPSE or a part of one; its numbers are never in OCS. Refuses axes that are not those of an
-    ellipse.
+    """An ELLIPSE or a part of one; its numbers are never in OCS.
+
+    Refuses axes that are not those of an ellipse.
     """
     seen_from_below(entity)
     center, major = entity.dxf.center, entity.dxf.major_axis

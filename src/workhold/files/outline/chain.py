@@ -74,7 +74,6 @@ class Placement:
 
     @property
     def keeps_circles(self) -> bool:
-        """Whether circles stay circles."""
         first, second = hypot(self.a, self.b), hypot(self.c, self.d)
         slack = CIRCULAR * max(first, second)
         return abs(first - second) <= slack and abs(self.a * self.c + self.b * self.d) <= slack * max(
@@ -286,7 +285,6 @@ def without_segment(label: str) -> str:
 
 
 def at(point: Point) -> str:
-    """A point in words."""
     return f"({point[0]:.6g}, {point[1]:.6g})"
 
 

@@ -149,11 +149,10 @@ def refuse_true_curves(
     layered: bool,
     budget: Budget | None = None,
 ) -> None:
-    """Refuses an outline with curves that are no lines or arcs, unless a fit is given, and names one that
-    would do.
+    """Refuses an outline with curves that are no lines or arcs, unless a fit is given.
 
-    ``layered`` says whether the file has layers to choose. ``budget`` is what reading the file may still
-    take; None is no limit.
+    Names the first curves, and a fit that would do. ``layered`` says whether the file has layers to choose.
+    ``budget`` is what reading the file may still take; None is no limit.
     """
     true = {label: one for label, one in readings_of(labels, found).items() if not one.is_disguise}
     if fit is not None or not true:

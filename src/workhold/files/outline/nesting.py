@@ -79,7 +79,6 @@ class MeasuredLoop:
 
     @classmethod
     def of(cls, loop: Loop) -> MeasuredLoop:
-        """Measures a loop."""
         segments = loop_segments(loop.vertices)
         area = signed_area(segments)
         if area < 0:

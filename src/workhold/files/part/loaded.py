@@ -129,7 +129,6 @@ def is_usable(
     budget: Budget,
     drawing: Drawing,
 ) -> bool:
-    """Whether a part can be read of a drawing."""
     try:
         outline_of(path, drawing, part_number, tolerance, fit, True, budget)
     except InputError:

@@ -201,7 +201,6 @@ def survey(path: Path, *, called: Mapping[str, str] | None = None, **options: An
 
     Parameters
     ----------
-    path : of the file.
     called : as in :func:`workhold.files.part.load.read_workpiece`.
     options : the other arguments of that function.
 
@@ -269,8 +268,9 @@ def seen(told: Survey, path: Path, content: bytes, unit: str | None, options: Ma
 
 @contextmanager
 def going_on() -> Iterator[None]:
-    """Passes over what is refused, but not over what takes too much: an OverBudgetError is not tried once
-    more.
+    """Passes over what is refused, but not over what takes too much.
+
+    An OverBudgetError is raised: that is not tried once more.
     """
     try:
         yield

@@ -206,10 +206,10 @@ class Interpreter:
                 values[letter] *= LAST_DIGIT[unit.name]
 
     def set_up(self, codes: dict[str, str], functions: list[str], values: dict[str, float]) -> set[str]:
-        """Takes what stays in force: feed, speed, tool, its length, unit, plane, zero and how places are
-        written.
+        """Takes what stays in force, and returns the letters that have a meaning.
 
-        Returns the letters that have a meaning. Refuses functions that are not read, and a change to no tool.
+        That is feed and speed, the tool, its length, unit, plane, zero and how places are written. Refuses
+        functions that are not read, and a change to no tool.
         """
         modes, used = self.modes, {"N", "F", "S", "T"}
         for function in functions:
@@ -241,8 +241,7 @@ class Interpreter:
         return used
 
     def set_codes(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
-        """Puts the codes of a block in force that stay so, and passes over those that say nothing of the
-        path.
+        """Puts the codes of a block in force that stay so; passes over those that say nothing of the path.
 
         Returns the letters that belong to them. Refuses a spline, and a zero with a number that is none.
         """
@@ -304,13 +303,7 @@ class Interpreter:
             modes.length = length
 
     def move(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
-        """Makes the move of a block, if it has one, and returns the letters that have a meaning.
-
-        Raises
-        ------
-        InputError
-            For a move that is not known, or not read.
-        """
+        """Makes the move of a block, if it has one, and returns the letters that have a meaning."""
         used: set[str] = set()
         once = codes.get("once")
         if once == "4":
@@ -346,8 +339,9 @@ class Interpreter:
         return used | wanted
 
     def change_motion(self, codes: dict[str, str]) -> None:
-        """Puts the motion of a block in force, or its cycle, which begins anew after any other motion;
-        refuses both.
+        """Puts the motion of a block in force, or its cycle, which begins anew after any other motion.
+
+        Refuses both together.
         """
         modes, motion, cycle = self.modes, codes.get("motion"), codes.get("cycle")
         if motion is not None and cycle not in (None, CANCEL):
@@ -417,8 +411,9 @@ class Interpreter:
         return set(axes)
 
     def move_along_arc(self, clockwise: bool, values: dict[str, float]) -> set[str]:
-        """Moves along an arc or a helix about z; refuses an arc that is not known, or stands in another
-        plane.
+        """Moves along an arc or a helix about z.
+
+        Refuses an arc that is not known, or stands in another plane.
         """
         modes = self.modes
         if modes.plane != "17":

@@ -59,13 +59,7 @@ class ColumnsSink:
         return self.path.resolve().parent
 
     def receive(self, result: Result, listed: int, tables: Iterable[FixtureTable]) -> None:
-        """Writes a result and its fixtures, so many unless somebody asks to stop.
-
-        Raises
-        ------
-        InputError
-            When the file cannot be written.
-        """
+        """Writes a result and its fixtures, so many unless somebody asks to stop."""
         counts = Counter[str]()
         bends = result.query.knows_heights
         figures = len(FIGURES) if bends else BEFORE_PINS
@@ -146,13 +140,7 @@ class MappedTable(FixtureTable):
     path: Path = field(kw_only=True)
 
     def take(self, order: NDArray[Any] | slice) -> FixtureTable:
-        """The fixtures of an index array or slice, in its order.
-
-        Raises
-        ------
-        InputError
-            When one of them cannot be used.
-        """
+        """The fixtures of an index array or slice, in its order."""
         table = super().take(order)
         places = range(len(self))[order] if isinstance(order, slice) else np.arange(len(self))[order]
         refuse_faulty(table, self.query, self.path, places)

@@ -157,13 +157,6 @@ class RestrictionsPart(FormPart):
     angles: list[Pair] = []
 
     def restrictions(self) -> Restrictions:
-        """The restrictions.
-
-        Raises
-        ------
-        InputError
-            When a zone is none.
-        """
         return Restrictions(self.avoid, map(zone_of, self.zones), self.angles)
 
 
@@ -177,7 +170,6 @@ class FitPart(FormPart):
     standard: str = Field(default="", max_length=LONGEST_STANDARD)
 
     def fit(self) -> Fit:
-        """The fit."""
         (low, high), hole = self.pin, self.hole
         return Fit((low, high), (hole[0], hole[1]), self.position, self.position_assumed, self.standard)
 
@@ -191,13 +183,6 @@ class TolerancePart(FormPart):
     departure: float = 0.0
 
     def tolerance(self) -> Tolerance:
-        """The tolerance.
-
-        Raises
-        ------
-        InputError
-            When it is none.
-        """
         return Tolerance(self.peg, self.face, None if self.fit is None else self.fit.fit(), self.departure)
 
 
@@ -211,13 +196,6 @@ class LoadPart(FormPart):
     moment: float = 0.0
 
     def load(self) -> Load:
-        """The load.
-
-        Raises
-        ------
-        InputError
-            When it is none.
-        """
         return Load(self.points, self.force, self.directions, self.moment, self.name)
 
 
@@ -307,13 +285,7 @@ class Head(FormPart):
         return toolkit_of(self.toolkit.kind, self.toolkit.model_dump(exclude={"kind"}))
 
     def query(self) -> Query:
-        """What was asked.
-
-        Raises
-        ------
-        InputError
-            When a part of it cannot be.
-        """
+        """What was asked."""
         toolkit = self.asked_toolkit()
         workpiece = Workpiece.from_loops(
             self.workpiece.name,
@@ -345,9 +317,7 @@ class Head(FormPart):
         )
 
     def asked_program(self) -> Program | None:
-        """The program that fixtures are to let pass; refuses one that lacks something, or holds what cannot
-        be.
-        """
+        """The program that fixtures are to let pass; refuses one that lacks something or cannot be."""
         if self.program is None:
             return None
         try:

@@ -123,13 +123,7 @@ def piece_or_entries(entries: dict[str, Any]) -> Any:
 
 
 def head_value(text: str) -> Any:
-    """The content of a head's JSON, its swept pieces packed.
-
-    Raises
-    ------
-    InputError
-        As :func:`workhold.files.text.json_value`.
-    """
+    """The content of a head's JSON, its swept pieces packed."""
     return json_value(text, piece_or_entries)
 
 
@@ -182,13 +176,7 @@ def refuse_faulty(table: FixtureTable, query: Query, path: Path, places: Sequenc
 
 
 def checked_head(data: Any, path: Path) -> Head:
-    """Checks the head's keys.
-
-    Raises
-    ------
-    InputError
-        Naming the first key that is missing or cannot be used.
-    """
+    """Checks the head's keys."""
     try:
         return Head.model_validate(data)
     except ValidationError as error:

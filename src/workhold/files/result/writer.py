@@ -273,7 +273,6 @@ def toolkit_fields(toolkit: Toolkit) -> dict[str, Any]:
 
 
 def written(value: Any) -> Any:
-    """A value of a field as it is written."""
     if isinstance(value, tuple):
         return [written(one) for one in value]
     if isinstance(value, Flat):

@@ -90,7 +90,6 @@ class WallEdge:
 
     @classmethod
     def of(cls, edge: EdgeCurve, segment: Segment) -> WallEdge:
-        """An edge over its segment."""
         last = len(edge.points) - 1
         if last == 1:
             rise = abs(float(edge.points[1, 2] - edge.points[0, 2]))
@@ -236,10 +235,10 @@ class Conic:
         return cls((place.X(), place.Y(), place.Z()), along, across)
 
     def height_at(self, carrier: Segment, place: float, first: float, last: float) -> float | None:
-        """The z in mm at which it passes a place on a carrier, between two parameters less than half a turn
-        apart.
+        """The z in mm at which it passes a place on a carrier, between two parameters.
 
-        The place is in mm on a line and in radians on a circle. None where it is not passed between them.
+        They are less than half a turn apart. The place is in mm on a line and in radians on a circle. None
+        where it is not passed between them.
         """
         if isinstance(carrier, Line):
             (px, py), (nx, ny), off = carrier.middle, carrier.tangent, place
@@ -436,7 +435,6 @@ class Run:
     upper: End
 
     def at(self, position: float) -> Band:
-        """Its heights at a position."""
         return self.lower.at(position), self.upper.at(position)
 
     def common(self, low: float, high: float) -> Band:
@@ -606,7 +604,6 @@ class Walls:
                 yield from ((one.segment, one.segment.start), (one.segment, one.segment.end))
 
     def over(self, carrier: CutCarrier) -> list[Wall]:
-        """The walls that stand on a carrier."""
         if id(carrier) not in self.found:
             branches: defaultdict[int, list[Branch]] = defaultdict(list)
             for k in self.near(carrier.segment).tolist():

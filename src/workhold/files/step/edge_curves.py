@@ -225,9 +225,7 @@ def on_wall(edge: EdgeCurve, carrier: Segment | None) -> EdgeCurve:
 
 
 def is_one(segment: Segment | None, carrier: Segment, off: float) -> bool:
-    """Whether the line or the circle of an edge, ``off`` mm from its wall, is that of the wall within
-    rounding.
-    """
+    """Whether an edge, ``off`` mm from its wall, has the wall's line or circle within rounding."""
     if isinstance(segment, Arc) and isinstance(carrier, Arc):
         away = max(dist(segment.center, carrier.center), abs(segment.radius - carrier.radius))
         return away <= ONE_HEIGHT
@@ -270,7 +268,6 @@ def curve_of(face: int, curve: Any) -> EdgeCurve:
 
 
 def height(point: Point3) -> float:
-    """The z of a point."""
     return point[2]
 
 

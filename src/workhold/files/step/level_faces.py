@@ -221,10 +221,9 @@ def hanging_of(
     lies_on: Callable[[Point], bool],
     places: Budget,
 ) -> list[Array]:
-    """The loops of what hangs of the open parts of upper faces of one height; refuses loops that do not
-    close.
+    """The loops of what hangs of the open parts of upper faces of one height.
 
-    For ``lies_on`` and ``places`` see :func:`level_top`.
+    For ``lies_on`` and ``places`` see :func:`level_top`. Refuses loops that do not close.
     """
     segments = segments_of(open_)
     boxes = np.array([bounding_box(one) for one in segments])

@@ -381,12 +381,10 @@ class Meridian:
     surface: Any
 
     def Value(self, parameter: float) -> Any:
-        """The point at a parameter."""
         return self.surface.Value(self.surface.FirstUParameter(), parameter)
 
     @property
     def axis(self) -> Any:
-        """A point of the axis."""
         return self.surface.AxeOfRevolution().Location()
 
     def radius(self, point: Point3) -> float:

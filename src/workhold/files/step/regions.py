@@ -74,7 +74,6 @@ class Borders:
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What was done to them."""
         closed = f"Closed gaps of up to {self.gap:.2g} mm between edges of the outline."
         return (closed,) if self.gap > EDGE_GAP else ()
 
@@ -164,8 +163,9 @@ Piece = tuple[list[Point], list[float], str | None]
 
 
 def edge_piece(edge: Any, curves: CurveReader, label: str) -> Piece | None:
-    """An edge in the direction its wire runs; None for one of zero length, and refuses one that cannot be
-    read.
+    """An edge in the direction its wire runs; None for an edge of zero length.
+
+    Refuses an edge that cannot be read.
     """
     curve = occ.BRepAdaptor_Curve(edge)
     first, last = curve.FirstParameter(), curve.LastParameter()

@@ -70,7 +70,6 @@ class Solid:
 
     @property
     def listed(self) -> FileSolid:
-        """The solid as it is listed."""
         size = tuple(b - a for a, b in zip(self.low, self.high, strict=True))
         return FileSolid(self.number, self.name, size, self.low)
 

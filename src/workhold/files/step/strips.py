@@ -217,7 +217,6 @@ def turns_past(
 
 
 def is_past(value: Callable[[float], float], sign: float, position: float) -> bool:
-    """Whether a value has come to have a sign at a position."""
     return sign * value(position) >= 0.0
 
 

@@ -64,7 +64,6 @@ def shown(name: str) -> str:
 
 
 def href(element: Element) -> str:
-    """What an element links to."""
     return element.get("href", element.get(LINK, "")).strip()
 
 

@@ -89,12 +89,10 @@ class Style:
 
     @property
     def filled(self) -> bool:
-        """Whether a fill is seen."""
         return self.fill_opaque and (self.fill == SEEN or (self.fill == CURRENT and self.color_opaque))
 
     @property
     def stroked(self) -> bool:
-        """Whether a stroke is seen."""
         seen = self.stroke == SEEN or (self.stroke == CURRENT and self.color_opaque)
         return seen and self.stroke_opaque and self.stroke_wide and self.stroke_drawn
 
