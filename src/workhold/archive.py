@@ -58,7 +58,6 @@ class Column:
     shape: tuple[int, ...] = ()
 
     def header(self, rows: int) -> bytes:
-        """What stands in front of so many rows."""
         stream = io.BytesIO()
         about = {"descr": self.kind, "fortran_order": False, "shape": (rows, *self.shape)}
         np.lib.format.write_array_header_1_0(stream, about)
@@ -92,7 +91,6 @@ class ArchiveMember:
         return self.start + LOCAL.size + len(self.name) + 24 + self.room
 
     def local_header(self) -> bytes:
-        """The header in front of the content."""
         sizes = struct.pack("<2H2Q", SIZES, 16, self.size, self.size)
         extra = sizes + struct.pack("<2H", ROOM, self.room) + bytes(self.room)
         lengths = IN_EXTRA, IN_EXTRA, len(self.name), len(extra)
@@ -101,7 +99,6 @@ class ArchiveMember:
         )
 
     def central_header(self) -> bytes:
-        """The entry of the directory."""
         extra = struct.pack("<2H3Q", SIZES, 24, self.size, self.size, self.start)
         lengths = IN_EXTRA, IN_EXTRA, len(self.name), len(extra)
         fixed = CENTRAL.pack(
@@ -160,7 +157,6 @@ class ArchiveWriter:
         self.rows = self.done
 
     def close(self, name: str, text: str, mark: str) -> None:
-        """Writes the text under its name, the directory and the mark."""
         # Half a letter in a string of JSON becomes its escape.
         content = text.encode("utf-8", "backslashreplace")
         last = self.members[-1]

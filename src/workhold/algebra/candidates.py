@@ -266,7 +266,6 @@ class Facings:
 
 
 def are_parallel(rows: Array, a: IntArray, b: IntArray) -> BoolArray:
-    """Which pairs of features are parallel lines."""
     turn = rows[a, 3] * rows[b, 4] - rows[a, 4] * rows[b, 3]
     return np.asarray((rows[a, 0] == 0.0) & (rows[b, 0] == 0.0) & (np.abs(turn) <= PARALLEL))
 

@@ -45,7 +45,6 @@ class Laurent:
         return Laurent(self.polynomial * other.polynomial, self.low + other.low)
 
     def times(self, factor: int) -> Laurent:
-        """A whole multiple."""
         return Laurent(self.polynomial * factor, self.low)
 
     def raised(self, by: int) -> acb_poly:

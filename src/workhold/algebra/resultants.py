@@ -74,7 +74,6 @@ class ArrayTable:
         return {name: value for name, value in values.items() if isinstance(value, np.ndarray)}
 
     def take(self, which: NDArray[np.int64] | BoolArray) -> Self:
-        """The rows of an index array or mask."""
         return evolve(self, **{name: array[which] for name, array in self.arrays.items()})
 
     @classmethod

@@ -204,7 +204,6 @@ class Report:
         return f"<small>{link}<details><summary>setup sheet</summary>{code}</details></small>"
 
     def write(self, path: Path, summary: Summary) -> None:
-        """Writes the page."""
         headings = [
             "first choice",
             "part",
@@ -257,7 +256,6 @@ class Report:
 
 
 def escaped(words: Any) -> str:
-    """Words as HTML, whatever they hold."""
     return escape(plain(str(words)))
 
 

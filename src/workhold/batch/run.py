@@ -116,7 +116,6 @@ class Part:
 
 
 def reading_of(request: Request) -> Reading:
-    """The task that reads a part."""
     path = request.listed.path
     content = read_bytes(path)
     ending = Path(path).suffix.lower()
@@ -150,7 +149,6 @@ class Job:
         return f"{self.part.request.listed.name} in {self.held_in.name}"
 
     def answering(self, record: bytes, best: int) -> Answering:
-        """Task of a job, from the record of its part."""
         assert isinstance(self.held_in.query, Query)
         return Answering(self.name, self.title, record, self.held_in.query, best)
 

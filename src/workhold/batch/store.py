@@ -70,7 +70,6 @@ def part_record(workpiece: Workpiece, remarks: Sequence[str]) -> bytes:
 
 
 def refusal_record(sentence: str) -> bytes:
-    """The record of what cannot be read or asked, with the reason."""
     return ended({"format": REFUSAL, "refusal": [sentence]})
 
 
@@ -103,7 +102,6 @@ def plain_record(content: bytes) -> dict[str, Any]:
 
 
 def workpiece_of(record: dict[str, Any]) -> Workpiece:
-    """The part of a drawing's record."""
     solid = SolidOutline.of_entries(record["solid"], record) if record.get("solid") else None
     workpiece = Workpiece.from_loops(PART_NAME, record["loops"], None, record["departure"], solid)
     if "outlines" not in record:
@@ -164,7 +162,6 @@ class FolderStore(Store):
     folder: Path
 
     def place(self, name: str) -> str:
-        """The path of a record."""
         return str(self.path(name))
 
     def path(self, name: str) -> Path:
@@ -236,7 +233,6 @@ class UrlStore(Store):
 
     @contextmanager
     def file(self, name: str) -> Iterator[Path]:
-        """A copy of a record as a file."""
         with tempfile.TemporaryDirectory(prefix="workhold-") as folder:
             path = Path(folder) / f"{name}.json"
             path.write_bytes(self.read(name) or b"")

@@ -157,7 +157,6 @@ def fixture_row(fixture: Mapping[str, Any], job: Job) -> Row:
 
 
 def has_parquet() -> bool:
-    """Whether tables can be written as Parquet here."""
     return find_spec("pyarrow") is not None
 
 

@@ -168,7 +168,6 @@ class Answering(Task):
     best: int
 
     def prepare(self) -> None:
-        """Loads the search."""
         import workhold.search.design  # noqa: F401
 
     def record(self) -> bytes:

@@ -145,7 +145,6 @@ class LocalWorkers:
             self.workers.append(self.started(self.free_title()))
 
     def free_title(self) -> str:
-        """What a further worker is called."""
         taken = {one.title for one in self.workers}
         return next(
             title for title in (f"worker {k}" for k in range(1, self.count + 1)) if title not in taken
@@ -227,7 +226,6 @@ class LocalWorkers:
 
 
 def ended_by(one: Worker) -> str:
-    """How a worker that is no more ended, in words."""
     code = one.process.exitcode
     return f"by signal {-code}" if code is not None and code < 0 else f"with code {code}"
 

@@ -165,7 +165,6 @@ def reduced(fixture: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def place_in_order(fixture: Mapping[str, Any]) -> tuple[Any, ...]:
-    """What fixtures of a set are sorted by."""
     pegs = fixture["pegs"]
     pose = fixture["pose"]
     return (

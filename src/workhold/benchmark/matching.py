@@ -169,7 +169,6 @@ def finite(value: Any) -> float:
 
 
 def rows_of(text: str) -> tuple[Entered, ...]:
-    """The fixtures of a text in CSV."""
     table = table_of(text, Budget(LIMITS["list"], len(text))) if text.strip() else None
     names = {*table.names} if table is not None else set[str]()
     pegs = sorted(

@@ -328,7 +328,6 @@ def run_sentence(done: Batch, spent: float) -> str:
 def write_all(
     done: Batch, store: Store, measured: Measured, folder: Path, spent: float, events: list[str], sheets: bool
 ) -> Report:
-    """Writes tables, report and, where asked for, sheets."""
     from workhold.batch.report import Summary, write_results
     from workhold.version import __version__
 

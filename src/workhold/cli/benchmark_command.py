@@ -99,7 +99,6 @@ def chosen_sets(words: Sequence[str]) -> list[SetEntry]:
 
 
 def list_sets(chosen: Sequence[SetEntry], as_json: bool) -> None:
-    """Prints names, sizes and reasons of sets."""
     if as_json:
         print_json(sets=[set_data(one) for one in chosen])
         return

@@ -120,7 +120,6 @@ def toolkits_table(unit: Unit) -> Table:
 
 
 def figures_table(loaded: LoadedToolkit, unit: Unit) -> Table:
-    """Every figure of a toolkit, one line each."""
     toolkit, of = loaded.toolkit, unit.abbreviation
     first, finest = toolkit.plates[0], unit.decimals + 1
     each = f"on {'each' if len(toolkit.plates) > 1 else 'the'} {first.noun}"
@@ -188,7 +187,6 @@ def words_of_value(form: Form, value: Any, unit: Unit) -> str:
 
 
 def pitch_words(pitch: tuple[float, float], unit: Unit) -> str:
-    """The pitch as one number, or as two where they differ."""
     x, y = (unit.figure(length) for length in pitch)
     return x if pitch[0] == pitch[1] else f"{x} x {y}"
 
@@ -300,7 +298,6 @@ def list_layers(part: str, reading: PartWords, unit: Unit, as_json: bool) -> Non
 
 
 def list_solids(part: str, unit: Unit, as_json: bool) -> None:
-    """Prints the solids of a STEP file."""
     from workhold.cli.tables import solid_table
     from workhold.files.part.loaded import solids_in
 

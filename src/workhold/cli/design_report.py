@@ -24,7 +24,6 @@ THUMBNAILS, NEAREST_MISS = "thumbnails", "nearest-miss"
 
 
 def picture_names() -> list[str]:
-    """The files that a design may draw into a folder."""
     ranked = (picture_name(rank) for rank in range(1, BEST_DRAWN + 1))
     return [f"{name}{ending}" for name in (THUMBNAILS, NEAREST_MISS, *ranked) for ending in ENDINGS]
 

@@ -43,7 +43,6 @@ __all__ = ["family"]
 
 
 def report(found: Family, plan: Plan | None, spent: str, unit: Unit) -> None:
-    """Prints the curve, what was left out, and the plan."""
     toolkit = found.toolkit
     for part in found.left_out:
         print_remark(f"{part.name} is left out: {part.reason}.")
@@ -104,7 +103,6 @@ def curve_table(found: Family, unit: Unit) -> Table:
 
 
 def setup_table(setup: SetUp, found: Family, unit: Unit) -> Table:
-    """Tabulates the parts of a set-up and how each lies."""
     from workhold.family.members import loss_text
     from workhold.model.setup import settings_of
     from workhold.presenting.figure_words import figure_text, heading

@@ -98,7 +98,6 @@ def read_jobs(path: Path) -> list[JobWords]:
 
 
 def toml_entries(text: str) -> Iterator[dict[str, Any]]:
-    """Yields the entries of each job of a TOML file."""
     from workhold.files.budget import LIMITS, Budget
     from workhold.files.tables import MOST_COLUMNS
     from workhold.files.text import toml_table
@@ -154,7 +153,6 @@ def job_of(entry: Mapping[str, Any], place: str, folder: Path) -> JobWords:
 
 
 def flag_of(value: Any, place: str) -> bool:
-    """Reads a value that is true or false, or one of the words for that."""
     flag = value if isinstance(value, bool) else TRUTHS.get(str(value).lower())
     if flag is None:
         raise InputError(f"{place} is neither true nor false: write one of {', '.join(TRUTHS)}.")

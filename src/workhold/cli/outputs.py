@@ -115,7 +115,6 @@ def refuse_result_file(out: str, form: str, inputs: Iterable[str | Path | None],
 
 
 def write_output(result: Result, out: str, form: str) -> None:
-    """Writes a result to a file or to the terminal."""
     if out != STANDARD_OUTPUT:
         from workhold.files.result.save import save
 

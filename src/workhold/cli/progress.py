@@ -71,7 +71,6 @@ def progress_bar(
 
 
 def shown_bar(words: str, counted: str) -> Progress:
-    """Shows a bar on the terminal, with its one task."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
@@ -138,12 +137,10 @@ class BatchProgress:
         self.hands[worker] = self.bars.add_task(f"  {worker}: {words}", total=None, words="")
 
     def ended(self, worker: str) -> None:
-        """Removes the line of a worker that has ended its task."""
         if self.bars is not None and worker in self.hands:
             self.bars.remove_task(self.hands.pop(worker))
 
     def notify(self, sentence: str) -> None:
-        """Keeps and prints a sentence about an event."""
         self.events.append(sentence)
         if self.bars is None:
             print_remark(sentence)

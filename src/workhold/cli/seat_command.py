@@ -203,7 +203,6 @@ def setting_words(seating: Seating, gauge: Gauge, unit: Unit) -> list[str]:
 def wrong_words(
     seating: Seating, seats: list[Seat], opened: float | None, gauge: Gauge, unit: Unit
 ) -> list[str]:
-    """Says how many wrong seats there are, and whether a reading shows them."""
     wrong = [one for one in seats if one.is_wrong]
     alike = sum(one.same_place and not one.is_own for one in seats)
     words = []

@@ -308,7 +308,6 @@ def report(
 
 
 def print_sets(found: Supports, listed: Sequence[Triple], rank: int, unit: Unit) -> None:
-    """Prints some sets of three as a table, with what is not seen in it."""
     from workhold.supports.words import set_headings, set_row
 
     with_loads = bool(found.loads)

@@ -329,7 +329,6 @@ def place(point: tuple[float, float], unit: Unit) -> str:
 
 
 def solid_table(solids: Sequence[FileSolid], unit: Unit) -> Table:
-    """Tabulates the solids of a file, with their names where it has any."""
     short, named = unit.abbreviation, any(solid.name for solid in solids)
     table = Table((">solid", *(("name",) if named else ()), f"size {short}", "lowest corner"))
     for solid in solids:

@@ -219,7 +219,6 @@ def named_toolkits(
 
 
 def unknown_fields(table: FieldTable, given: list[tuple[ToolkitField, str]]) -> list[ToolkitField]:
-    """Lists the fields that are varied and that a kind of toolkit does not have."""
     known = {row.name for row in table.fields}
     return [row for row, _ in given if row.name not in known]
 
@@ -273,7 +272,6 @@ def name_of(row: ToolkitField, word: str) -> str:
 
 
 def words_of(option: str, text: str) -> list[str]:
-    """Splits a list into its entries."""
     words = [word.strip() for word in text.split(",")]
     if not all(words):
         raise InputError(f"{option} {text!r} has an empty entry: give a list such as 1,2,4.")

@@ -184,7 +184,6 @@ def optional_count(option: str, text: str | None) -> int | None:
 
 
 def positive_number(option: str, text: str) -> float:
-    """A finite number above zero."""
     value = number(text.strip())
     if not (isfinite(value) and value > 0):
         raise InputError(f"{option} {text!r} is not a positive number: give one above 0.")

@@ -106,7 +106,6 @@ class TextColumn:
         self.y += 0.62 * size
 
     def rule(self, width: float = 1.0) -> None:
-        """Draws a line across."""
         self.y += 4
         self.scene.line([(self.x, self.y), (self.x + self.width, self.y)], BLACK, width)
         self.y += 9
@@ -186,7 +185,6 @@ def arrangement_words(arrangement: Arrangement, toolkit: Toolkit) -> str:
 
 
 def fixture_words(fixture: Fixture, toolkit: Toolkit) -> str:
-    """The arrangement of a fixture in words."""
     return arrangement_words(toolkit.arrangement(fixture.type, fixture.direction), toolkit)
 
 
@@ -230,7 +228,6 @@ def draw_title(
 
 
 def draw_settings(column: TextColumn, fixture: Fixture, toolkit: Toolkit, lengths: LengthUnit) -> None:
-    """Writes what to set, with the travel first."""
     first, settings, several = toolkit.plates[0], settings_of(fixture, toolkit), len(fixture.travels) > 1
     # What moves in this fixture, which of several clamps the toolkit has need not be its first.
     moving = settings[0].carrier
@@ -279,7 +276,6 @@ def holes_words(carrier: Carrier) -> str:
 
 
 def diameter_words(carrier: Carrier, lengths: LengthUnit) -> str:
-    """The diameter of a carrier's pegs."""
     return f"Ø {lengths.short(2 * carrier.peg_radius)}" if carrier.peg_radius else "points, no diameter"
 
 

@@ -148,7 +148,6 @@ def draw_numbers(
 
 
 def draw_leader(scene: Scene, place: Place) -> None:
-    """Draws the leader of a number, which begins in a dot."""
     scene.line(place.leader(), LEADER, 0.9)
     scene.circle(place.anchor, 1.7, LEADER)
 

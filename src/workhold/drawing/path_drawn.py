@@ -324,7 +324,6 @@ class PlannedPath:
             placer.avoid_box(Box(x, y, x, y).grown(6))
 
     def labels(self, view: View, lengths: LengthUnit) -> list[Label]:
-        """Candidates for the label of the nearest move."""
         if self.passing is None:
             return []
         size = (text_width(self.words(lengths), NAME, bold=True) + 8, HIGH)

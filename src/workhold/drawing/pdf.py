@@ -207,7 +207,6 @@ def set_style(style: GraphicsStyle, attributes: dict[str, str]) -> None:
 
 
 def draw_text(pdf: FPDF, element: ET.Element) -> None:
-    """Writes a line of text, its halo below it."""
     attributes = element.attrib
     known = {"x", "y", "font-size", "font-weight", "text-anchor", "transform", "paint-order", "fill"}
     refuse_unknown("text", attributes, known | {"stroke", "stroke-width"} | SILENT)

@@ -128,7 +128,6 @@ def peg_label(bench: Bench, index: int, view: View) -> Label:
 
 
 def mark_label(point: Point, name: str) -> Label:
-    """Candidates for the name of a marked page point."""
     size = (text_width(name, TAG_SIZE) + 6, TAG_SIZE + 4)
     distances = [MARK_RADIUS + gap for gap in (3, 10, 20, 34, 52, 76, 110)]
     return around(point, pi / 4, size, distances, spread(24), turn_cost=2)

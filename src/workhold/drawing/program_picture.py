@@ -201,7 +201,6 @@ def tools_above(path: PlannedPath) -> list[str]:
 
 
 def last_lines(program: Program) -> dict[int, int]:
-    """The last line of each tool that moves."""
     return {int(tool): int(line) for tool, line in zip(program.moves.tool, program.moves.line, strict=True)}
 
 

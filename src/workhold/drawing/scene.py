@@ -195,7 +195,6 @@ class View:
         return self.left + self.scale * point[0], self.top - self.scale * point[1]
 
     def box(self, model: Box) -> Box:
-        """A model box on the page."""
         (x0, y1), (x1, y0) = self((model.x0, model.y0)), self((model.x1, model.y1))
         return Box(x0, y0, x1, y1)
 
@@ -276,7 +275,6 @@ class Scene:
     def polygon(
         self, points: Sequence[Point], fill: str, stroke: str = "none", width: float = 1.0
     ) -> ET.Element:
-        """Adds a closed polygon."""
         d = "M" + "L".join(f"{number(x)} {number(y)}" for x, y in points) + "Z"
         return self.path(d, stroke, width, fill)
 

@@ -93,7 +93,6 @@ class Placed:
 
     @classmethod
     def of(cls, seat: Seat, fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Placed:
-        """A seat of a fixture's pegs."""
         part = workpiece.turned_over if seat.mirrored else workpiece
         lying = part.placed(seat.pose)
         touching, gauge = {contact.peg for contact in seat.contacts}, Gauge(fixture, toolkit)

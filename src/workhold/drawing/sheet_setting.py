@@ -44,7 +44,6 @@ __all__ = ["CLAMPS", "OPENING", "touch_words", "write_counting", "write_pegs"]
 
 
 def write_pegs(column: TextColumn, sheet: Sheet) -> None:
-    """Writes where the pegs stand, and the tips of clamps."""
     toolkit, plates = sheet.toolkit, sheet.toolkit.plates
     first, noun = plates[0], toolkit.moving.noun
     heading(column, f"{toolkit.setup_words.standing} {peg_size(sheet, first)}")
@@ -72,7 +71,6 @@ def write_pegs(column: TextColumn, sheet: Sheet) -> None:
 
 
 def peg_size(sheet: Sheet, carrier: Carrier) -> str:
-    """The size of a carrier's pegs, behind a word."""
     if not carrier.peg_radius:
         return "(points, no diameter)"
     lengths = sheet.lengths
@@ -142,7 +140,6 @@ def write_opening(column: TextColumn, sheet: Sheet) -> None:
 
 
 def opening_steps(sheet: Sheet) -> list[str]:
-    """What to do, one or two sentences each."""
     fixture, lengths, moving = sheet.fixture, sheet.lengths, sheet.toolkit.moving
     words, force = sheet.toolkit.setup_words, sheet.details.jaw_force
     there, more, back = "Open", "wider", "Close"
@@ -218,7 +215,6 @@ def write_order(column: TextColumn, sheet: Sheet) -> None:
 
 
 def clamp_steps(sheet: Sheet) -> list[str]:
-    """What to do, one or two sentences each."""
     toolkit, lengths, alone = sheet.toolkit, sheet.lengths, sheet.is_closed_at_once
     plate, noun = toolkit.plates[0], toolkit.moving.noun
     bolts, ups = [], []
@@ -244,7 +240,6 @@ def clamp_steps(sheet: Sheet) -> list[str]:
 
 
 def clamping_words(sheet: Sheet) -> str:
-    """How to clamp, and with what force where that is known."""
     fixture, force, unit = sheet.fixture, sheet.details.jaw_force, sheet.lengths.unit
     if sheet.is_closed_at_once:
         return f"Clamp{'' if force is None else f' with {unit.force_words(force)}'}."

@@ -219,7 +219,6 @@ class Sheet:
 
     @property
     def name(self) -> str:
-        """The part's name."""
         return self.details.part_name or self.workpiece.name
 
     @property
@@ -262,7 +261,6 @@ class Sheet:
 
     @property
     def settings(self) -> tuple[LengthSetting, ...]:
-        """What is set on each thing that moves."""
         return settings_of(self.fixture, self.toolkit)
 
 
@@ -332,7 +330,6 @@ def peg_rows(sheet: Sheet) -> tuple[list[str], list[list[str]], str]:
 
 
 def write_flats(column: TextColumn, sheet: Sheet) -> None:
-    """Writes what the flats of the pegs are and how they are turned, where they have some."""
     flat = sheet.toolkit.plates[0].flat
     if flat is not None:
         column.paragraph(

@@ -118,7 +118,6 @@ class SideFigure:
 
     @property
     def notes(self) -> list[str]:
-        """Sentences on what is drawn, and what is not known."""
         heights, words = self.view.heights, self.lengths.words
         notes = [f"Heights in {self.lengths.sign} above the plane on which the part lies."]
         if heights.head_room is None:

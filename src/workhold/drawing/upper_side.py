@@ -147,7 +147,6 @@ def distinguishing_marks(workpiece: Workpiece) -> tuple[Mark, Mark] | None:
 
 
 def side_words(workpiece: Workpiece, fixture: Fixture, lengths: LengthUnit) -> str:
-    """Sentences on which side is up in a fixture and how to see it."""
     if is_own_mirror_image([face.segment for face in workpiece.faces]):
         if workpiece.solid is not None:
             up = f"{workpiece.solid.axis.replace('-', '−')} of the file points up"
@@ -182,7 +181,6 @@ def write_side_up(column: TextColumn, sheet: Sheet) -> None:
 
 
 def side_up_words(solid: SolidOutline, before: FirstSide | None) -> list[str]:
-    """Sentences on the side that is up, and on a set-up before."""
     up = solid.axis.replace("-", "−")
     sentences = [f"{up} of the file points up."]
     if before is None:

@@ -230,7 +230,6 @@ class LossTable:
         return out
 
     def only(self, chosen: IntArray) -> LossTable:
-        """The table of the patterns at some places, in order."""
         place = np.full(len(self.words), -1)
         place[chosen] = np.arange(len(chosen))
         kept = place[self.pattern] >= 0

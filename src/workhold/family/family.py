@@ -235,7 +235,6 @@ FORMAT = "workhold-family/1"
 
 
 def family_text(family: Family) -> str:
-    """The text of a family's file."""
     toolkit = family.toolkit
     head = {
         "toolkit": {"kind": toolkit.kind, **toolkit_fields(toolkit)},

@@ -93,7 +93,6 @@ def threshold(name: str, value: float) -> Threshold:
 
 
 def loss_figure_words(figure: Figure) -> str:
-    """What losses are computed of, in a few words."""
     return f"effective {figure.words}" if figure.key == LOCATION else figure.words
 
 

@@ -232,7 +232,6 @@ def heights_words(setup: SetUp, lengths: LengthUnit) -> Iterator[str]:
 
 
 def moves_words(setup: SetUp, before: SetUp | None) -> Iterator[str]:
-    """What is moved for a set-up after another one."""
     if before is None:
         return
     here, there = Counter(holes_of(setup)), Counter(holes_of(before))

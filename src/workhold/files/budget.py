@@ -65,7 +65,6 @@ class FileLimits:
     remedy: str = "save less in it"
 
     def seconds_for(self, size: int) -> float | None:
-        """The processor seconds for a file of so many bytes."""
         return None if self.seconds is None else self.seconds + self.seconds_per_million * size / 1e6
 
 

@@ -154,7 +154,6 @@ def forked(module: str, command: Sequence[str]) -> ForkedProcess | None:
 
 @atexit.register
 def end_servers() -> None:
-    """Ends this process's server with it."""
     while SERVERS:
         SERVERS.pop().end()
 

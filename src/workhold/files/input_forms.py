@@ -101,7 +101,6 @@ def optional(kind: Any, row: ToolkitField) -> tuple[Any, Any]:
 
 
 def one_of(forms: Mapping[str, Any]) -> Any:
-    """The type of a value that has one of the forms, by its kind."""
     several = [Annotated[form, Tag(f"<{noun}>")] for noun, form in forms.items()]
     return Annotated[reduce(or_, several), Discriminator(tag_of)]
 

@@ -34,7 +34,6 @@ __all__ = ["query_of", "read_supports", "supports_entry", "write_supports"]
 
 
 def query_of(part: SupportsPart, path: Path) -> Query:
-    """The part and the toolkit of a file of supports."""
     try:
         return checked_head(part.head(), path).query()
     except InputError as error:

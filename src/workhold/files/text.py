@@ -181,7 +181,6 @@ def refuse_long_numbers(value: Any) -> None:
 
 @lru_cache(maxsize=16)
 def decoder(hook: Callable[[dict[str, Any]], Any] | None) -> json.JSONDecoder:
-    """The decoder that makes something else of each object, or of none."""
     return json.JSONDecoder(
         parse_constant=refuse_constant,
         parse_int=whole_number,

@@ -353,7 +353,6 @@ def load_toolkit(name: str | Path) -> LoadedToolkit:
 
 
 def preset_names_of(kind: type[Toolkit]) -> tuple[str, ...]:
-    """Lists the presets that are toolkits of a class."""
     return tuple(name for name in preset_names() if KINDS[preset(name).kind] is kind)
 
 

@@ -224,7 +224,6 @@ class Carrier:
 
     @property
     def contact(self) -> ContactKind:
-        """The kind of contact that what stands on it makes with the part."""
         if self.is_wall:
             return WALL_END
         if self.on is not None:

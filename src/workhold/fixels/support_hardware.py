@@ -28,7 +28,6 @@ USUAL = "usual"
 
 
 def length_row(name: str, least: Any, figure: str, label: str) -> ToolkitField:
-    """A row of a length that may be left out."""
     return ToolkitField(name, "length", figure, (PageLabel(label, USUAL),), least=least, figure=figure)
 
 

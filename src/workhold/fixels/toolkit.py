@@ -238,12 +238,10 @@ class Toolkit:
 
     @property
     def peg_count(self) -> int:
-        """How many pegs hold the part."""
         return len(self.arrangements[0].carriers)
 
     @property
     def types(self) -> tuple[str, ...]:
-        """The names of the arrangements."""
         return tuple(dict.fromkeys(arrangement.name for arrangement in self.arrangements))
 
     @property
@@ -313,7 +311,6 @@ class Toolkit:
         return names
 
     def changed(self, fields: Mapping[str, Any]) -> Self:
-        """The toolkit with some of its fields changed."""
         # Other pegs are as good as nobody says.
         others = {"tolerance": None} if PEG_RADIUS in fields else {}
         return evolve(self, **others, **fields)  # type: ignore[misc]

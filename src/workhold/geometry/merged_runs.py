@@ -449,7 +449,6 @@ def one_piece(
 
 
 def with_middles(pieces: Sequence[Piece], points: Array) -> Array:
-    """Vertices and the middles of arcs."""
     chords = np.diff(points, axis=0)
     bulges = np.array([piece.bulge for piece in pieces])[:, None]
     middles = points[:-1] + chords / 2 + np.column_stack([chords[:, 1], -chords[:, 0]]) * bulges / 2

@@ -383,12 +383,10 @@ class BorderPiece:
 
     @property
     def start(self) -> Point:
-        """First point of the run."""
         return self.carrier.at(self.low if self.forward else self.high)
 
     @property
     def end(self) -> Point:
-        """Last point of the run."""
         return self.carrier.at(self.high if self.forward else self.low)
 
     @property
@@ -408,7 +406,6 @@ class BorderPiece:
 
     @property
     def bulge(self) -> float:
-        """The DXF bulge of the run."""
         if isinstance(self.carrier.segment, Line):
             return 0.0
         quarter = (self.high - self.low) / 4

@@ -80,7 +80,6 @@ class Sweep:
     diagonals: dict[int, list[int]] = field(factory=dict)
 
     def run(self) -> None:
-        """Goes over all vertices."""
         points = self.points
         order = sorted(range(len(points)), key=lambda k: (-points[k][1], points[k][0], k))
         place = {vertex: k for k, vertex in enumerate(order)}
@@ -106,7 +105,6 @@ class Sweep:
         self.helpers[v] = v
 
     def end(self, side: int, v: int) -> None:
-        """Drops the side that ends at a vertex."""
         if self.helpers[side] in self.merges:
             self.connect(v, self.helpers[side])
         self.sides.remove(side)

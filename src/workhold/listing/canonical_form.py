@@ -47,7 +47,6 @@ class Rows:
         return len(getattr(self, fields(type(self))[0].name))
 
     def take(self, order: NDArray[np.int64] | NDArray[np.bool_]) -> Self:
-        """The rows of an index array or mask, in its order."""
         indices = np.flatnonzero(order) if order.dtype == np.bool_ else order
         return type(self)(*(getattr(self, one.name).take(indices, axis=0) for one in fields(type(self))))
 

@@ -157,7 +157,6 @@ class BestFixtures:
 
     @property
     def most(self) -> int:
-        """How many to keep."""
         assert self.problem.query.best is not None
         return self.problem.query.best
 
@@ -309,7 +308,6 @@ class ResultCollector:
         return SortedRun.of(key, astuple(candidates, recurse=False))
 
     def keep(self, run: SortedRun, account: Account) -> None:
-        """Keeps decided fixtures."""
         self.by_holes.add(run)
         self.accounts.append(account)
 
@@ -427,5 +425,4 @@ class ResultCollector:
 
 
 def taken(part: Callable[[], SortedRun]) -> SortedRun:
-    """A part of some runs, read and merged."""
     return part()

@@ -235,7 +235,6 @@ class SetCount:
         return self.identity.count(words, pose, arrangement)
 
     def by_type(self, counts: IntArray) -> dict[str, int]:
-        """Counts (A,) of arrangements, summed by their names."""
         toolkit = self.identity.toolkit
         each = list(zip(toolkit.arrangements, counts.tolist(), strict=True))
         return {name: sum(count for one, count in each if one.name == name) for name in toolkit.types}

@@ -146,7 +146,6 @@ def free_rows(c: Candidates, frame: Frame) -> IntArray:
 
 
 def placed_as_is(c: Candidates, frame: Frame) -> Arranged:
-    """The place of fixtures in the form they have."""
     pitch, travel = frame.lattice.pitch_x, frame.moving.travel
     assert travel is not None
     free_standing, free_moving = free_columns(c, frame)
@@ -276,7 +275,6 @@ def placed(c: Candidates, problem: Problem) -> FixtureTable:
 
 
 def placed_with_clamp(c: Candidates, problem: Problem) -> FixtureTable:
-    """The table of candidates that fit on a plate with a clamp that is bolted on it."""
     frame, placement = problem.frame, clamp_placement(c, problem)
     hole, _ = placement.nearest(problem)
     column = np.concatenate([c.column[:, LOCATOR_CONTACTS], hole[:, None]], axis=1)

@@ -83,7 +83,6 @@ TOGETHER = 1 << 22
 
 
 def measured(table: FixtureTable, problem: Problem) -> FixtureTable:
-    """A table of fixtures of a problem with all its figures of quality."""
     touched = Touched.of(problem.workpiece, problem.toolkit, problem.loci, problem.wrench_length)
     return measured_as(table, problem.query, touched)
 

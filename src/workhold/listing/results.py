@@ -171,7 +171,6 @@ def best_result(kept: BestFixtures, work: Work, is_part: bool = False, is_limite
 def result_of(
     problem: Problem, candidates: Candidates, account: Account, work: Work, is_part: bool = False
 ) -> Result:
-    """The result of fixtures that are decided."""
     with ThreadPoolExecutor(max_workers=1) as pool:
         collector = ResultCollector(problem, pool, 1, is_part=is_part)
         collector.add(candidates, account)
@@ -372,7 +371,6 @@ def joined_tables(tables: Sequence[FixtureTable]) -> FixtureTable:
 
 
 def summed(counts: Iterable[Mapping[str, int]]) -> dict[str, int]:
-    """Counts by name, summed over several."""
     total: Counter[str] = Counter()
     for one in counts:
         total.update({name: int(count) for name, count in one.items()})

@@ -101,7 +101,6 @@ class SortedRun:
 
     @classmethod
     def of(cls, keys: Keys, columns: Columns) -> SortedRun:
-        """A run of rows in any order."""
         order = order_of(keys)
         return cls(keys.take(order), tuple(column.take(order, axis=0) for column in columns))
 
@@ -172,7 +171,6 @@ class StoredRun:
 
     @classmethod
     def of(cls, run: SortedRun, scratch: Scratch) -> StoredRun:
-        """A run written to a file."""
         arrays = (run.keys, *run.columns)
         places = tuple(scratch.write(array) for array in arrays)
         forms = tuple((array.dtype, array.shape[1:]) for array in arrays)
@@ -182,7 +180,6 @@ class StoredRun:
         return self.count
 
     def array(self, number: int, first: int, end: int) -> NDArray[Any]:
-        """Some rows of one of its arrays."""
         form, shape = self.forms[number]
         size = form.itemsize * int(np.prod(shape, dtype=np.int64))
         content = self.scratch.read(self.places[number] + first * size, (end - first) * size)
@@ -248,7 +245,6 @@ class Runs:
     def part(
         self, runs: Sequence[SortedRun | StoredRun], first: list[int], end: list[int]
     ) -> Callable[[], SortedRun]:
-        """What gives one part."""
         return lambda: SortedRun.joined(
             [run.rows(low, high) for run, low, high in zip(runs, first, end, strict=True)]
         )

@@ -222,7 +222,6 @@ class ClampedSeats:
 
     @property
     def turns_half(self) -> bool:
-        """Whether half a turn of everything leaves the toolkit as it is."""
         return half_turns(self.toolkit)
 
     def half_of(self, seats: Seats) -> IntArray:
@@ -246,7 +245,6 @@ class ClampedSeats:
         return len(np.unique(rows[:, SEAT] * len(self.toolkit.arrangements) + rows[:, KIND]))
 
     def add(self, seats: Seats) -> None:
-        """Pairs the clamps of further seats."""
         self.looked_at += len(seats)
         half, every = self.half_of(seats), self.query.listing == "all"
         rows = pairs_of(seats.spans, half, seats.clamps, self.hardware, every)
@@ -381,7 +379,6 @@ class ClampedSeats:
 
 
 def undecided_pairs(table: FixtureTable, toolkit: Toolkit) -> list[Undecided]:
-    """Pairs of which it is not decided whether they close, for the account."""
     columns = table.arrangement, table.face, table.column, table.row, np.degrees(table.theta) % 360.0
     return [
         Undecided(

@@ -153,7 +153,6 @@ class ShownClamp:
 
 
 def shown_clamps(fixture: Fixture, toolkit: Toolkit) -> Iterator[ShownClamp]:
-    """The clamps that hold the part."""
     for peg in fixture.pegs:
         carrier = toolkit.carrier(peg.carrier)
         clamping = clamping_direction(carrier, toolkit)

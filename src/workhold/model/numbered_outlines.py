@@ -113,11 +113,9 @@ class NumberedOutlines:
         return max(min(low, own[0]), 0.0), max(high, own[1])
 
     def faces_over(self, segments: Iterable[int]) -> set[int]:
-        """Numbers of the solid's faces over some segments."""
         return {face for segment in segments for face in self.over[segment]} if self.over else set()
 
     def segments_under(self, faces: Set[int]) -> list[int]:
-        """Numbers of the segments with one of these faces of the solid over them."""
         return [segment for segment, over in enumerate(self.over) if not faces.isdisjoint(over)]
 
 

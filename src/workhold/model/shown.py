@@ -221,7 +221,6 @@ class Shown:
 
     @property
     def extent(self) -> Box:
-        """Everything together."""
         boxes = [
             *(one.plate for one in self.carriers),
             *(one.room for one in self.clamps),
@@ -333,7 +332,6 @@ def with_wall(seen: Shown, fixture: Fixture, carrier: Carrier) -> Shown:
 
 
 def measured_between(seen: Sequence[ShownCarrier], setting: LengthSetting) -> Dimension:
-    """A length to set and the axes it is measured between."""
     mover = setting.carrier
     assert mover.travel is not None
     along, across = mover.travel.unit

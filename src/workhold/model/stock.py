@@ -111,7 +111,6 @@ class Stock:
 
     @classmethod
     def of_entries(cls, entries: Mapping[str, Any]) -> Stock:
-        """The stock of a file's entries."""
         return cls(**{name: entries[name] for name in FIELDS})
 
     def to_dict(self) -> dict[str, Any]:

@@ -221,7 +221,6 @@ class Recounted:
 
     @property
     def move(self) -> Hole:
-        """The columns and the rows."""
         return self.columns, self.rows
 
 
@@ -341,7 +340,6 @@ class ChosenSupports:
 
     @classmethod
     def of(cls, supports: Supports, number: int = 1) -> ChosenSupports:
-        """The set of a number."""
         if not isinstance(supports, Supports):
             raise InputError("supports are what the fixture's own method of that name returns: give these.")
         triple = supports.ranked(number)
@@ -393,7 +391,6 @@ class ChosenSupports:
 
     @property
     def clamp(self) -> ClampFigures:
-        """Where the clamp on top presses, and how good it is there."""
         return self.triple.clamp
 
     @property

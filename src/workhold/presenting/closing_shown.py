@@ -35,7 +35,6 @@ MOST_KEYFRAMES = 120
 
 
 def closing_shown(picture: LivePicture) -> dict[str, Any]:
-    """What is shown of the closing of a fixture, with what is read in the end."""
     fixture, toolkit = picture.fixture, picture.result.toolkit
     if not toolkit.closes_at_once:
         return picture.closing(words=order_words(fixture))

@@ -100,7 +100,6 @@ class TriedForce:
 
     @property
     def numbers(self) -> list[float]:
-        """The four numbers, in the order of its fields."""
         return [self.x, self.y, self.size, self.direction]
 
     @property
@@ -171,7 +170,6 @@ class LivePicture:
 
     @property
     def center(self) -> Point:
-        """The middle of the part on the page."""
         x, y = self.view(self.fixture.pose.apply(*self.result.workpiece.center))
         return float(x), float(y)
 

@@ -105,7 +105,6 @@ def compact(svg: str) -> str:
 
 
 def rounded(match: re.Match[str]) -> str:
-    """A number with few decimals."""
     text = f"{float(match[0]):.{DECIMALS}f}".removesuffix(".0")
     return "0" if text == "-0" else text
 

@@ -71,7 +71,6 @@ class Course:
 
     @property
     def is_stopped(self) -> bool:
-        """Whether somebody asked to stop."""
         stopped = self.deadline < inf or (self.cancel is not None and self.cancel.is_set())
         if stopped:
             self.deadline = min(self.deadline, perf_counter() + GRACE)

@@ -75,7 +75,6 @@ class TouchedFeatures(NamedTuple):
     place: Points
 
     def take(self, numbers: NDArray[np.int64]) -> TouchedFeatures:
-        """What the peg touches in some of the records."""
         is_arc, middle, axis, radius, place = self
         return TouchedFeatures(
             is_arc[numbers], middle[numbers], axis[numbers], radius[numbers], place[numbers]

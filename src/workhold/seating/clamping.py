@@ -111,7 +111,6 @@ class Gauge:
 
     @property
     def ways(self) -> OpeningWords:
-        """Words for opening and closing what moves."""
         return VISE[self.toolkit.clamping] if self.carrier.on is None else CLAMP
 
     @property
@@ -259,7 +258,6 @@ class ByHand:
 
     @property
     def pair(self) -> Pair:
-        """What is particular to the two clamps."""
         assert self.fixture.pair is not None
         return self.fixture.pair
 

@@ -308,7 +308,6 @@ class DescentPaths:
         self.first = self.cache.with_candidates(len(self.candidates))
 
     def follow(self, numbers: IntArray) -> None:
-        """Follows the paths off some of the candidates, by their numbers in the cache."""
         # Another thread may follow some at the same time: then both are there, and are the same.
         starts, first = descent_starts(self.candidates[numbers - self.first], self.closing.size)
         self.cache.add(numbers, *self.closing.followed(starts, first, self.seats))

@@ -208,7 +208,6 @@ def jaw_equilibria(boundary: ObstacleBoundary, subset: PegSubset, _: float) -> F
 
 
 def in_balance(candidates: Array, given: Given, size: float) -> Array:
-    """The candidates of a subset that may be equilibria."""
     return np.asarray(candidates[verdicts(with_forces(candidates, given, size), inf, inf) != NO_BALANCE])
 
 
@@ -355,7 +354,6 @@ def equilibria(boundary: ObstacleBoundary, pattern: Pattern, size: float) -> Equ
 
 
 def equilibria_on_wall(boundary: ObstacleBoundary, pattern: Pattern, size: float) -> Equilibria:
-    """All equilibria between a wall, a locator and a tip."""
     pressed = antipodal_candidates(boundary, pattern)
     candidates = np.concatenate([pressed, wall_candidates(boundary, pattern)])
     settle_on_wall(candidates, boundary, pattern, size)

@@ -231,7 +231,6 @@ class Silhouette:
 
     @classmethod
     def of(cls, workpiece: Workpiece) -> Silhouette:
-        """The outline of a part."""
         refuse_own_outlines(workpiece)
         segments = [face.segment for face in workpiece.faces]
         rows = centered(segment_rows(segments), workpiece.center)

@@ -310,7 +310,6 @@ class ManifoldFinder:
 
     @cached_property
     def lines(self) -> list[int]:
-        """Numbers of the straight pieces."""
         return np.flatnonzero(self.rows[:, IS_ARC] == 0.0).tolist()
 
     @cached_property

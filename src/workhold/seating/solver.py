@@ -70,7 +70,6 @@ class Solver:
         self.outline = Silhouette.of(self.workpiece)
 
     def closing(self, pattern: Pattern, turned_over: bool) -> Closing:
-        """The jaws of a pattern about the part, also turned over."""
         if pattern.radii not in self.boundaries:
             self.boundaries[pattern.radii] = ObstacleBoundary.of(self.workpiece, pattern.radii)
         boundary = self.boundaries[pattern.radii]
@@ -102,7 +101,6 @@ class Solver:
         return self.read(fixture, Pattern.of(fixture, self.toolkit), with_cage)
 
     def read(self, fixture: Fixture, pattern: Pattern, with_cage: bool) -> Seating:
-        """The seating of a fixture of a pattern."""
         return self.in_pattern(fixture, pattern).seating(with_cage)
 
     def in_pattern(self, fixture: Fixture, pattern: Pattern) -> FixtureInPattern:

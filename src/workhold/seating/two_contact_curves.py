@@ -233,7 +233,6 @@ class TwoContactCurves:
         return cls(*given, slides, {side: (known, 0, float(own.shift[2]))})
 
     def of_jaw(self, right: int) -> JawCells:
-        """The cells of one jaw's curves in order."""
         known, before, height = self.jaws[right]
         return JawCells(known.ordered, before, height)
 
@@ -249,7 +248,6 @@ def given_of(
 
 
 def pocket_rows(boundary: ObstacleBoundary, right: NDArray[np.int64]) -> Array:
-    """The rows of each peg in each pocket."""
     held = [
         (peg, pocket)
         for peg, side in enumerate(right.tolist())

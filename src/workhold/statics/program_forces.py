@@ -147,8 +147,6 @@ class CuttingNeed:
         return asked | {"jaw_force": self.jaw_force, "room": self.room}
 
     def in_holes(self, before: Sequence[str], after: Sequence[str]) -> CuttingNeed:
-        """Renames the holes, contact by contact."""
-
         def of(asked: AskedForce) -> AskedForce:
             return evolve(asked, element=asked.element and renamed(asked.element, before, after))
 

@@ -75,7 +75,6 @@ class WorkLimit:
     done: int = 0
 
     def is_set(self) -> bool:
-        """Whether the search is to stop."""
         return self.done >= self.most
 
 

@@ -130,7 +130,6 @@ class CarrierRoom:
 
     @classmethod
     def of(cls, fixture: Fixture, toolkit: Toolkit, holes: HolesUnderPart) -> CarrierRoom:
-        """The room beside the pegs of a fixture."""
         carriers = toolkit.carriers
         plates = {number: one for number, one in enumerate(carriers) if one.has_lattice}
         by_name = {one.name: one for one in carriers}

@@ -151,7 +151,6 @@ class KeyedFace:
 
     @property
     def key(self) -> bytes:
-        """The borders as bytes."""
         borders = self.face.borders
         return borders.starts.tobytes() + borders.ends.tobytes() + borders.arcs.tobytes()
 

@@ -283,7 +283,6 @@ class Stance:
 
 
 def stance(fixture: Fixture, toolkit: Toolkit) -> Stance:
-    """How the pegs of a fixture stand in a toolkit."""
     by_place = sorted(fixture.placed, key=lambda peg: (peg.x, peg.y))
     still = [peg for peg in by_place if toolkit.carrier(peg.carrier).travel is None]
     moved = [peg for peg in by_place if peg not in still]

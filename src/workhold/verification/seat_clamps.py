@@ -391,5 +391,4 @@ def verdict(findings: Iterable[Finding]) -> bool | None:
 
 
 def touch(one: Point, other: Point) -> bool:
-    """Whether two tips are one."""
     return all(bool(abs(a - b) < SAME) for a, b in zip(one, other, strict=True))

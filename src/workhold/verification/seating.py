@@ -128,7 +128,6 @@ class StatedSeating:
         return self.judge.query.toolkit.clamping
 
     def faults(self) -> Iterator[str]:
-        """Everything that is wrong."""
         seats = self.fields["seats"]
         own = [place for place, seat in enumerate(self.claim.seating.seats) if seat.is_own]
         if len(own) != 1:
@@ -186,7 +185,6 @@ class StatedSeating:
 
     @cached_property
     def lying(self) -> PartPlacement:
-        """How the part lies in the fixture."""
         return PartPlacement(self.fixture.pose.theta_deg, self.fixture.pose.x, self.fixture.pose.y)
 
     @cached_property
@@ -356,7 +354,6 @@ class StatedSeating:
 
 
 def agree(derived: float | None, written: float | None, spare: float = ROUNDED) -> bool:
-    """Whether two numbers, or none, agree."""
     if derived is None or written is None:
         return derived is written
     return abs(derived - written) <= spare

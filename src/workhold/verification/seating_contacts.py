@@ -249,7 +249,6 @@ class FloatOutline:
 
     @classmethod
     def of(cls, segments: Sequence[Side], workpiece: Workpiece) -> FloatOutline:
-        """The segments of a part's sides."""
         lines, arcs, points, edges = [], [], list[Array](), list[Array]()
         for side in segments:
             if isinstance(side, LineSide):

@@ -73,7 +73,6 @@ class SupportPlaces:
 
     @property
     def toolkit(self) -> Toolkit:
-        """What holds the part."""
         return self.query.toolkit
 
     def point_of(self, hole: Hole) -> tuple[float, float]:
@@ -203,7 +202,6 @@ class TopLevel:
 
 
 def borders_of(loop: Array) -> Loop:
-    """The segments of a loop of vertices."""
     return tuple(loop_segments(np.asarray(loop)))
 
 

@@ -94,7 +94,6 @@ class Stretches:
     radius: Array
 
     def take(self, chosen: NDArray[np.bool_] | IntArray) -> Stretches:
-        """The stretches of a mask or of numbers."""
         rest = (self.first, self.last, self.under, self.over, self.radius)
         return Stretches(self.move[chosen], *(values[chosen] for values in rest))
 

@@ -280,7 +280,6 @@ class Verification:
 
     @property
     def fixtures(self) -> int:
-        """How many fixtures were looked at."""
         return self.proven + self.refuted + self.undecided
 
     @property
@@ -335,7 +334,6 @@ def verify_file(path: str | Path, progress: Progress = no_progress) -> Verificat
 
 
 def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verification:
-    """Verify what a result claims."""
     query, everything = listing.query, listing.fixtures
     judge, seating = Judge(query), SeatingJudge(query)
     turning = PartRotations.of(query.workpiece)

@@ -60,7 +60,6 @@ def place_in(sentence: str) -> dict[str, float] | None:
 
 
 def part_answer(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, Any]:
-    """Describes a part with its segments and faces."""
     face_of = face_numbers(workpiece)
     segments, number = [], 0
     for index, loop in enumerate(workpiece.loop_segments):
@@ -361,7 +360,6 @@ def proof_answer(proof: Proof) -> dict[str, Any]:
 
 
 def explanation_answer(explanation: Explanation, workpiece: Workpiece, toolkit: Toolkit) -> dict[str, Any]:
-    """Describes why there is no fixture."""
     nearest = explanation.nearest
     return {
         "contacts": explanation.contacts,

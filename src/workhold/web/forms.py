@@ -173,7 +173,6 @@ class SearchForm(Form):
     program: ProgramForm | None = None
 
     def query(self, toolkit: Toolkit, most_segments: int) -> Query:
-        """What is asked of a toolkit."""
         loads = tuple(form.load() for form in self.loads)
         workpiece = self.workpiece.workpiece(most_segments)
         program, height = (None, None) if self.program is None else self.program.passed(workpiece.solid)

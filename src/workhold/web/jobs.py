@@ -102,7 +102,6 @@ class ServerJob:
 
     @property
     def compares(self) -> bool:
-        """Whether the job is a comparison of toolkits."""
         return self.kind == "explore"
 
     @property
@@ -282,7 +281,6 @@ class Jobs:
         self.make_room()
 
     def keep(self, job: ServerJob, found: Found) -> None:
-        """Keeps the outcome of a search."""
         result, notes = found.result, list(found.result.notes)
         if found.left_out:
             every, put_in_order = sum(result.found.values()), len(result) + found.left_out
@@ -336,7 +334,6 @@ class Jobs:
             self.pool.cancel(job.task)
 
     def delete(self, name: str) -> None:
-        """Stops a job and forgets it."""
         job = self.by_name.pop(name, None)
         if job is None:
             return

@@ -183,7 +183,6 @@ class Pool:
     busy: int = field(default=0, init=False)
 
     def open(self) -> None:
-        """Starts the workers."""
         self.slots = [asyncio.create_task(self.keep(slot)) for slot in range(self.size)]
 
     async def close(self) -> None:

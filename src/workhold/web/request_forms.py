@@ -94,7 +94,6 @@ class Form(BaseModel):
 
 
 def of_address(adapter: TypeAdapter[Asked], name: str, text: str) -> Asked:
-    """A value of an address that is JSON."""
     try:
         return adapter.validate_json(text)
     except ValidationError as error:

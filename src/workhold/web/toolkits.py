@@ -93,7 +93,6 @@ class Described:
         }
 
     def answer(self) -> dict[str, Any]:
-        """Describes the kind for the page."""
         toolkit = toolkit_of(self.name, self.words.start)
         types = {one.name: arrangement_words(one, toolkit) for one in toolkit.arrangements}
         return {

@@ -78,7 +78,6 @@ class DxfWalk:
         }
 
     def visit_all(self, entities: Iterable[Any], nest: BlockNesting) -> None:
-        """Visits entities in drawing order."""
         for entity in entities:
             self.visit(entity, nest)
 
@@ -310,7 +309,6 @@ def numbered(label: str, k: int) -> str:
 
 
 def block_placement(insert: Any) -> Placement:
-    """The placement of a block by a level INSERT."""
     matrix = insert.matrix44()
     ax, ay, _ = matrix.transform_direction((1, 0, 0))
     cx, cy, _ = matrix.transform_direction((0, 1, 0))

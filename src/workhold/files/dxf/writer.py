@@ -134,7 +134,6 @@ def peg_layer(carrier: Carrier) -> str:
 
 
 def setting_layer(mover: Carrier) -> str:
-    """The layer of the length to set on what moves."""
     return "OPENING" if mover.has_lattice else f"{layer_of(mover)}_SETTING"
 
 

@@ -289,5 +289,4 @@ def at(point: Point) -> str:
 
 
 def counted(count: int, one: str, many: str) -> str:
-    """A number and its noun."""
     return f"{count} {one if count == 1 else many}"

@@ -138,7 +138,6 @@ class CurveReader:
 
 
 def readings_of(labels: Iterable[str], found: Mapping[str, CurveReading]) -> dict[str, CurveReading]:
-    """How the curves among some labelled segments were read."""
     return {label: found[label] for label in labels if label in found}
 
 

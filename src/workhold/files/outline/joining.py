@@ -364,7 +364,6 @@ def end_point(chains: Sequence[Chain], end: int) -> Point:
 
 
 def junction(chains: Sequence[Chain], ends: Sequence[int], within: str = "") -> Junction:
-    """Three or more ends at one point."""
     names = tuple(chains[end // 2].labels[-(end % 2)] for end in ends)
     return Junction(end_point(chains, ends[0]), names, within)
 

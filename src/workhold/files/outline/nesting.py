@@ -56,7 +56,6 @@ class DrawnPart:
 
     @property
     def segment_count(self) -> int:
-        """Segments of all its loops together."""
         return sum(len(loop.labels) for loop in self.loops)
 
     def __str__(self) -> str:

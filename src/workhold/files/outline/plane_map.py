@@ -183,7 +183,6 @@ def nearest_other(places: NDArray[np.float64], segment: Segment, point: Point) -
 
 
 def owners_of(carrier: CutCarrier, position: float) -> tuple[int, ...]:
-    """Numbers of the segments that cover a position of a carrier."""
     turns = (0.0, -2 * pi, 2 * pi) if isinstance(carrier.segment, Arc) else (0.0,)
     return tuple(
         owner

@@ -328,7 +328,6 @@ def shared_remarks(one: Cluster) -> list[str]:
 
 
 def doubled_places(one: Cluster) -> list[str]:
-    """Where lines lie on each other."""
     return [
         f"{without_segment(label)} and {without_segment(other)} from {at(start)} to {at(end)}"
         for label, other, start, end in one.doubled
@@ -375,7 +374,6 @@ def lie_on_each_other(segments: Sequence[Segment], tolerance: float) -> bool:
 
 
 def lines_overlap(lines: Sequence[Line], tolerance: float) -> bool:
-    """Whether two of some lines run along each other."""
     rows = np.array([(*one.start, *one.end) for one in lines])
     rows = rows - np.tile(rows.reshape(-1, 2).mean(axis=0), 2)
     angle = np.arctan2(rows[:, 3] - rows[:, 1], rows[:, 2] - rows[:, 0]) % pi

@@ -200,7 +200,6 @@ def refuse_large(segments: int) -> None:
 
 
 def part_remarks(parts: Sequence[DrawnPart], chosen: DrawnPart, asked: int | str | None) -> list[str]:
-    """What to say about several parts in one file."""
     if len(parts) == 1:
         return []
     more = f"; and {len(parts) - PART_LIST} smaller ones" if len(parts) > PART_LIST else ""

@@ -118,7 +118,6 @@ def drawn_layers(
 def layers_of(
     document: Any, code: int | str, unit: str | None, usual_unit: str | None, budget: Budget
 ) -> tuple[tuple[DrawnLayer, ...], bool]:
-    """The layers of a document, see :func:`drawn_layers`."""
     known = scale_of(code, unit, usual_unit)
     scale = 1.0 if known is None else known[0]
     try:

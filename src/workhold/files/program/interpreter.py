@@ -103,7 +103,6 @@ class Interpreter:
 
     @property
     def modes(self) -> Modes:
-        """What is in force."""
         return self.path.modes
 
     def read(self, block: ProgramBlock) -> None:

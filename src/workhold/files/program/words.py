@@ -421,6 +421,5 @@ def refusal(code: str, written: str) -> str:
 
 
 def excerpt(text: str) -> str:
-    """The beginning of a text as a message shows it."""
     shown = plain(text.strip())
     return shown if len(shown) <= SHOWN else shown[: SHOWN - 3] + "..."

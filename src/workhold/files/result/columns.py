@@ -140,7 +140,6 @@ class MappedTable(FixtureTable):
     path: Path = field(kw_only=True)
 
     def take(self, order: NDArray[Any] | slice) -> FixtureTable:
-        """The fixtures of an index array or slice, in its order."""
         table = super().take(order)
         places = range(len(self))[order] if isinstance(order, slice) else np.arange(len(self))[order]
         refuse_faulty(table, self.query, self.path, places)

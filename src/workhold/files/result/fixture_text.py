@@ -224,7 +224,6 @@ class WrittenBlock:
 
     @property
     def pose(self) -> list[list[Any]]:
-        """The columns of the poses."""
         return [array.tolist() for array in (self.theta, *self.table.position.T)]
 
     @property

@@ -214,7 +214,6 @@ class UndecidedPart(FormPart):
     reason: str = Field(min_length=1)
 
     def undecided(self) -> Undecided:
-        """The entry as the model has it."""
         faces, columns, rows = (tuple(v) for v in (self.segments, self.columns, self.rows))
         return Undecided(self.type, faces, columns, rows, self.theta_deg, self.reason, self.reach_deg)
 
@@ -230,7 +229,6 @@ class ProofPart(FormPart):
     undecided: list[UndecidedPart]
 
     def proof(self) -> Proof:
-        """The account as the model has it."""
         counts = (self.cells, self.candidates, self.discarded_by_bound, self.verified, self.escalated)
         return Proof(*counts, tuple(item.undecided() for item in self.undecided))
 
@@ -285,7 +283,6 @@ class Head(FormPart):
         return toolkit_of(self.toolkit.kind, self.toolkit.model_dump(exclude={"kind"}))
 
     def query(self) -> Query:
-        """What was asked."""
         toolkit = self.asked_toolkit()
         workpiece = Workpiece.from_loops(
             self.workpiece.name,

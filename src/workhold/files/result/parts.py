@@ -176,7 +176,6 @@ def refuse_faulty(table: FixtureTable, query: Query, path: Path, places: Sequenc
 
 
 def checked_head(data: Any, path: Path) -> Head:
-    """Checks the head's keys."""
     try:
         return Head.model_validate(data)
     except ValidationError as error:

@@ -97,7 +97,6 @@ def read_result(path: str | Path) -> Result:
 
 
 def collected(fixtures: Iterable[Any], path: Path) -> Columns:
-    """Puts fixtures into arrays, block by block."""
     blocks: list[list[NDArray[Any]]] = [[] for _ in range(6)]
     iterator = iter(fixtures)
     number, pegs, seating = 1, 0, list[Seating]()

@@ -83,7 +83,6 @@ def result_text(result: Result) -> Iterator[str]:
 
 
 def with_entry(line: str, key: str, value: dict[str, Any]) -> str:
-    """The line of a fixture with one more key."""
     return f'{line[:-1]}, "{key}": {json.dumps(value)}}}'
 
 
@@ -114,7 +113,6 @@ def with_clearances(lines: list[str], result: Result, rows: slice) -> list[str]:
 
 
 def with_forces(lines: list[str], table: FixtureTable, result: Result, program: Program) -> list[str]:
-    """The lines of some fixtures, each with the forces that the program's tools ask for."""
     from workhold.statics.program_forces import cutting_needs
 
     jaw_force = result.query.jaw_force
@@ -288,7 +286,6 @@ def load_entry(load: Load) -> dict[str, Any]:
 
 
 def proof_entry(proof: Proof) -> dict[str, Any]:
-    """The account of the search as it is written."""
     return {
         "cells": int(proof.cells),
         "candidates": int(proof.candidates),

@@ -287,7 +287,6 @@ class Branch:
 
     @classmethod
     def over(cls, carrier: Segment, wall_edge: WallEdge) -> Iterator[Branch]:
-        """The branches of an edge over a carrier that holds it."""
         edge = wall_edge.edge
         places = along(carrier, edge.points)
         for first, last in wall_edge.branches:

@@ -282,7 +282,6 @@ def drawn(
 
 
 def advised(refusal: InputError, solid: StandingSolid, view: HeightView) -> InputError:
-    """A refusal with what to give instead."""
     instead = advice(solid, view.head_room, view.least_band)
     return InputError(f"{str(refusal).removesuffix('.')}; {instead}.")
 

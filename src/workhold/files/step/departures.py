@@ -169,7 +169,6 @@ def departures(outline: Outline, faces: Sequence[SolidFace]) -> list[str]:
 
 
 def heights(outline: Outline, face: SolidFace) -> str:
-    """The heights a face reaches over, in words."""
     return f"heights {span(outline, face.low, face.high)}"
 
 

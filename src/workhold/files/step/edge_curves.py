@@ -272,7 +272,6 @@ def height(point: Point3) -> float:
 
 
 def position_along(segment: Segment) -> Callable[[Point3], float]:
-    """The parameter of points along a segment's carrier."""
     return lambda point: segment.parameter((point[0], point[1]))
 
 

@@ -66,7 +66,6 @@ class Enclosure:
     boxes: Array | None = field(init=False, default=None)
 
     def add(self, other: Enclosure) -> None:
-        """Adds what bounds something else."""
         self.segments += other.segments
         self.polygons += other.polygons
         self.boxes = None
@@ -98,7 +97,6 @@ class Enclosure:
         return [*self.segments, *sides]
 
     def holds(self, point: Point) -> bool:
-        """Whether a point lies in one of the polygons."""
         if not self.polygons:
             return False
         if self.boxes is None:

@@ -203,7 +203,6 @@ def components(direction: Any, axis: int) -> tuple[float, float]:
 
 
 def grid(surface: Any) -> Iterator[tuple[float, float]]:
-    """Pairs of parameters all over a surface."""
     us = np.linspace(surface.FirstUParameter(), surface.LastUParameter(), GRID_POINTS)
     vs = np.linspace(surface.FirstVParameter(), surface.LastVParameter(), GRID_POINTS)
     return product(us.tolist(), vs.tolist())

@@ -516,7 +516,6 @@ def longest(rows: Sequence[HeightRow]) -> HeightRow | None:
 
 
 def advice(solid: StandingSolid, room: float, least: float) -> str:
-    """What to give instead, in words."""
     best = longest(height_table(solid, room, least))
     if best is None:
         return f"give another axis, or {SECTION}"
@@ -524,7 +523,6 @@ def advice(solid: StandingSolid, room: float, least: float) -> str:
 
 
 def height_remarks(outline: HeightOutline, found: SolidOutline, rows: Sequence[HeightRow]) -> list[str]:
-    """What an outline by height is, what may be touched of it, and a height at which more may be."""
     _, border, touchable, band = measures(outline)
     reach = (
         "pegs are taken to reach as high"

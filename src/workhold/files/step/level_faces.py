@@ -113,7 +113,6 @@ def bottom_loops(solid: StandingSolid) -> list[Array]:
 
 
 def lying_borders(solid: StandingSolid) -> list[FaceBorder]:
-    """The borders of the level faces on which a solid lies."""
     return read_borders(
         [face for face in solid.faces if face.lie == "level" and not face.upward and face.low <= SAME_HEIGHT]
     )
@@ -307,7 +306,6 @@ def lines_of(face_borders: Sequence[FaceBorder]) -> list[Segment]:
 
 
 def lines_near(bounds: Enclosure, box: Box) -> Iterator[Segment]:
-    """The segments and the polygons' sides that reach into a box."""
     x0, y0, x1, y1 = box
     for one in bounds.lines:
         low_x, low_y, high_x, high_y = bounding_box(one)

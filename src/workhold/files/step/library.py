@@ -75,7 +75,6 @@ def load_step_library() -> None:
 
 
 def remedy(error: ImportError) -> str:
-    """What to install, by why the import failed."""
     if isinstance(error, ModuleNotFoundError):
         return f"STEP files need a library that is not installed: pip install '{REQUIREMENT}'."
     missing = re.match(r"(lib\S+?\.so[.\d]*): cannot open shared object file", str(error))

@@ -409,7 +409,6 @@ def turned_folds(surface: Any) -> list[Found]:
 
 
 def turned_cuts(surface: Any, z: float) -> list[Found]:
-    """The circles in which a turned surface passes a height."""
     curve = Meridian(surface)
     parameters, points = curve.samples()
     away = np.array([height(point) - z for point in points])
@@ -453,7 +452,6 @@ class PlainCurves:
 
     @classmethod
     def of(cls, segments: Sequence[Segment]) -> PlainCurves:
-        """Some segments, as the kernels ask for them."""
         return cls(segments, segment_rows(segments) if segments else np.zeros((0, 10)))
 
     def are_border(self, places: NDArray[np.float64], inside: Inside) -> bool:

@@ -108,7 +108,6 @@ def prepare() -> None:
 
 
 def plain(content: bytes) -> Any:
-    """The solids as plain data."""
     return guarded(lambda: [astuple(solid.listed) for solid in read_solids(content)], ValueError)
 
 
@@ -234,7 +233,6 @@ def solid_called(solids: tuple[Solid, ...], name: str) -> Solid:
 
 
 def solid_remarks(solids: tuple[Solid, ...], chosen: Solid, asked: int | str | None) -> list[str]:
-    """What to say about several solids in one file."""
     if len(solids) == 1:
         return []
     more = f"; and {len(solids) - SOLID_LIST} smaller ones" if len(solids) > SOLID_LIST else ""
@@ -319,7 +317,6 @@ def shown_name(name: str) -> str:
 
 
 def name_of(solid: Any, names: tuple[str, ...], count: int, process: Any) -> str:
-    """The name of a solid of a product that has so many solids."""
     own = ""
     with suppress(Exception):
         # Solids are known to the reader without the place that assemblies give them.

@@ -212,7 +212,6 @@ def extruded(outer: Any, holes: Sequence[Any], low: float, high: float) -> Any:
 
 
 def assembly(name: str, named: Sequence[tuple[str, Any, Colour | None]]) -> bytes:
-    """The STEP file of an assembly of bodies, each with its name and, where there is one, its colour."""
     document = occ.TDocStd_Document(occ.TCollection_ExtendedString("XmlOcaf"))
     shapes = occ.XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
     compound = occ.TopoDS_Compound()
@@ -269,7 +268,6 @@ def plates_step(plates: Sequence[JawPlate], thickness: float | None = None) -> b
 
 
 def drilled(plate: JawPlate, right: float, thickness: float) -> Any:
-    """A plate as a solid, moved to the right."""
     corners = [(x + right, y) for x, y in plate.outline.corners]
     border = wire([Line(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True)])
     holes: list[tuple[Point, float]] = [(center, plate.hole_diameter) for _, center in plate.holes]

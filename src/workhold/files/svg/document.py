@@ -315,7 +315,6 @@ class Styles:
             self.match(styles)
 
     def match(self, styles: list[Element]) -> None:
-        """Note which rules select which elements."""
         sheets = Sheets(self.budget)
         for style in styles:
             place = f"the style sheet on line {self.document.places[style][1]}"
@@ -352,7 +351,6 @@ class Styles:
         return found
 
     def attribute(self, element: Element) -> tuple[Block, Block]:
-        """The declarations of an element's style attribute."""
         text = element.get("style", "")
         if text not in self.attributes:
             place = f"the style of {self.document.name(element)}"

@@ -145,7 +145,6 @@ def overriding(
 
 
 def in_pixels(root: ShapeElement) -> bool:
-    """Whether a drawing says that its size is in pixels."""
     given = (root.given(name) for name in ("width", "height"))
     return any(side is not None and side.text.lower().endswith("px") for side in given)
 

@@ -202,7 +202,6 @@ def compound_selectors(tokens: Tokens) -> list[tuple[str, list[Any]]]:
 
 
 def trimmed(tokens: Tokens) -> list[Any]:
-    """Tokens without blanks at their ends."""
     blank = [token.type == "whitespace" for token in tokens]
     if all(blank):
         return []

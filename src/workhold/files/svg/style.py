@@ -265,7 +265,6 @@ def boundaries(chains: Sequence[Chain], budget: Budget) -> list[Chain]:
 
 
 def meet(one: LoopShape, other: LoopShape, budget: Budget) -> bool:
-    """Whether two loops cross or touch."""
     budget.work(len(one.segments) + len(other.segments))
     try:
         refuse_meeting_loops(one, other, str, str)

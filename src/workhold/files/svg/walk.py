@@ -84,7 +84,6 @@ class SvgWalk:
         self.sizes: dict[Element, int] = {}
 
     def visit(self, element: Element, nest: ElementNesting) -> None:
-        """Collects one element and those inside it."""
         self.budget.spend()
         tag = local_name(element)
         if tag in SILENT:
@@ -100,7 +99,6 @@ class SvgWalk:
                 ) from error
 
     def visit_figure(self, figure: ShapeElement, nest: ElementNesting) -> None:
-        """Collects an element with its values and those inside it."""
         element, label = figure.element, figure.label
         tag = local_name(element)
         style = computed(figure.declarations, nest.style, self.styles, label)

@@ -60,7 +60,6 @@ class ToolkitRules:
 
     @classmethod
     def of(cls, query: Query) -> ToolkitRules:
-        """The rules of the toolkit of a query, and how it lists pairs of clamps."""
         return cls(query.toolkit, every=query.listing == "all")
 
     @cached_property
@@ -155,7 +154,6 @@ class ToolkitRules:
 
     @property
     def pegs_wanted(self) -> str:
-        """What the pegs of a fixture are to be."""
         words = [
             f"the two ends of the {one.noun}"
             if one.is_wall

@@ -108,7 +108,6 @@ def direction_of(clamp: Peg) -> str:
 
 
 def is_along_x(clamp: Peg) -> bool:
-    """Whether a clamp moves along a row."""
     return direction_of(clamp).endswith("x")
 
 
