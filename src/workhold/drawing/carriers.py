@@ -14,8 +14,7 @@ from workhold.drawing.scene import BLACK, GREY, Box, Scene, View
 from workhold.geometry.segment import Point
 from workhold.geometry.symmetry import rotated
 from workhold.model.clamps import ShownClamp
-from workhold.model.reach import Side
-from workhold.model.shown import Shown, ShownCarrier
+from workhold.model.shown import Shown, ShownCarrier, Side
 
 __all__ = [
     "SLIDING",

@@ -21,8 +21,7 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Box
 from workhold.model.clamps import shown_clamps
 from workhold.model.fixture import Fixture, Peg
-from workhold.model.reach import held_box
-from workhold.model.shown import placed_box
+from workhold.model.shown import held_box, placed_box
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
