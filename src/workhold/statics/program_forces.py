@@ -25,7 +25,7 @@ from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import ContactMatrices, Touched
 from workhold.statics.loads import jaw_stiffness, shared_forces
-from workhold.statics.path_pieces import path_forces
+from workhold.statics.path_forces import path_forces
 from workhold.statics.program_clearance import element_name, renamed
 from workhold.units import Unit
 

@@ -38,7 +38,7 @@ from workhold.model.requirements import Load, Zone, zone_of
 from workhold.model.support_bodies import clamp_pieces
 from workhold.model.support_request import SpatialLoad, SupportRequest
 from workhold.model.workpiece import Workpiece
-from workhold.statics.path_pieces import all_pieces, around_arcs, hull_of
+from workhold.statics.path_forces import all_pieces, around_arcs, hull_of
 from workhold.supports.faces import TouchableFace
 
 __all__ = ["acting_on", "capsule", "cutting_loads", "with_program"]
