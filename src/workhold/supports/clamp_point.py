@@ -18,8 +18,7 @@ from attrs import define, field
 from numpy.typing import NDArray
 
 from workhold.conventions import GAP_SLACK
-from workhold.supports.beside_faces import LevelRegions
-from workhold.supports.faces import Curve, TouchableFace, offset_curves
+from workhold.supports.faces import Curve, LevelRegions, TouchableFace, offset_curves
 from workhold.supports.forces import Triangles
 
 __all__ = ["ClampPlaces", "RankedPlaces"]

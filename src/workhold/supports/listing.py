@@ -19,10 +19,9 @@ from workhold.model.requirements import Load
 from workhold.model.support_request import Loops, SpatialLoad, SupportRequest
 from workhold.model.support_triples import ClampFigures, SupportPad, Supports, Triple
 from workhold.statics.contact_matrix import Touched
-from workhold.supports.beside_faces import LevelRegions
 from workhold.supports.choosing import Stop, TripleChoice, WorkLimit
 from workhold.supports.clamp_point import ClampPlaces, RankedPlaces
-from workhold.supports.faces import TouchableFace, area_center
+from workhold.supports.faces import LevelRegions, TouchableFace, area_center
 from workhold.supports.forces import (
     Corners,
     PegForces,
