@@ -18,7 +18,7 @@ from workhold.cli.program_options import SOLIDS, ProgramWords
 from workhold.cli.progress import batch_progress
 from workhold.cli.search_options import QueryWords, SeatingWords
 from workhold.cli.table import plural, print_tables
-from workhold.cli.toolkit_lists import (
+from workhold.cli.toolkit_options import (
     ListWords,
     Named,
     heights_of_all,
