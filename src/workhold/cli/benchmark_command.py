@@ -100,7 +100,17 @@ def chosen_sets(words: Sequence[str]) -> list[SetEntry]:
 
 def list_sets(chosen: Sequence[SetEntry], as_json: bool) -> None:
     if as_json:
-        print_json(sets=[set_data(one) for one in chosen])
+        entries = [
+            {
+                "name": one.name,
+                "workpiece": one.part,
+                "toolkit": dict(one.toolkit),
+                "reason": one.reason,
+                "counts": dict(one.counts),
+            }
+            for one in chosen
+        ]
+        print_json(sets=entries)
         return
 
     table = Table(("set", ">fixtures", "reason"))
@@ -108,16 +118,6 @@ def list_sets(chosen: Sequence[SetEntry], as_json: bool) -> None:
         table.add_row(one.name, f"{one.size:,}", one.reason)
     total = sum(one.size for one in chosen)
     print_tables(table, f"{plural(len(chosen), 'set')}, {plural(total, 'fixture')}.")
-
-
-def set_data(entry: SetEntry) -> dict[str, Any]:
-    return {
-        "name": entry.name,
-        "workpiece": entry.part,
-        "toolkit": dict(entry.toolkit),
-        "reason": entry.reason,
-        "counts": dict(entry.counts),
-    }
 
 
 def make_sets(

@@ -278,11 +278,6 @@ def asked_zero(text: str, unit: Unit) -> tuple[float, float]:
     return two_lengths("--zero", text, unit, "a place here: give two lengths, such as 10,5.")
 
 
-def asked_start(text: str, unit: Unit) -> tuple[float, float, float]:
-    """The place of the tip at the start of the program, in mm from its own zero."""
-    return three_lengths("--start", text, unit, "a place: give three lengths, such as 0,0,50.")
-
-
 def zero_on(workpiece: Workpiece | None, text: str, unit: Unit) -> tuple[float, float]:
     """The place of the program's zero in mm, which the part's own places may name as on the setup sheet.
 
@@ -303,13 +298,14 @@ def asked_reading(
     if height == "top" and thickness is None:
         # Of a part that nobody knows the top is where the program begins to count.
         height = "0"
+    place = "a place: give three lengths, such as 0,0,50."
     return {
         "unit": None if named is None else choice("--program-unit", named, ("mm", "inch")),
         "zero": zero,
         "z_zero": height if height in ("top", "bottom") else length("--z-zero", height, unit),
         "thickness": thickness,
         "rapid": choice("--rapid", words.rapid, ("straight", "box")),
-        "start": None if words.start is None else asked_start(words.start, unit),
+        "start": None if words.start is None else three_lengths("--start", words.start, unit, place),
         "whole_numbers": choice("--whole-numbers", words.whole_numbers, ("units", "thousandths")),
         "called": CALLED,
         "cutting": asked_cutting(words, unit),

@@ -169,7 +169,7 @@ def write_tools(column: TextColumn, program: Program, lengths: LengthUnit, fill:
     for at, words in zip(ends[1:], header[1:], strict=True):
         column.scene.text((at, column.y), words, SIZE - 1, "end" if at == ends[-1] else "start", middle=False)
     column.y += 0.7 * SIZE
-    lines = last_lines(program)
+    last_lines = dict(zip(program.moves.tool.tolist(), program.moves.line.tolist(), strict=True))
     for place, one in enumerate(figures[:MOST_TOOLS]):
         tool = program.tools[one.tool]
         y = column.y + SIZE / 2
@@ -178,7 +178,7 @@ def write_tools(column: TextColumn, program: Program, lengths: LengthUnit, fill:
             [(column.x + 3, y), (column.x + SWATCH - 3, y)], colour, 6.0, stroke_linecap="round"
         )
         low = "–" if one.lowest_cut is None else lengths.number(one.lowest_cut)
-        span = f"{one.first_line} to {lines[one.tool]}"
+        span = f"{one.first_line} to {last_lines[one.tool]}"
         cells = (f"T{one.tool}", lengths.short_number(tool.diameter), span, low)
         for number, (at, words) in enumerate(zip(ends[1:], cells, strict=True)):
             anchor = "end" if number == len(cells) - 1 else "start"
@@ -198,10 +198,6 @@ def tools_above(path: PlannedPath) -> list[str]:
     if path.peg_height is None:
         return []
     return [f"T{one.tool}" for one in tool_figures(path.program) if one.lowest > path.peg_height]
-
-
-def last_lines(program: Program) -> dict[int, int]:
-    return {int(tool): int(line) for tool, line in zip(program.moves.tool, program.moves.line, strict=True)}
 
 
 def passing_sentence(path: PlannedPath, lengths: LengthUnit) -> str:

@@ -150,11 +150,6 @@ def entry_of(row: ToolkitField) -> tuple[Any, Any]:
     return (TYPES[row.form], ...) if row.is_required else (TYPES[row.form] | None, None)
 
 
-def table_key(name: str) -> str:
-    """What the table of supports or of a clamp on top is called in a file."""
-    return name.replace("_", "-")
-
-
 # By the noun of their tables.
 FORMS = forms_by_noun(
     ToolkitForm,
@@ -162,7 +157,8 @@ FORMS = forms_by_noun(
     entry_of,
     summary="{}, as its file describes it.",
     hardware={
-        name: (kind, Field(default=None, alias=table_key(name))) for name, (kind, _) in HARDWARE_KEYS.items()
+        name: (kind, Field(default=None, alias=name.replace("_", "-")))
+        for name, (kind, _) in HARDWARE_KEYS.items()
     },
 )
 

@@ -30,7 +30,7 @@ from workhold.geometry.segment import Segment, box_around, segment_rows
 from workhold.geometry.subdivision import subdivide
 from workhold.kernels.base.distance import is_inside, outline_distances
 
-__all__ = ["DrawnPart", "as_one", "nest", "refuse_loops_across"]
+__all__ = ["DrawnPart", "as_one", "nest", "overlap", "refuse_loops_across"]
 
 
 # mm. How far beside a line it is asked whether both of two outlines lie there.

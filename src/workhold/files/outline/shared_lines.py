@@ -22,7 +22,7 @@ from workhold.files.budget import Budget, OverBudgetError
 from workhold.files.outline.chain import Chain, Drawing, at, counted, listed, without_segment
 from workhold.files.outline.diagnostics import surrounds
 from workhold.files.outline.joining import Joined, Junction, Loop, Stray, join
-from workhold.files.outline.nesting import DrawnPart, MeasuredLoop, chosen_part, nest
+from workhold.files.outline.nesting import DrawnPart, MeasuredLoop, chosen_part, nest, overlap
 from workhold.files.outline.plane_map import Cluster, clusters_of
 from workhold.files.questions import PART_NUMBER
 from workhold.geometry.segment import Arc, Line, Segment, box_around
@@ -123,7 +123,7 @@ def untangled(
     junctions = JunctionsAt.of(joined.junctions, drawing.layers)
     tangled = list(joined.tangled)
     around = box_around([segment for chain in tangled for segment in chain.segments])
-    near = [loop for loop in joined.loops if meets(box_of(loop), around)]
+    near = [loop for loop in joined.loops if overlap(box_of(loop), around)]
     extra = [*(stray.chain for stray in joined.strays), *map(chain_of, near)]
     clusters = [
         one
@@ -297,7 +297,7 @@ def chosen_outline(outlines: Outlines, number: int | str | None) -> DrawnPart:
 
 def is_spoiled(part: DrawnPart, spot: BadSpot) -> bool:
     """Whether a bad spot lies in the material of a part, where it may be the border of a hole."""
-    if not spot.bounds_something or not meets(part.bounds, spot.box):
+    if not spot.bounds_something or not overlap(part.bounds, spot.box):
         return False
     x, y = spot.junction.point
     outer, *holes = (MeasuredLoop.of(loop) for loop in part.loops)
@@ -345,11 +345,6 @@ def chain_of(loop: Loop) -> Chain:
 
 def box_of(loop: Loop) -> tuple[float, float, float, float]:
     return box_around(chain_of(loop).segments)
-
-
-def meets(a: Sequence[float], b: Sequence[float]) -> bool:
-    """Whether two bounding boxes meet."""
-    return a[0] <= b[2] and b[0] <= a[2] and a[1] <= b[3] and b[1] <= a[3]
 
 
 # Radians and mm: lines and circles nearer than this are looked at as one.
