@@ -262,7 +262,6 @@ def checked_address(address: str) -> str:
 
 
 def done_there(task: Task, store: Store | None) -> Outcome:
-    """Does a task in a worker of a cluster, and put its record where it belongs."""
     from distributed import get_worker
 
     outcome = done(task, str(get_worker().address))

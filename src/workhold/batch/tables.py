@@ -104,7 +104,6 @@ def job_rows(jobs: Sequence[Job], store: Store, measured: Measured) -> Iterator[
 
 
 def take_record(row: Row, named: Row, record: Mapping[str, Any], job: Job) -> list[Row]:
-    """Fills in a row from the record of its answer; the rows of its fixtures."""
     if record["refusal"]:
         row |= {"state": "refused", "reason": record["refusal"]}
         return []
@@ -127,7 +126,6 @@ def take_record(row: Row, named: Row, record: Mapping[str, Any], job: Job) -> li
 
 
 def fixture_row(fixture: Mapping[str, Any], job: Job) -> Row:
-    """Columns of a table on a fixture of a result file."""
     from workhold.files.result.fixture_forms import seating_figures_of
     from workhold.files.result.reader import peg_place
 

@@ -136,7 +136,6 @@ class LocalWorkers:
             yield Outcome(task.name, None, words, one.seconds, one.title)
 
     def hand_out(self, waiting: deque[Task]) -> None:
-        """Gives what waits to the workers that are ready, and start some where there are too few of them."""
         for one in self.workers:
             if waiting and one.is_ready and one.task is None:
                 self.give(one, waiting.popleft())

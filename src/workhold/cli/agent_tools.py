@@ -156,7 +156,6 @@ def answered(asked: DesignArguments, cancel: Event) -> tuple[Loaded, Result]:
 
 
 def passed_by(asked: ProgramArguments | None, workpiece: Workpiece) -> dict[str, Any]:
-    """Reads the program that fixtures are to let pass, as a query takes it."""
     if asked is None:
         return {}
     solid = workpiece.solid

@@ -310,7 +310,6 @@ def asked_toolkits(
 
 
 def asked_of(words: AskedWords, reading: PartWords) -> dict[str, Any]:
-    """Keyword arguments of a query."""
     wishes, seated_by, machined = words
     unit, has_program = length_unit(reading.unit), machined.program is not None
     asked = wishes.asked(unit, has_program, machined.has_forces) | seated_by.asked(unit)
@@ -318,7 +317,6 @@ def asked_of(words: AskedWords, reading: PartWords) -> dict[str, Any]:
 
 
 def run_sentence(done: Batch, spent: float) -> str:
-    """Says how many answers the run found, and in what time."""
     before = f"; {done.kept:,} were known from before" if done.kept else ""
     return (
         f"{plural(len(done.parts), 'part')}, {plural(done.fresh, 'answer')} found in {spent:.1f} s{before}."

@@ -128,7 +128,6 @@ def make_sets(
     force: bool,
     as_json: bool,
 ) -> None:
-    """Makes sets, writes them into a folder, and says whether they are those of the manifest."""
     if out is None:
         raise InputError("run needs a folder for the sets: name one with --out.")
     folder = Path(out)
@@ -182,7 +181,6 @@ def check_entries(
     workers: int | None,
     as_json: bool,
 ) -> None:
-    """Compares other programs' lists with the complete ones, and prints what is found, missed and extra."""
     if not files:
         raise InputError("check needs a file with another program's fixtures: name one or more.")
     from workhold.benchmark.catalogue import set_named
@@ -220,7 +218,6 @@ def comparison_data(name: str, set_name: str, outcome: Comparison) -> dict[str, 
 
 
 def print_comparisons(done: Sequence[tuple[str, str, Comparison]]) -> None:
-    """Prints a row for each file, and the first fixtures that are missed or extra."""
     table = Table(("set", ">complete", ">theirs", ">found", ">missed", ">extra", ">repeated", ">share"))
     sentences = []
     for _, set_name, one in done:

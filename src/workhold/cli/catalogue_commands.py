@@ -100,7 +100,6 @@ def toolkits(
 
 
 def toolkits_table(unit: Unit) -> Table:
-    """All presets, one line each, with lengths in a unit."""
     from workhold.files.toolkit_file import load_toolkit, preset_names
 
     of = unit.abbreviation

@@ -83,7 +83,6 @@ def report(found: Family, plan: Plan | None, spent: str, unit: Unit) -> None:
 
 
 def curve_table(found: Family, unit: Unit) -> Table:
-    """Tabulates the curve: set-ups, the worst loss and on which part, and how many pegs are moved."""
     from workhold.family.members import loss_text
     from workhold.presenting.figure_words import figure_text, heading
 
@@ -293,7 +292,6 @@ def family(
 def write_all(
     found: Family, plan: Plan | None, out: str | None, draw: str | None, sheets: str | None, unit: Unit
 ) -> list[str]:
-    """Writes the outputs asked for, and returns the names of the files."""
     from workhold.files.atomic import write_bytes
 
     contents: dict[str, bytes] = {}

@@ -216,7 +216,6 @@ class ProgramWords:
 
 
 def asked_cutting(typed: ProgramWords, unit: Unit) -> CuttingData:
-    """How tools cut, from the options of cutting forces."""
     from workhold.model.cutting_tool import CuttingData
 
     given: dict[str, Any] = {

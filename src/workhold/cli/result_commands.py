@@ -139,7 +139,6 @@ def print_supports(outcome: Verification, count: int, seconds: float, as_json: b
 
 
 def compared(outcome: Verification, listing: Listing, workers: int | None) -> Verification:
-    """Adds to the verification what a search of the same query finds."""
     from workhold.cli.warming import compile_on_first_run
     from workhold.completeness import completed
 
@@ -150,7 +149,6 @@ def compared(outcome: Verification, listing: Listing, workers: int | None) -> Ve
 
 
 def scope(outcome: Verification, asked: bool, listing: Listing) -> list[str]:
-    """Says what is shown beyond the fixtures, or what is not."""
     from workhold.verification.verify import not_shown
 
     if outcome.is_compared:

@@ -208,7 +208,6 @@ def bending_words(result: Result, rank: int, unit: Unit, jaw_force: float | None
 def load_tables(
     cases: Sequence[LoadCase], fixture: Fixture, toolkit: Toolkit, unit: Unit = MILLIMETRE
 ) -> tuple[Table | str, ...]:
-    """Tabulates the force that each load needs, and each peg's forces at the closing force that is used."""
     if not cases:
         return ()
     from workhold.statics.loads import jaw_words

@@ -283,7 +283,6 @@ def report(
     friction: float | None,
     helped: list[float],
 ) -> None:
-    """Prints the best sets, and what is not seen in the table."""
     listed = found.triples[:count]
     if as_json:
         rows = [asdict(triple) for triple in listed]
@@ -320,7 +319,6 @@ def print_sets(found: Supports, listed: Sequence[Triple], rank: int, unit: Unit)
 
 
 def notes_of(found: Supports, listed: Sequence[Triple], unit: Unit) -> list[str]:
-    """Says what the figures mean, and what has to be set otherwise than for the fixture alone."""
     from workhold.conventions import STEADY
     from workhold.supports.words import listing_notes
 

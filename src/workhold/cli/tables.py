@@ -122,7 +122,6 @@ def proof_sentences(result: Result, written: str | None = None) -> list[str]:
 
 
 def proof_words(proof: Proof, complete: bool) -> str:
-    """Says what is proven, all of the list or only each fixture, of how many candidates, and how."""
     settled = max(proof.escalated - len(proof.undecided), 0)
     candidates = "1 candidate" if proof.candidates == 1 else f"{proof.candidates:,} candidates"
     if proof.cells == 0:
@@ -252,7 +251,6 @@ def fixture_tables(
 
 
 def setting_sentence(setting: LengthSetting, unit: Unit) -> str:
-    """Says what to set on a carrier that moves, and of a clamp where it is bolted and which way it pushes."""
     mover, length = setting.carrier, unit.text(setting.length)
     if setting.tip is None:
         return f"{setting.name[0].upper()}{setting.name[1:]} {length}"

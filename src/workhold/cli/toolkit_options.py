@@ -383,7 +383,6 @@ def unknown_fields(table: FieldTable, given: list[tuple[ToolkitField, str]]) -> 
 
 
 def refuse_missing_fields(table: FieldTable, given: list[tuple[ToolkitField, str]]) -> None:
-    """Refuses to vary a field that a kind of toolkit does not have."""
     from workhold.fixels.kinds import owner_of
 
     for row in unknown_fields(table, given):

@@ -299,7 +299,6 @@ def supported(fixture: Fixture, query: Query) -> tuple[ChosenSupports | None, st
 
 
 def draw_nearest_miss(result: Result, folder: Path) -> None:
-    """Draws what comes nearest to a fixture where there is none, if anything does."""
     from workhold.drawing.fixture_pictures import draw_fixture
     from workhold.search.explaining import explain
 

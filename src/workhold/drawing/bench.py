@@ -349,7 +349,6 @@ def draw_inset(
 
 
 def number_holes(scene: Scene, view: View, workpiece: Workpiece) -> None:
-    """Writes the number of each hole at its centre, where it has room for it."""
     for count, (loop, center) in enumerate(
         zip(workpiece.hole_segments, hole_centers(workpiece), strict=True), 1
     ):

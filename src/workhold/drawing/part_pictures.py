@@ -101,7 +101,6 @@ def part_words(workpiece: Workpiece, bounds: Box, peg_radius: float | None, leng
 
 
 def draw_outline(scene: Scene, workpiece: Workpiece, view: View) -> None:
-    """Draws the part with a tick across every joint of two segments."""
     part = scene.group("part", view)
     d = outline_path(workpiece.loop_segments, view)
     part.path(d, BLACK, 2.2, PART_FILL, fill_rule="evenodd", **{"class": "outline"})
@@ -181,7 +180,6 @@ def number_label(face: Face, view: View, size: float, shares: Sequence[float], o
 
 
 def draw_overall(scene: Scene, bounds: Box, view: View, numbers: float, lengths: LengthUnit) -> None:
-    """Dimensions the overall width below the part and its height at the left."""
     group = scene.group("overall")
     box = view.box(bounds)
     y = box.y1 + numbers + 22

@@ -115,7 +115,6 @@ def refuse_unknown(tag: str, attributes: dict[str, str], known: set[str]) -> Non
 
 
 def shape(tag: str, attributes: dict[str, str]) -> PaintedPath:
-    """A rectangle, circle or path with its style."""
     path = PaintedPath()
     if tag == "rect":
         refuse_unknown(tag, attributes, STYLE | SILENT | {"x", "y", "width", "height", "rx"})

@@ -166,7 +166,6 @@ def face_tag(bench: Bench, face_number: int, view: View) -> Label:
 
 
 def draw_flag(scene: Scene, place: Place, radius: float, name: str) -> None:
-    """Draws the label of a peg: a framed name, and a leader when it stands off."""
     leader = place.leader(radius)
     if dist(*leader) > 2:
         scene.line(leader, PEG_FILL, 1.4)
@@ -175,14 +174,12 @@ def draw_flag(scene: Scene, place: Place, radius: float, name: str) -> None:
 
 
 def draw_mark(scene: Scene, place: Place, name: str) -> None:
-    """Draws the sign of a zero point, a quartered disc, and its name with a leader."""
     scene.line(place.leader(), BLACK, 0.8)
     draw_zero(scene, place.anchor, MARK_RADIUS)
     scene.text(place.box.center, name, TAG_SIZE, "middle", halo=2.5)
 
 
 def draw_tag(scene: Scene, place: Place, name: str) -> None:
-    """Draws the number of a face in a rounded frame with a short leader to the face."""
     scene.line(place.leader(), BLACK, 0.8)
     scene.rectangle(place.box, "#ffffff", BLACK, 0.9, TAG_HEIGHT / 2)
     scene.text(place.box.center, name, TAG_SIZE, "middle")

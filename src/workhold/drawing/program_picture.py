@@ -93,7 +93,6 @@ def draw_zero(scene: Scene, at: tuple[float, float]) -> None:
 
 
 def draw_legend(scene: Scene, program: Program, lengths: LengthUnit, box: Box) -> None:
-    """Lists the tools with their colours, and says what shades and dashes mean."""
     group, figures, y = scene.group("legend"), tool_figures(program), box.y0 + 8
     for place, one in enumerate(figures[:MOST_LISTED]):
         tool = program.tools[one.tool]
@@ -161,7 +160,6 @@ def write_path(column: TextColumn, path: PlannedPath, lengths: LengthUnit, fill:
 
 
 def write_tools(column: TextColumn, program: Program, lengths: LengthUnit, fill: str) -> None:
-    """Writes the tools in their colours: diameter, name, where they begin, and how low they cut."""
     ends = [column.x + SWATCH + 8 + share * (column.width - SWATCH - 8) for share in COLUMNS]
     figures = tool_figures(program)
     header = ("", "tool", f"Ø {lengths.sign}", "lines", "lowest cut z")
@@ -201,7 +199,6 @@ def tools_above(path: PlannedPath) -> list[str]:
 
 
 def passing_sentence(path: PlannedPath, lengths: LengthUnit) -> str:
-    """Where the tools come nearest to what holds the part, a sentence."""
     near = path.passing
     if near is None or near.distance == inf:
         return "No tool comes down to where anything holds the part."

@@ -126,7 +126,6 @@ def draw_lying(scene: Scene, placed: Placed, view: View, weight: float = 1.2) ->
 
 
 def draw_seat(scene: Scene, placed: Placed, number: int, cell: Box, view: View, unit: Unit) -> None:
-    """Draws one seat with its number, what is read, and how that differs."""
     seat, (reading, own) = placed.seat, placed.reading
     colour = RIGHT if seat.is_own else ALIKE if seat.same_place else PEG_FILL
     scene.rectangle(cell, "#ffffff", colour, 2.0 if seat.is_own else 1.0, 5)

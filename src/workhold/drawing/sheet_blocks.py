@@ -118,7 +118,6 @@ def write_flush(column: TextColumn, sheet: Sheet, wall: Carrier) -> None:
 
 
 def put_words(sheet: Sheet) -> str:
-    """Where to put the pegs, a sentence."""
     plates, holes = sheet.toolkit.plates, list[str]()
     for plate in plates:
         there = listed([peg.hole for peg in sheet.fixture.pegs if peg.carrier == plate.name])
@@ -134,7 +133,6 @@ def put_words(sheet: Sheet) -> str:
 
 
 def touch_words(sheet: Sheet) -> str:
-    """What each peg touches, and how to see that it does: the end of a sentence, and another one."""
     touch = listed([f"{peg.touching} at {peg.hole}" for peg in sheet.fixture.pegs])
     return f"{touch}. A strip of paper at each must not pull out."
 
@@ -285,7 +283,6 @@ def write_counting(column: TextColumn, sheet: Sheet) -> None:
 
 
 def write_jaws(column: TextColumn, sheet: Sheet) -> None:
-    """Writes how the holes of two plates are counted."""
     lengths, first, moving = sheet.lengths, sheet.toolkit.plates[0], sheet.toolkit.moving
     pitch_x, pitch_y = (lengths.short(pitch) for pitch in first.pitch)
     peg = sheet.fixture.pegs[0]
@@ -306,7 +303,6 @@ def write_jaws(column: TextColumn, sheet: Sheet) -> None:
 
 
 def write_plate(column: TextColumn, sheet: Sheet) -> None:
-    """Writes how the holes of the only plate are counted, and how far the whole set-up may be moved."""
     plate, lengths = sheet.toolkit.plates[0], sheet.lengths
     peg = next(peg for peg in sheet.fixture.pegs if peg.carrier == plate.name)
     pitch_x, pitch_y = plate.pitch
@@ -335,7 +331,6 @@ def place_words(sheet: Sheet) -> str:
 
 
 def moving_words(sheet: Sheet) -> str:
-    """How far all of the set-up may be moved along the holes of the plate."""
     ways = []
     spares = spare_holes(sheet.fixture, sheet.toolkit)
     words = (("column", "left", "right"), ("row", "down", "up"))
@@ -463,7 +458,6 @@ def write_loads(column: TextColumn, sheet: Sheet) -> None:
 
 
 def write_bending(column: TextColumn, sheet: Sheet) -> None:
-    """Writes how far each peg bends, and what that moves the part by."""
     bent, lengths, mover = sheet.details.bent, sheet.lengths, sheet.toolkit.moving.noun
     assert bent is not None
     heading(column, f"{sheet.toolkit.plates[0].peg.capitalize()}s bend")

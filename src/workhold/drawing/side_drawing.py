@@ -247,7 +247,6 @@ class SideFigure:
             scene.path(outline(foot), PEG_FILL, 0.9, stroke_dasharray="4 2.5", **{"class": "peg-foot"})
 
     def draw_band(self, scene: Scene, page: View, one: SideContact) -> None:
-        """Draws the line on which a peg presses."""
         if one.band is None:
             return
         ends = [page((one.touches, height)) for height in one.band]

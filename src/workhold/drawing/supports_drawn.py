@@ -215,7 +215,6 @@ def tipping_words(chosen: ChosenSupports, unit: Unit) -> str:
 
 
 def holding_up_words(sheet: Sheet, chosen: ChosenSupports) -> str:
-    """Whether the part stands before it is clamped, a sentence."""
     triple = chosen.triple
     inside = f"the centre of its area is {sheet.lengths.words(triple.standing)} inside their triangle"
     if triple.stands:

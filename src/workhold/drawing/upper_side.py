@@ -195,7 +195,6 @@ def side_up_words(solid: SolidOutline, before: FirstSide | None) -> list[str]:
 
 
 def face_words(before: FirstSide) -> list[str]:
-    """Sentences on faces that were cut before, and on those that both set-ups touch."""
     cut, found = numbered_faces(before.cut_of_solid), list[str]()
     if before.cut:
         found.append(

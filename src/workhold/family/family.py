@@ -219,7 +219,6 @@ def family_of(
 
 
 def reason_of(member: Member, has_patterns: bool) -> str:
-    """Why a part is no member."""
     inside = member.query.toolkit.wording.inside
     if not member.fixtures:
         asked = member.query.asked

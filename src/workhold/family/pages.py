@@ -215,7 +215,6 @@ def new_page(setup: SetUp, before: SetUp | None, number: int, titles: Titles) ->
 
 
 def holes_of(setup: SetUp) -> list[str]:
-    """The names of the holes of a set-up, and of the lines of its clamps."""
     return [peg.hole for peg in setup.standing.fixture.placed]
 
 
@@ -246,7 +245,6 @@ def moves_words(setup: SetUp, before: SetUp | None) -> Iterator[str]:
 
 
 def draw_pegs_plan(scene: Scene, setup: SetUp, room: Box, lengths: LengthUnit) -> None:
-    """Draws the plan of a set-up with the names of its holes, holding the first part that stands in them."""
     one = setup.standing
     workpiece, toolkit = one.member.query.workpiece, one.member.query.toolkit
     bench = bench_of(one.fixture, workpiece, toolkit)
@@ -258,7 +256,6 @@ def draw_pegs_plan(scene: Scene, setup: SetUp, room: Box, lengths: LengthUnit) -
 
 
 def draw_parts(scene: Scene, benches: Sequence[tuple[Holding, Bench]], room: Box, titles: Titles) -> None:
-    """Draws parts as they lie, to one scale, each in a cell with its name, and below them their table."""
     rows = [table_row(one, titles) for one, _ in benches]
     notes = [
         line for note in notes_of([one for one, _ in benches]) for line in wrapped(note, SMALL, room.width)
@@ -320,7 +317,6 @@ def table_head(one: Holding, titles: Titles) -> list[str]:
 
 
 def table_row(one: Holding, titles: Titles) -> list[str]:
-    """What is set and programmed for a part."""
     fixture, number = one.fixture, titles.lengths.number
     x, y = fixture.pose.apply(*one.member.zero.point)
     return [

@@ -232,7 +232,6 @@ def plan_of(point: Point, table: LossTable, members: Sequence[Member]) -> Plan:
 
 
 def holding(member: Member, words: NDArray[np.int64]) -> Holding:
-    """How the best fixture of a member with a pattern lies."""
     place = int(np.flatnonzero((member.words == words).all(axis=1))[0])
     row = member.table.take(slice(place, place + 1))
     return Holding(

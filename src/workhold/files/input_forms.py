@@ -106,7 +106,6 @@ def one_of(forms: Mapping[str, Any]) -> Any:
 
 
 def tag_of(value: Any) -> str:
-    """Which form a toolkit's keys have."""
     return (
         f"<{table_of(value.get('kind') if isinstance(value, dict) else getattr(value, 'kind', None)).noun}>"
     )

@@ -119,7 +119,6 @@ def refuse_other_ending(path: str | Path, own: Sequence[str], what: str) -> None
 
 
 def is_same(path: Path, given: str | Path) -> bool:
-    """Whether a path and another name lead to the same file."""
     try:
         return path.samefile(given)
     except (OSError, ValueError):

@@ -169,7 +169,6 @@ class BestFixtures:
         return self.needed
 
     def decide(self) -> None:
-        """Decides the records that wait, and keeps the best."""
         waiting, self.waiting = self.waiting, []
         parts = [] if self.kept is None else [self.kept]
         fresh = 0

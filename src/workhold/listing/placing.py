@@ -75,7 +75,6 @@ def arranged(c: Candidates, problem: Problem) -> Arranged:
 
 
 def with_rows(one: Arranged, rows: IntArray, other: Arranged, chosen: BoolArray) -> Arranged:
-    """Some rows of an arrangement replaced by the chosen ones of another."""
     names = [a.name for a in fields(Candidates)]
     candidates = {name: getattr(one.candidates, name).copy() for name in names}
     for name, values in candidates.items():

@@ -308,7 +308,6 @@ def title(fixture: Fixture) -> str:
 def bodies_of(
     fixture: Fixture, around: Any, thickness: float | None, supports: Supports | None, best: int
 ) -> list[tuple[str, Any, tuple[float, float, float]]]:
-    """The bodies of a fixture with their names and colours, about a part where one is given."""
     result = fixture.listing.result
     chosen = None if supports is None else ChosenSupports.under(fixture, supports, best)
     assembly = Assembly.of(fixture, result, {"thickness": thickness}, chosen)

@@ -73,7 +73,6 @@ class Picture(str):
 
 
 def saved(svg: str, path: str | Path | None, overwrite: bool) -> Picture:
-    """Makes a picture of SVG text, and writes it where a path is given."""
     picture = Picture(svg)
     return picture if path is None else picture.save(path, overwrite=overwrite)
 

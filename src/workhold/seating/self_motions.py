@@ -105,7 +105,6 @@ class Opposed:
 
 
 def opposed_lines(boundary: ObstacleBoundary) -> list[Opposed]:
-    """All pairs of opposed straight pieces of a part."""
     rows, found = boundary.rows.tolist(), list[Opposed]()
     standing, moving = (
         [k for k in range(first, end) if rows[k][IS_ARC] == 0.0] for first, end in boundary.parts.tolist()

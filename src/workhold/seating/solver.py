@@ -357,7 +357,6 @@ class FixtureInPattern:
         return Cage((float(turns[0]) * 180.0 / pi, float(turns[1]) * 180.0 / pi), x, y), around.placing
 
     def sticking(self, row: Array) -> float:
-        """The friction below which the part cannot stick near its seat."""
         boundary = self.solver.closing(self.known, False).boundary
         places, normals, moves = contact_normals(boundary, self.known, row)
         return sticking_friction(places, normals, moves)

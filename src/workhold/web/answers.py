@@ -214,7 +214,6 @@ def carriers_answer(seen: Shown, fixture: Fixture) -> list[dict[str, Any]]:
 
 
 def body_answer(body: Box) -> dict[str, list[float]]:
-    """Describes the corners of what carries the pegs: a plate, a wall, or the room of a clamp."""
     return {"plate": corners(body)}
 
 
@@ -317,7 +316,6 @@ def moved_back(carriers: list[dict[str, Any]], by: Sequence[float]) -> list[dict
         return carriers
 
     def back(place: Sequence[float]) -> list[float]:
-        """Coordinates x, y, and perhaps those of a further corner."""
         return [value - (dx, dy)[k % 2] for k, value in enumerate(place)]
 
     for carrier in carriers:

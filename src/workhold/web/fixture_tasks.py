@@ -159,7 +159,6 @@ def hash_of(result: Result) -> str:
 
 
 def set_up(order: PaperOrder) -> tuple[bytes, str | None]:
-    """Writes the set-up as DXF or STEP, or lists its pins, which need no part zero."""
     from workhold.presenting.papers import model_bytes
 
     ending = Path(order.kind).suffix
@@ -180,7 +179,6 @@ def set_up(order: PaperOrder) -> tuple[bytes, str | None]:
 
 
 def picture(order: PaperOrder) -> tuple[bytes, str | None]:
-    """Draws the picture to set the vise from."""
     from workhold.drawing.fixture_pictures import draw_fixture
     from workhold.drawing.path_drawn import planned_path
     from workhold.model.moved_setup import middle_move, moved_on

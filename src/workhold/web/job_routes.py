@@ -291,7 +291,6 @@ async def result_csv(request: Request, name: str) -> Response:
 def download(
     job: ServerJob, text: Callable[[Result], Iterator[str]], ending: str, content_type: str
 ) -> Response:
-    """Sends a file while it is written."""
     result = result_of_job(job, when_over=True)
     headers = {"Content-Disposition": attachment(result.workpiece.name, ending)}
     return StreamingResponse(text(result), media_type=content_type, headers=headers)

@@ -230,7 +230,6 @@ def look_at_program(question: ProgramQuestion, order: Order) -> dict[str, Any]:
 
 
 def paths_answer(program: Program) -> Iterator[dict[str, Any]]:
-    """The paths of a program by tool, kind and height."""
     from workhold.drawing.path_drawn import PagePaths, moves_by_look
     from workhold.drawing.scene import View
 

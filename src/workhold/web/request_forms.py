@@ -231,7 +231,6 @@ def checked_part(
 
 
 def refuse_many(count: int, most: int) -> None:
-    """Refuses a part of more segments than a server takes."""
     if count > most:
         raise InputError(
             f"The part has {count} segments, more than the {most} this server takes: draw its outline with "

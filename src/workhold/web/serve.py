@@ -251,7 +251,6 @@ def is_for_others(host: str) -> bool:
 
 
 def hosts_of(host: str, more: Collection[str]) -> Hosts:
-    """Lists the names of a server that listens at a host."""
     everywhere = is_everywhere(host)
     names = {*Hosts().names, *(name.lower() for name in more)}
     names.add(socket.gethostname().lower() if everywhere else host.lower())

@@ -57,7 +57,6 @@ def static_files() -> dict[str, StaticFile]:
 
 
 def found(folder: Traversable, prefix: str) -> Iterator[tuple[str, StaticFile]]:
-    """Reads the files of a known type in a folder and those below it."""
     for entry in folder.iterdir():
         kind = TYPES.get(entry.name.rpartition(".")[2].lower())
         if entry.is_dir():

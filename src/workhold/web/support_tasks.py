@@ -180,7 +180,6 @@ def nearest_of_border(corners: np.ndarray, point: np.ndarray) -> tuple[float, fl
 
 
 def notes_of(found: Supports, unit: str) -> list[str]:
-    """Says why there are no sets, or what their figures do not show."""
     from workhold.supports.words import listing_notes, why_no_set
 
     given, listed = unit_named(unit), found.triples

@@ -121,7 +121,6 @@ def loads(payload: tuple[Fixture, Workpiece, Toolkit, LoadsForm], order: Order) 
 
 
 def warnings(payload: tuple[Result, bool, dict[str, Any]], order: Order) -> dict[str, Any]:
-    """Lists the cautions of the only fixture of a result, and says why it is first if it is."""
     from workhold.drawing.sheet_facts import result_cautions
     from workhold.statics.why_first import why_first
 
@@ -134,7 +133,6 @@ def warnings(payload: tuple[Result, bool, dict[str, Any]], order: Order) -> dict
 
 
 def resist(payload: tuple[Result, LoadsForm], order: Order) -> list[tuple[int, float]]:
-    """Returns ranks and load reactions of the fixtures that resist loads best."""
     import numpy as np
 
     from workhold.model.quality import LOAD_REACTION

@@ -113,7 +113,6 @@ class Described:
 
 
 def hardware_answer() -> list[dict[str, Any]]:
-    """Describes what every kind of toolkit may have for three dimensions, with the fields of each."""
     return [
         {
             "name": name,

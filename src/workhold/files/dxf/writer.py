@@ -167,7 +167,6 @@ def add_part(space: Modelspace, part: Workpiece) -> None:
 
 
 def add_pegs(space: Modelspace, seen: Shown, clearance: float) -> None:
-    """Adds the pegs, the names of their holes, and the zones where the cutter is not to go."""
     for each in seen.carriers:
         for peg in each.pegs:
             if each.carrier.peg_radius > 0:
@@ -184,7 +183,6 @@ def add_pegs(space: Modelspace, seen: Shown, clearance: float) -> None:
 
 
 def add_clamps(space: Modelspace, seen: Shown, clearance: float) -> None:
-    """Adds the clamps: each tip, its body from the hole, what to keep out of, and an arrow along its push."""
     for clamp in seen.clamps:
         layer = {"layer": layer_of(clamp.carrier)}
         radius, tip = clamp.carrier.peg_radius, (clamp.tip.x, clamp.tip.y)
@@ -219,7 +217,6 @@ def add_text(space: Modelspace, words: str, at: Point, seen: Shown) -> None:
 
 
 def add_carriers(space: Modelspace, seen: Shown) -> None:
-    """Adds the plates with their holes, column letters below them and row numbers beside them."""
     for each in seen.carriers:
         carrier, plate = each.carrier, each.plate
         space.add_lwpolyline(plate.corners, close=True, dxfattribs={"layer": layer_of(carrier)})

@@ -97,7 +97,6 @@ def outlines_of(chains: Sequence[Chain], tolerance: float, drawing: Drawing, bud
 
 
 def with_doubled_lines_once(joined: Joined, tolerance: float, remarks: list[str]) -> Joined:
-    """Joins what did not close because lines or arcs were drawn partly on each other, with remarks."""
     chains = [stray.chain for stray in joined.strays]
     if not lie_on_each_other([segment for chain in chains for segment in chain.segments], tolerance):
         return joined
@@ -250,7 +249,6 @@ class JunctionsAt:
     def spot(
         self, labels: Iterable[str], box: tuple[float, float, float, float], bounds_something: bool
     ) -> list[BadSpot]:
-        """The bad spot of lines that hang together, by the first junction among them."""
         number = min((self.first[label] for label in labels if label in self.first), default=None)
         if number is None:
             return []

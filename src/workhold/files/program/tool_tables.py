@@ -134,7 +134,6 @@ def cutting_of(fields: Mapping[str, Any], unit: Unit) -> CuttingData:
 
 
 def is_usable(key: str, value: Any) -> bool:
-    """Whether a field of how a tool cuts is one."""
     try:
         CuttingData(**{key: value})
     except InputError:

@@ -133,7 +133,6 @@ TYPES: Mapping[Form, Any] = {
 
 
 def key_of(row: ToolkitField) -> tuple[Any, Any]:
-    """Type and default of a field in a result file."""
     return optional(TYPES[row.form], row)
 
 

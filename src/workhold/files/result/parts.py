@@ -363,7 +363,6 @@ def fixture_lines(stream: BinaryIO, after: list[bytes], path: Path) -> Iterator[
 
 
 def read_whole(path: Path, take: Take[Taken]) -> tuple[Any, Taken]:
-    """Head and fixtures of a file of any layout."""
     try:
         text = read_limited(path, LIMITS["result"]).decode("utf-8-sig")
     except InputError as error:

@@ -224,7 +224,6 @@ def shapes_usual(shapes: Sequence[Any], view: HeightView) -> HeightDrawing | Dra
 
 
 def height_drawing(solids: tuple[Solid, ...], view: HeightView) -> HeightDrawing:
-    """The outline of one of some solids at the height of the pegs, with remarks on the others."""
     chosen = chosen_solid(solids, view.part_number)
     drawing = drawn(chosen.shape, turned_up(chosen, view), view)
     return evolve(drawing, remarks=(*solid_remarks(solids, chosen, view.part_number), *drawing.remarks))

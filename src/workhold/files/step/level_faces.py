@@ -341,7 +341,6 @@ def smoothed(loop: Sequence[BorderPiece]) -> Array:
 
 
 def continues(before: BorderPiece, after: BorderPiece) -> bool:
-    """Whether a piece goes on along the same line or circle."""
     return before.carrier is after.carrier
 
 
