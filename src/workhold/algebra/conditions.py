@@ -82,8 +82,8 @@ def within_ends(rows: Array, center: Complex, margin: float, radius: Array) -> B
 def records_of(held: SimultaneousContacts, rows: Array, frame: Frame, margin: float, length: float) -> Array:
     """What may be fixtures among parts touched by four pegs, as records (``kernels.contact.record``).
 
-    Features (F, 12) are about the centre of the part with the slack of their ends, ``margin`` is the smallest
-    distance in mm from a contact to the end of its feature, and ``length`` L of the wrenches in mm, half the
+    Features (F, 12) are about the centre of the part with the slack of their ends. ``margin`` is the smallest
+    distance in mm from a contact to the end of its feature. ``length`` is L of the wrenches in mm, half the
     part's size.
     """
     radius = 4.0 * length * held.reach
@@ -159,9 +159,9 @@ def wrench_minors(points: Array, normals: Array, length: float) -> Array:
 def row_points(row: Array, psi: Array, height: Array) -> tuple[IntArray, Complex, Array]:
     """Where a feature's line or circle meets horizontals of the frame.
 
-    Of a feature row (8,), orientations of the pegs (N,) in radians and heights (N,) along the frame's y axis
-    in mm: indices of horizontals, points in the workpiece's frame, and how much they move when height and psi
-    do.
+    Given are a feature row (8,), orientations of the pegs (N,) in radians, and heights (N,) along the frame's
+    y axis in mm. Returned are indices of horizontals, points in the workpiece's frame, and how much they move
+    when height and psi do.
     """
     z = np.exp(1j * psi)
     middle = (row[X] + 1j * row[Y]) / z

@@ -130,9 +130,9 @@ def first_sheet(
     """Writes the sheet of the first choice and returns its rank; None where there is no fixture.
 
     The hash of ``out``, the file of the result, stands on the sheet. The part's thickness in mm is given
-    where supports are wanted: the first choice is the first that has some, and ``supported`` are those of the
-    best fixtures where they are known already, in order. ``before`` is the result of the set-up of the part's
-    other side before this one.
+    where supports are wanted. Then the first choice is the first that has some; ``supported`` are those of
+    the best fixtures where they are known already, in order. ``before`` is the result of the set-up of the
+    part's other side before this one.
     """
     from workhold.presenting.papers import write_paper
 

@@ -1,7 +1,7 @@
-"""Options that describe one toolkit, or lists of toolkits for the commands that try many; made from the field table.
+"""Options that describe a toolkit or lists of them for commands that try many, from the field table.
 
-Lists are names, files and kinds, and lists of their figures. Which figures there are, and how the words of each are
-read, the field table says.
+Lists are names, files and kinds, and lists of their figures. Which figures there are, and how the words of
+each are read, the field table says.
 """
 
 from __future__ import annotations

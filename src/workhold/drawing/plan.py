@@ -1,7 +1,7 @@
 """The plan of a fixture with its lettering: hole names, travel, labels of pegs and faces, the part's turn.
 
-Labels name pegs by their holes, touched faces by their numbers, and marked points. Each stands where it hides least
-of the drawing and of the other labels.
+Labels name pegs by their holes, touched faces by their numbers, and marked points. Each stands where it hides
+least of the drawing and of the other labels.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The blocks of words and tables on a setup sheet: title, settings, steps, quality, and loads, and which there are.
+"""The blocks of words and tables on a setup sheet, and which there are: title, settings, steps, quality, loads.
 
 The block of the pegs says where each stands and which face it touches. Two jaws have a block about their
 opening and how to measure it. A plate with locators and clamps has blocks about the clamps instead. The block

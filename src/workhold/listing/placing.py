@@ -167,7 +167,8 @@ def clear_of_blocked(found: Arranged, frame: Frame, room: IntArray, spare: IntAr
     """Moves fixtures on until no peg stands in a blocked hole.
 
     ``room`` (N, 4) has the fewest and most columns outward in all, and the columns free on the standing and
-    on the moving carrier; ``spare`` (N,) the rows free above the topmost peg, where the carriers have an end.
+    on the moving carrier. ``spare`` (N,) has the rows free above the topmost peg, where the carriers have an
+    end.
     """
     c = found.candidates
     standing = is_standing(c.standing)

@@ -161,8 +161,8 @@ PRECISION = 1e-9
 def sticking_friction(points: Array, normals: Array, right: Array) -> float:
     """The least friction at which three of four contacts, or two, balance the jaw; infinite if there is none.
 
-    Contact points (4, 2) are in mm in the vise frame, normals (4, 2) outward and of length 1, and ``right``
-    (4,) is 1 for contacts of the right jaw's pegs, 0 for others.
+    Contact points (4, 2) are in mm in the vise frame, normals (4, 2) outward and of length 1. ``right`` (4,)
+    is 1 for contacts of the right jaw's pegs, 0 for others.
     """
     size = max(float((points.max(axis=0) - points.min(axis=0)).max()), SMALLEST)
     contacts = (

@@ -200,8 +200,9 @@ class Touched:
     ) -> ContactMatrices:
         """Contact matrices of N fixtures.
 
-        Peg centres (N, P, 2) are in the toolkit's frame in mm, poses (N, 3) are orientation in radians and
-        translation in mm, and (N, P) are numbers of the pegs' carriers and of the faces touched.
+        Peg centres (N, P, 2) are in the toolkit's frame in mm. Poses (N, 3) are orientation in radians and
+        translation in mm. Carriers and faces (N, P) are numbers of the pegs' carriers and of the faces
+        touched.
         """
         on = np.asarray(carriers, np.int64)
         on_wall = self.lies_flush.take(on)

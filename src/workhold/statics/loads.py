@@ -132,8 +132,8 @@ def jaw_forces_needed(inverses: Array, closing: Array, length: float, loads: Arr
     Peg i presses with f0_i - h_i (h . f0) / (h . h) + F h_i, where h_i > 0. Of two clamps F is the sum of
     their forces, at the working ratio, and what is taken from f0 is its part in the plane of both.
 
-    The inverses (N, 4, P) of the contact matrices have h in their last rows, ``closing`` (N, P, M) are peg
-    forces per unit of the force of each jaw or clamp, ``length`` is L in mm, and loads (M, 11) are rows of
+    The inverses (N, 4, P) of the contact matrices have h in their last rows. ``closing`` (N, P, M) are peg
+    forces per unit of the force of each jaw or clamp, and ``length`` is L in mm. Loads (M, 11) are rows of
     ``kernels.contact.quality``.
     """
     held = inverses[:, 3]

@@ -24,11 +24,11 @@ from the point where V is T |c|, greatest straight beyond the centre.
 *Blocks.* Pieces are looked at in blocks. No point of a block exceeds V at the middle of its circle, with the
 largest F and T, and F |c| times its radius more. Blocks that cannot hold the greatest value are passed over.
 
-*Hulls.* For one range of directions V = F v(p), with v convex in p, as T is F times the tool's radius. Take points of
-the path with as large a force and the same directions, and their hull. What lies inside it, or on it, exceeds
-all of them nowhere but where V < 0. There not cutting is worse, V = 0, which counts along with the path. An
-arc lies inside where a polygon around it does. So hulls are built, the largest forces first, and what lies
-inside what came before is left out.
+*Hulls.* For one range of directions V = F v(p), with v convex in p, as T is F times the tool's radius. Take
+points of the path with as large a force and the same directions, and their hull. What lies inside it, or on
+it, exceeds all of them nowhere but where V < 0. There not cutting is worse, V = 0, which counts along with
+the path. An arc lies inside where a polygon around it does. So hulls are built, the largest forces first, and
+what lies inside what came before is left out.
 
 References: G. B. Dantzig, *Linear Programming and Extensions*, 1963, for extremes at corners; A. H. Land and
 A. G. Doig, Econometrica 28 (1960), for the blocks.

@@ -4,8 +4,8 @@ A face is an outer loop less its openings; keep-out zones are taken off. The roo
 to the nearest border of the face that it lies on, negative off all. Parity of crossings with the chords,
 changed once between each arc and its chord, says which side a point is on.
 
-Regions that have a height of such a face keep the clamp on top away from places on it. A head keeps off what rises
-above the face. A tip presses better where it keeps off what of the face hangs.
+Regions that have a height of such a face keep the clamp on top away from places on it. A head keeps off what
+rises above the face. A tip presses better where it keeps off what of the face hangs.
 """
 
 from __future__ import annotations

@@ -84,9 +84,9 @@ def balance(
 ) -> tuple[Array, Array, float]:
     """What the forces along the edges of pyramids do: a matrix (7, V), costs (V,) and a length in mm.
 
-    The matrix has of each unit force the parts in x, y and z, the moments about the centre of the part over
-    the length, and the push against what moves. Its cost is what it adds to the force of the clamp. Each peg
-    presses at one of the heights, in mm.
+    The matrix has, of each unit force, the parts in x, y and z. Then come the moments about the centre of the
+    part over the length, and the push against what moves. Its cost is what it adds to the force of the clamp.
+    Each peg presses at one of the heights, in mm.
     """
     query, fixture = supports.query, supports.fixture
     touched = Touched.of(query.workpiece, query.toolkit)

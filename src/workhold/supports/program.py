@@ -200,8 +200,8 @@ def zones_of(
 ) -> tuple[Zone, ...]:
     """The zones of what is swept that keep discs clear of it, as few of them as do.
 
-    The clearance is kept between the cylinders and a disc of radius ``disc``; the middle of a disc is at
-    least ``on_face`` from the border of the face; all are in mm. Where there are more than ``most`` zones,
+    The clearance is kept between the cylinders and a disc of radius ``disc``. The middle of a disc is at
+    least ``on_face`` from the border of the face. All are in mm. Where there are more than ``most`` zones,
     they are made wider and fewer.
     """
     if not len(swept) or not face.faces:

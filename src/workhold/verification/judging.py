@@ -129,7 +129,7 @@ def warnings(
 
     ``off`` is the sum of the tolerances in mm, ``part`` the relative error of the file's figures, and
     ``bending`` the largest stress in MPa and the farthest movement in mm by bent pegs. ``states_bending``
-    says whether the file states how far pegs bend: where it was made before there was that figure, it may
+    says whether the file states how far pegs bend. Where it was made before there was that figure, it may
     have counted it or not.
     """
     pairs = [over(-edge, -NEAR_EDGE, part) for edge in edges]

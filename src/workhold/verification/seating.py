@@ -1,12 +1,12 @@
 """Proof of the seating that a result states for a fixture, from the outline, the pegs and its numbers alone.
 
-Of a seat its pose, difference and contacts are given. Stated contacts are derived anew from the outline. Each must
-touch to ``AGREEMENT``, checked in balls, and no peg may be in the part. Forces h >= 0 along the normals must balance
-on the part, while those of the pegs that move add up to one along their way. So a stated seat or pass that is none is
-refuted. That none is missing cannot be seen from a file.
+Of a seat its pose, difference and contacts are given. Stated contacts are derived anew from the outline. Each
+must touch to ``AGREEMENT``, checked in balls, and no peg may be in the part. Forces h >= 0 along the normals
+must balance on the part, while those of the pegs that move add up to one along their way. So a stated seat or
+pass that is none is refuted. That none is missing cannot be seen from a file.
 
-The stop is where what moves comes to rest without the part. Doubles suffice to ask whether pegs are clear of the
-part, and whether it covers the same place.
+The stop is where what moves comes to rest without the part. Doubles suffice to ask whether pegs are clear of
+the part, and whether it covers the same place.
 
 Glossary
 --------
