@@ -58,7 +58,6 @@ class Column:
     shape: tuple[int, ...] = ()
 
     def header(self, rows: int) -> bytes:
-        """What stands in front of so many rows."""
         stream = io.BytesIO()
         about = {"descr": self.kind, "fortran_order": False, "shape": (rows, *self.shape)}
         np.lib.format.write_array_header_1_0(stream, about)
@@ -66,7 +65,6 @@ class Column:
 
     @property
     def row_bytes(self) -> int:
-        """Bytes of one row."""
         return int(np.dtype(self.kind).itemsize * np.prod(self.shape, dtype=np.int64))
 
 
@@ -93,7 +91,6 @@ class ArchiveMember:
         return self.start + LOCAL.size + len(self.name) + 24 + self.room
 
     def local_header(self) -> bytes:
-        """The header in front of the content."""
         sizes = struct.pack("<2H2Q", SIZES, 16, self.size, self.size)
         extra = sizes + struct.pack("<2H", ROOM, self.room) + bytes(self.room)
         lengths = IN_EXTRA, IN_EXTRA, len(self.name), len(extra)
@@ -102,7 +99,6 @@ class ArchiveMember:
         )
 
     def central_header(self) -> bytes:
-        """The entry of the directory."""
         extra = struct.pack("<2H3Q", SIZES, 24, self.size, self.size, self.start)
         lengths = IN_EXTRA, IN_EXTRA, len(self.name), len(extra)
         fixed = CENTRAL.pack(
@@ -139,7 +135,6 @@ class ArchiveWriter:
             start = member.content + size
 
     def put(self, place: int, content: Any) -> None:
-        """Writes bytes at a place."""
         self.stream.seek(place)
         self.stream.write(content)
 
@@ -162,7 +157,6 @@ class ArchiveWriter:
         self.rows = self.done
 
     def close(self, name: str, text: str, mark: str) -> None:
-        """Writes the text under its name, the directory and the mark."""
         # Half a letter in a string of JSON becomes its escape.
         content = text.encode("utf-8", "backslashreplace")
         last = self.members[-1]
@@ -229,13 +223,7 @@ class CarefulFile(io.FileIO):
     """A file of which a directory of a sensible size can be read."""
 
     def read(self, size: int | None = -1, /) -> bytes:
-        """Reads so many bytes, or those to the end.
-
-        Raises
-        ------
-        BadZipFile
-            When they are too many.
-        """
+        """Reads so many bytes, or those to the end; raises BadZipFile when they are too many."""
         if size is not None and size > MOST_DIRECTORY:
             raise BadZipFile("its directory is too large")
         return super().read(MOST_DIRECTORY if size is None or size < 0 else size) or b""
@@ -292,13 +280,7 @@ def mapped_archive(
 
 
 def refuse_unlike(names: set[str], members: Sequence[ZipInfo], spans: list[tuple[int, int]]) -> None:
-    """Refuses members that are missing, there twice, or not apart from each other.
-
-    Raises
-    ------
-    BadZipFile
-        Naming the first.
-    """
+    """Refuses members that are missing, there twice, or not apart from each other; raises BadZipFile."""
     found = [info.filename for info in members]
     for one in sorted(names):
         if found.count(one) != 1:
@@ -311,12 +293,8 @@ def refuse_unlike(names: set[str], members: Sequence[ZipInfo], spans: list[tuple
 def span(info: ZipInfo, content: mmap.mmap) -> tuple[int, int]:
     """Where the content of a member begins and ends.
 
-    Raises
-    ------
-    BadZipFile
-        When it is packed or locked, or not inside the file.
-    struct.error
-        When its header is not.
+    Raises BadZipFile when it is packed or locked, or not inside the file, and struct.error when its header is
+    not.
     """
     if info.compress_type != ZIP_STORED or info.flag_bits & 1 or info.compress_size != info.file_size:
         raise BadZipFile(f"{info.filename} is packed, so it cannot be mapped into memory")
@@ -341,12 +319,8 @@ def checksum(content: mmap.mmap, first: int, end: int) -> int:
 def mapped(content: mmap.mmap, first: int, end: int, name: str, column: Column) -> NDArray[Any]:
     """A column (N, ...) in a mapped file, read-only.
 
-    Raises
-    ------
-    BadZipFile
-        When its header is not that of such a column of such a size.
-    struct.error
-        When it is too short for a header.
+    Raises BadZipFile when its header is not that of such a column of such a size, and struct.error when it is
+    too short for a header.
     """
     (length,) = struct.unpack_from("<H", content[first : min(first + 10, end)], 8)
     rows, rest = divmod(end - first - 10 - length, column.row_bytes)

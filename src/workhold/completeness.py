@@ -170,19 +170,16 @@ def first_other(written: Any, derived: Any, key: str = "") -> str:
 
 
 def counted(number: int) -> str:
-    """A number of fixtures in words."""
     return f"{number} fixture{'s' * (number != 1)}"
 
 
 def in_words(fixture: Fixture) -> str:
-    """A fixture by its type, holes and orientation."""
     holes = ", ".join(peg.hole for peg in fixture.pegs)
     direction = "" if fixture.direction is None else f" {fixture.direction}"
     return f"of type {fixture.type}{direction} in {holes} at {fixture.pose.theta_deg:.6f} degrees"
 
 
 def numbers_of(proof: Proof) -> dict[str, int]:
-    """The numbers of an account."""
     names = (attribute.name for attribute in fields(Proof) if attribute.name != "undecided")
     return {name: getattr(proof, name) for name in names}
 

@@ -21,5 +21,4 @@ def hand_over(importers: Mapping[str, Callable[[], Callable[..., Any]]]) -> None
 
 
 def delegate(name: str) -> Callable[..., Any]:
-    """The function that was registered under a name."""
     return IMPORTERS[name]()

@@ -134,25 +134,13 @@ def refuse_little_space(needed: int, what: str, remedy: str) -> None:
 
 
 def refuse_long(name: str, value: float) -> None:
-    """Refuses a length in mm that is too large.
-
-    Raises
-    ------
-    InputError
-        With its name, value and limit.
-    """
+    """Refuses a length in mm that is too large."""
     if abs(value) > MOST_LENGTH:
         raise InputError(f"{name} {value:g} is beyond {MOST_LENGTH:g} mm: check the number and its unit.")
 
 
 def refuse_strong(name: str, value: float, unit: str = "N") -> None:
-    """Refuses a force in N or a moment in N mm that is too large.
-
-    Raises
-    ------
-    InputError
-        With its name, value and limit.
-    """
+    """Refuses a force in N or a moment in N mm that is too large."""
     if abs(value) > MOST_FORCE:
         raise InputError(f"{name} {value:g} is beyond {MOST_FORCE:g} {unit}: check the number and its unit.")
 

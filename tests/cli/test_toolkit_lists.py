@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from workhold.cli.toolkit_lists import LISTED, ListWords, toolkits_to_try
+from workhold.cli.toolkit_options import LISTED, ListWords, toolkits_to_try
 from workhold.errors import InputError
 from workhold.fixels.fields import OPTIONS
 from workhold.fixels.kinds import KINDS, TABLES, toolkit_of

@@ -11,8 +11,7 @@ from attrs import NOTHING, fields, fields_dict
 import manual
 from toolkit_values import VALUES, given
 from workhold.cli.catalogue_commands import own_figures
-from workhold.cli.toolkit_lists import ListWords, toolkits_to_try
-from workhold.cli.toolkit_options import ToolkitWords
+from workhold.cli.toolkit_options import ListWords, ToolkitWords, toolkits_to_try
 from workhold.errors import InputError
 from workhold.files.input_forms import checked_toolkit
 from workhold.files.toolkit_file import described_toolkit, load_toolkit, preset_names

@@ -13,8 +13,7 @@ from workhold.model.cutting_tool import CuttingDirection, Cylinder, Tool
 from workhold.model.moves import Moves, along
 from workhold.model.program import Program
 from workhold.statics import path_forces as module
-from workhold.statics.path_forces import PathForces
-from workhold.statics.path_pieces import all_pieces, inside, path_forces, without_torques
+from workhold.statics.path_forces import PathForces, all_pieces, inside, path_forces, without_torques
 
 Array = NDArray[np.float64]
 CENTER = (7.0, -3.0)

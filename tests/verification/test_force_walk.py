@@ -22,7 +22,7 @@ from workhold.files.result.writer import write_result
 from workhold.model.cutting_forces import forces_on
 from workhold.model.cutting_tool import CuttingData, CuttingDirection
 from workhold.model.program import Program
-from workhold.statics.path_pieces import path_forces
+from workhold.statics.path_forces import path_forces
 from workhold.verification.force_walk import ForceWalk
 from workhold.verification.verify import verify_file
 

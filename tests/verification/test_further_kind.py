@@ -26,7 +26,7 @@ from workhold.verification.judging import rank
 from workhold.verification.reading import fixtures_of
 from workhold.verification.repeats import KnownFixtures, stance
 from workhold.verification.rules.hardware import ToolkitRules
-from workhold.verification.seating_contacts import stop_of
+from workhold.verification.seating import stop_of
 
 Data = dict[str, Any]
 Edit = Callable[[Data], object]

@@ -21,8 +21,14 @@ from workhold.verification.ball_geometry import BallOutline
 from workhold.verification.judging import order_faults
 from workhold.verification.listing import Listing, claim_of, read_listing
 from workhold.verification.repeats import pattern_faults, stance
-from workhold.verification.seating import SeatingJudge, StatedSeating
-from workhold.verification.seating_contacts import FloatOutline, PartPlacement, stop_of, touching_wall
+from workhold.verification.seating import (
+    FloatOutline,
+    PartPlacement,
+    SeatingJudge,
+    StatedSeating,
+    stop_of,
+    touching_wall,
+)
 from workhold.verification.verify import not_shown
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])

@@ -63,12 +63,7 @@ def sector_of(psi: Array) -> IntArray:
 
 
 def facing(rows: Array, spread: float) -> BoolArray:
-    """Whether a feature has a normal within ``spread`` radians of the middle of a sector, (F, SECTORS).
-
-    Parameters
-    ----------
-    rows : (F, 10) feature rows.
-    """
+    """Whether features (F, 10) have a normal within ``spread`` radians of a sector's middle, (F, SECTORS)."""
     straight = rows[:, IS_ARC] == 0.0
     x, y = rows[:, AXIS_X], rows[:, AXIS_Y]
     middle = np.where(straight, np.arctan2(-x, y), np.arctan2(y, x))
@@ -154,15 +149,10 @@ class PegPairs:
 def wedge_sectors(
     one: FeaturePieces, two: FeaturePieces, distance: float, direction: float
 ) -> BoolArray | None:
-    """Orientations at which a peg pair fits each piece of the first feature (sections 3.3 and 3.4).
+    """Orientations (P, SECTORS) at which a peg pair fits each piece of the first feature.
 
-    Parameters
-    ----------
-    distance, direction : of the step from the first peg to the second, in mm and radians.
-
-    Returns
-    -------
-    (P, SECTORS) array, or None where no wedge holds the step's length
+    See sections 3.3 and 3.4. The step from the first peg to the second has a length in mm and a direction in
+    radians. None where no wedge holds its length.
     """
     between = two.middle[None, :] - one.middle[:, None]
     spread = one.radius[:, None] + two.radius[None, :] + WEDGE_SLACK
@@ -193,17 +183,10 @@ def tail_bounds(one: FeaturePieces, tails: BoolArray) -> tuple[Array, Array]:
 
 
 def peg_pairs(rows: Array, frame: Frame, diameter: float) -> PegPairs:
-    """Every peg pair that its annulus wedges allow (section 3.4).
+    """Every peg pair that its annulus wedges allow (section 3.4); refuses too many of them.
 
-    Parameters
-    ----------
-    rows : (F, 10) contact features about the centre of the part.
-    diameter : largest distance in mm between two peg centres.
-
-    Raises
-    ------
-    InputError
-        When there are too many.
+    Features (F, 10) are about the centre of the part. ``diameter`` is the largest distance in mm between two
+    peg centres.
     """
     pieces = [pieces_of(row, diameter * PIECE) for row in rows]
     most = max(len(p.middle) for p in pieces)
@@ -283,7 +266,6 @@ class Facings:
 
 
 def are_parallel(rows: Array, a: IntArray, b: IntArray) -> BoolArray:
-    """Which pairs of features are parallel lines."""
     turn = rows[a, 3] * rows[b, 4] - rows[a, 4] * rows[b, 3]
     return np.asarray((rows[a, 0] == 0.0) & (rows[b, 0] == 0.0) & (np.abs(turn) <= PARALLEL))
 

@@ -66,13 +66,9 @@ class SimultaneousContacts(ArrayTable):
 def within_ends(rows: Array, center: Complex, margin: float, radius: Array) -> BoolArray:
     """Whether contacts may be inside their features, ``margin`` mm from the ends (model: condition 1).
 
-    Not ``contact.features.end_distances``: the algebra is a second opinion and asks the rules by itself.
-
-    Parameters
-    ----------
-    rows : (..., 12) feature rows, the last two entries how far in mm a contact may lie past the low and the
-        high end.
-    center, radius : (...) peg centres and how far they may be off in mm.
+    Not ``contact.features.end_distances``: the algebra is a second opinion and asks the rules by itself. The
+    last two entries of rows (..., 12) are how far in mm a contact may lie past the low and the high end. Peg
+    centres (...) may be off by ``radius`` mm.
     """
     off = (center - rows[..., X] - 1j * rows[..., Y]) * (rows[..., AXIS_X] - 1j * rows[..., AXIS_Y])
     straight = rows[..., IS_ARC] == 0.0
@@ -86,11 +82,9 @@ def within_ends(rows: Array, center: Complex, margin: float, radius: Array) -> B
 def records_of(held: SimultaneousContacts, rows: Array, frame: Frame, margin: float, length: float) -> Array:
     """What may be fixtures among parts touched by four pegs, as records (``kernels.contact.record``).
 
-    Parameters
-    ----------
-    rows : (F, 12) features about the centre of the part with the slack of their ends.
-    margin : smallest distance in mm from a contact to the end of its feature.
-    length : L of the wrenches in mm, half the part's size.
+    Features (F, 12) are about the centre of the part with the slack of their ends. ``margin`` is the smallest
+    distance in mm from a contact to the end of its feature. ``length`` is L of the wrenches in mm, half the
+    part's size.
     """
     radius = 4.0 * length * held.reach
     inside = within_ends(rows[held.feature], held.center, margin, radius[:, None])
@@ -145,19 +139,10 @@ def may_close(
 
 
 def wrench_minors(points: Array, normals: Array, length: float) -> Array:
-    """Null vectors of wrenches (n, (q - c) x n / L), not scaled: signed 3x3 minors (Cramer's rule).
+    """Null vectors (N, 4) of wrenches (n, (q - c) x n / L), not scaled: signed 3x3 minors (Cramer's rule).
 
-    Not ``kernels.contact.rules.minors``: the algebra is a second opinion and asks for closure by itself.
-
-    Parameters
-    ----------
-    points : (N, 4, 2) peg centres about c in mm.
-    normals : (N, 4, 2) outward unit normals.
-    length : L in mm.
-
-    Returns
-    -------
-    (N, 4) array
+    Not ``kernels.contact.rules.minors``: the algebra is a second opinion and asks for closure by itself. Peg
+    centres (N, 4, 2) are about c in mm, normals (N, 4, 2) are outward and of length 1, L is in mm.
     """
     moments = (points[..., 0] * normals[..., 1] - points[..., 1] * normals[..., 0]) / length
     out = np.empty(moments.shape)
@@ -174,14 +159,9 @@ def wrench_minors(points: Array, normals: Array, length: float) -> Array:
 def row_points(row: Array, psi: Array, height: Array) -> tuple[IntArray, Complex, Array]:
     """Where a feature's line or circle meets horizontals of the frame.
 
-    Parameters
-    ----------
-    row : (8,) feature row.
-    psi, height : (N,) orientation of the pegs in radians, and height along the frame's y axis in mm.
-
-    Returns
-    -------
-    (indices of horizontals, points in the workpiece's frame, how much they move when height and psi do)
+    Given are a feature row (8,), orientations of the pegs (N,) in radians, and heights (N,) along the frame's
+    y axis in mm. Returned are indices of horizontals, points in the workpiece's frame, and how much they move
+    when height and psi do.
     """
     z = np.exp(1j * psi)
     middle = (row[X] + 1j * row[Y]) / z
@@ -204,10 +184,8 @@ def fourth_pegs(
 ) -> SimultaneousContacts:
     """Type II: the fourth pegs on rows that overlap the transformed fourth features (section 3.5).
 
-    Parameters
-    ----------
-    triples : three left pegs each, ``center`` and the others of shape (N, 3).
-    rows, margin, length : see :func:`records_of`.
+    Triples are of three left pegs each, ``center`` and the others of shape (N, 3). For the rest see
+    :func:`records_of`.
     """
     radius = 4.0 * length * triples.reach
     inside = within_ends(rows[triples.feature], triples.center, margin, radius[:, None])

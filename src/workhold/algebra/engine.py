@@ -44,12 +44,7 @@ MOST_NAMED = 20
 
 
 def undecided_notes(undecided: Sequence[Systems], faces: NDArray[np.int64]) -> Iterator[str]:
-    """One sentence for each undecided system.
-
-    Parameters
-    ----------
-    faces : (F,) number of each feature's face.
-    """
+    """One sentence for each undecided system; ``faces`` has the number of each feature's face."""
     sentences = [
         f"Undecided: {in_words(faces[feature].tolist(), column.tolist(), row.tolist())}."
         for systems in undecided
@@ -207,13 +202,7 @@ def by_case(stream: Iterable[Systems], rows: Array) -> Iterator[tuple[Systems, C
 
 
 def refuse_unlike(frame: Frame) -> None:
-    """Refuses a toolkit of which the paper does not treat.
-
-    Raises
-    ------
-    InputError
-        When its carriers are not alike, or two pegs move and no half turn exchanges them.
-    """
+    """Refuses a toolkit of which the paper does not treat."""
     one, other = ((c.columns, c.rows, c.peg_radius, c.body_radius, c.flat, c.heights) for c in frame.carriers)
     if one != other or not (frame.swapped or all(each.pegs == (3, 1) for each in frame.toolkit.arrangements)):
         raise InputError(

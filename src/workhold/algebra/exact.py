@@ -45,7 +45,6 @@ class Laurent:
         return Laurent(self.polynomial * other.polynomial, self.low + other.low)
 
     def times(self, factor: int) -> Laurent:
-        """A whole multiple."""
         return Laurent(self.polynomial * factor, self.low)
 
     def raised(self, by: int) -> acb_poly:
@@ -53,7 +52,6 @@ class Laurent:
         return self.polynomial.left_shift(by) if by else self.polynomial
 
     def powers(self, most: int) -> list[Laurent]:
-        """The powers from 0 to ``most``."""
         out = [constant(1.0)]
         for _ in range(most):
             out.append(out[-1] * self)
@@ -70,7 +68,6 @@ def ball(value: complex) -> acb:
 
 
 def constant(value: complex) -> Laurent:
-    """A constant."""
     return Laurent(acb_poly([ball(complex(value))]), 0)
 
 

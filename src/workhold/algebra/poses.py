@@ -68,20 +68,14 @@ PRECISIONS = (64, 128, 256, 512)
 
 
 def sectors_with_roots(values: Complex, size: Array) -> tuple[BoolArray, BoolArray]:
-    """Sectors of orientations in which roots cannot be excluded, and those where rounding may hide them.
+    r"""Sectors of orientations in which roots cannot be excluded, and those where rounding may hide them.
 
-    By Taylor's theorem \\|f(c + h) - f(c) - h f'(c)\\| <= h^2 / 2 max \\|f''\\|, and max \\|f''\\| is at most
-    the sum of the sizes of its coefficients. Far more than rounding is allowed for. Where the polynomial and
-    its first derivatives are tiny, roots are crowded, and rounding moves them far.
+    By Taylor's theorem \|f(c + h) - f(c) - h f'(c)\| <= h^2 / 2 max \|f''\|, and max \|f''\| is at most the
+    sum of the sizes of its coefficients. Far more than rounding is allowed for. Where the polynomial and its
+    first derivatives are tiny, roots are crowded, and rounding moves them far.
 
-    Parameters
-    ----------
-    values : (N, 2 d + 1) of z^-d ... z^d.
-    size : (N,) size of the terms that the values were summed from.
-
-    Returns
-    -------
-    two (N, SECTORS) arrays
+    Values (N, 2 d + 1) are those of z^-d ... z^d, ``size`` (N,) is the size of the terms they were summed
+    from. Both arrays are (N, SECTORS).
     """
     bound = values.shape[1] // 2
     exponents = np.arange(-bound, bound + 1)
@@ -142,16 +136,10 @@ def nearly_sliding(contacts: ContactSystems) -> BoolArray:
 def orientations(
     contacts: ContactSystems, case: tuple[int, int], sectors: BoolArray
 ) -> tuple[IntArray, Array, IntArray]:
-    """Candidates for the orientations of N systems of one case.
+    """Candidates for the orientations of N systems of one case, where they are wanted, (N, SECTORS).
 
-    Parameters
-    ----------
-    contacts, case : see ``resultants.resultant``.
-    sectors : (N, SECTORS) where orientations are wanted.
-
-    Returns
-    -------
-    (indices of systems, orientations in radians, indices of systems that their resultants leave undecided)
+    They are indices of systems, orientations in radians, and indices of systems that their resultants leave
+    undecided. For systems and case see ``resultants.resultant``.
     """
     values, size = coefficients(contacts, case)
     largest = np.abs(values).max(axis=1)
@@ -310,10 +298,8 @@ def straight_poses(contacts: ContactSystems, owner: IntArray, psi: Array) -> Pos
 def poses_at(contacts: ContactSystems, case: tuple[int, int], owner: IntArray, psi: Array) -> Poses:
     """All poses of systems at, or very near to, orientations.
 
-    Parameters
-    ----------
-    contacts : systems of one case, lengths in parts of the part's size.
-    owner, psi : (M,) which system and which orientation in radians.
+    The systems are of one case, with lengths in parts of the part's size. ``owner`` (M,) says which system,
+    ``psi`` (M,) which orientation in radians.
     """
     if len(owner) == 0:
         return Poses(owner, psi, np.zeros(0, np.complex128), np.zeros(0), np.zeros(0))

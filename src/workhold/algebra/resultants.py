@@ -70,12 +70,10 @@ class ArrayTable:
 
     @property
     def arrays(self) -> dict[str, NDArray[Any]]:
-        """The arrays by name."""
         values = {one.name: getattr(self, one.name) for one in fields(type(self))}
         return {name: value for name, value in values.items() if isinstance(value, np.ndarray)}
 
     def take(self, which: NDArray[np.int64] | BoolArray) -> Self:
-        """The rows of an index array or mask."""
         return evolve(self, **{name: array[which] for name, array in self.arrays.items()})
 
     @classmethod
@@ -166,11 +164,9 @@ class ContactSystems(ArrayTable):
 
 
 def line_constraint(contacts: ContactSystems, k: int, psi: Array) -> tuple[Array, TrigPolynomial]:
-    """h (equation 2) or h_sigma (equation 4) of peg k on a line: (factor of the separation, the rest).
+    """h (equation 2) or h_sigma (equation 4) of peg k on a line, at orientations (N, M) in radians.
 
-    Parameters
-    ----------
-    psi : (N, M) orientations in radians.
+    The factor of the separation comes first, then the rest.
     """
     z, normal = np.exp(1j * psi), contacts.normal[:, k, None]
     start = (contacts.middle[:, 0] - contacts.middle[:, k])[:, None] + z * contacts.point[:, k, None]
@@ -207,9 +203,7 @@ def pair_constraint(contacts: ContactSystems, k: int, psi: Array) -> TrigPolynom
 def circle_difference(contacts: ContactSystems, k: int, m: int, psi: Array) -> tuple[Array, TrigPolynomial]:
     """g_sigma of peg m less that of peg k, linear in the separation like h_sigma: its square cancels.
 
-    Returns
-    -------
-    (factor of the separation, the rest), with z - z0 divided out where the arcs slide
+    The factor of the separation comes first, then the rest, with z - z0 divided out where the arcs slide.
     """
     z, radius = np.exp(1j * psi), contacts.radius[:, 0, None]
     _, apart = contacts.centers_apart(k, m, psi)
@@ -328,14 +322,10 @@ def straight_line_form(contacts: ContactSystems, psi: Array) -> tuple[Array, Arr
 
 
 def resultant(contacts: ContactSystems, case: tuple[int, int], psi: Array) -> tuple[Array, Array]:
-    """The resultant of N systems of one case at (N, M) orientations, and the size of its terms.
+    """The resultant of N systems of one case at (N, M) orientations in radians, and the size of its terms.
 
-    Parameters
-    ----------
-    contacts : arcs before lines on each jaw, the left jaw with no fewer arcs than the right one.
-    case : (arcs on the left, arcs on the right), or (arcs on the left, -1) for the three left pegs of Type
-        II.
-    psi : in radians.
+    Contacts have arcs before lines on each jaw, and the left jaw no fewer arcs than the right one. The case
+    is (arcs on the left, arcs on the right), or (arcs on the left, -1) for the three left pegs of Type II.
     """
     left, right = case
     if left == 0:

@@ -81,10 +81,7 @@ def step_of(pairs: PegPairs, k: int, frame: Frame) -> complex:
 def sliding_pairs_of(pairs: PegPairs, scaled: Array, frame: Frame, diameter: float) -> list[SlidingPair]:
     """All peg pairs that fix the orientation, once for each orientation.
 
-    Parameters
-    ----------
-    scaled : (F, 10) feature rows with lengths in parts of the part's size.
-    diameter : that size in mm.
+    Features (F, 10) have lengths in parts of the part's size, which is ``diameter`` in mm.
     """
     step = (pairs.column * frame.lattice.pitch_x + 1j * pairs.row * frame.lattice.pitch_y) / diameter
     contacts = ContactSystems(
@@ -108,13 +105,9 @@ def sliding_pairs_of(pairs: PegPairs, scaled: Array, frame: Frame, diameter: flo
 def reach_of(sliding_pair: SlidingPair, row: Array, point: Complex, step: complex, slope: Array) -> Array:
     """How far in radians the orientation of a sliding pair may be off, (N,).
 
-    Contacts that miss by e turn the pegs by e over the distance between their two lines of action.
-
-    Parameters
-    ----------
-    row, point : feature of the first peg, and where on it the peg is.
-    step : from the first peg to the second, turned by the orientation, in mm.
-    slope : how much farther the contacts move than the pegs turn, see :func:`row_points`.
+    Contacts that miss by e turn the pegs by e over the distance between their two lines of action. The step
+    leads from the first peg to the second, turned by the orientation, in mm. ``slope`` is how much farther
+    the contacts move than the pegs turn, see :func:`row_points`.
     """
     normal = (
         row[AXIS_Y] - 1j * row[AXIS_X] if row[IS_ARC] == 0.0 else (point - row[X] - 1j * row[Y]) / row[RADIUS]

@@ -101,12 +101,7 @@ def distinct_poses(poses: Poses) -> int:
 
 
 def table_two(count: int = 20, seed: int = 1996) -> list[Row]:
-    """Degrees and numbers of roots for every row of the table.
-
-    Parameters
-    ----------
-    count : random systems for each row.
-    """
+    """Degrees and numbers of roots for every row of the table, from ``count`` random systems each."""
     rows = []
     for case in PAPER_DEGREES:
         contacts = random_contacts(case, count, seed)

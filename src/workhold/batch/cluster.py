@@ -163,7 +163,6 @@ class ClusterWorkers:
             self.client.cancel([future for future, _ in pending.values()])
 
     def submit(self, task: Task, key: str, finished: SimpleQueue[Any]) -> Any:
-        """Hand a task to the scheduler under a key."""
         future = self.client.submit(done_there, task, self.store, key=key, pure=False)
         future.add_done_callback(finished.put)
         return future
@@ -263,7 +262,6 @@ def checked_address(address: str) -> str:
 
 
 def done_there(task: Task, store: Store | None) -> Outcome:
-    """Does a task in a worker of a cluster, and put its record where it belongs."""
     from distributed import get_worker
 
     outcome = done(task, str(get_worker().address))

@@ -45,7 +45,6 @@ OTHER_READING = (0.005, 1.0)
 
 
 def reading_seconds(ending: str, size: int) -> float:
-    """Seconds to read a drawing of so many bytes."""
     first, million = READING.get(ending.lower(), OTHER_READING)
     return first + million * size / 1e6
 
@@ -53,9 +52,7 @@ def reading_seconds(ending: str, size: int) -> float:
 def measures(faces: int, size: tuple[float, float], toolkit: Toolkit) -> tuple[str, float, float]:
     """The law that holds for a toolkit, and the logarithms of what it grows with: faces and steps.
 
-    Parameters
-    ----------
-    size : width and height of the part in mm.
+    Width and height of the part are in mm.
     """
     carrier = toolkit.plates[0]
     diameter = hypot(*size) + 2.0 * carrier.peg_radius
@@ -67,7 +64,6 @@ def measures(faces: int, size: tuple[float, float], toolkit: Toolkit) -> tuple[s
 
 
 def answering_seconds(faces: int, size: tuple[float, float], toolkit: Toolkit) -> float:
-    """Seconds to find all fixtures of a part in a toolkit."""
     law, of_faces, of_steps = measures(faces, size, toolkit)
     constant, first, second = LAWS[law]
     return exp(constant + first * of_faces + second * of_steps)
@@ -108,13 +104,6 @@ class Measured:
                     continue
 
     def add(self, outcome: Outcome) -> None:
-        """Writes down what a task took.
-
-        Raises
-        ------
-        InputError
-            When the file cannot be written.
-        """
         worker = plain(outcome.worker) or "-"
         self.known[outcome.name] = (outcome.seconds, worker)
         with plain_errors(self.path):

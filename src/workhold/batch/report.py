@@ -204,13 +204,6 @@ class Report:
         return f"<small>{link}<details><summary>setup sheet</summary>{code}</details></small>"
 
     def write(self, path: Path, summary: Summary) -> None:
-        """Writes the page.
-
-        Raises
-        ------
-        InputError
-            When it cannot be written.
-        """
         headings = [
             "first choice",
             "part",
@@ -263,7 +256,6 @@ class Report:
 
 
 def escaped(words: Any) -> str:
-    """Words as HTML, whatever they hold."""
     return escape(plain(str(words)))
 
 
@@ -275,7 +267,6 @@ def cell(content: str, *, key: str | None = None, name: str = "", bad: bool = Fa
 
 
 def figure(value: float | None, decimals: int) -> str:
-    """A cell with a number."""
     if value is None:
         return cell("", name="n")
     return cell(f"{value:,.{decimals}f}", key=f"{value:.12g}", name="n")
@@ -299,11 +290,6 @@ def write_results(
     Parameters
     ----------
     summary : what stands over the report.
-
-    Raises
-    ------
-    InputError
-        When they cannot be written.
     """
     with plain_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)
@@ -315,13 +301,7 @@ def write_results(
 
 
 def sheet_of(row: JobRow, store: Store, folder: Path) -> Path | None:
-    """The setup sheet of a job's first choice, written if it is not there; None without a fixture.
-
-    Raises
-    ------
-    InputError
-        When it cannot be written.
-    """
+    """The setup sheet of a job's first choice, written if it is not there; None without a fixture."""
     if row.row["state"] != "held":
         return None
     name = re.sub(r"[^\w.-]+", "_", f"{Path(row.row['part']).stem} in {row.job.held_in.name}")[:LONGEST_NAME]

@@ -99,14 +99,12 @@ class Part:
 
     @classmethod
     def of(cls, request: Request) -> Part:
-        """A part before it is read."""
         try:
             return cls(request, reading_of(request).name)
         except InputError as error:
             return cls(request, refusal=str(error))
 
     def take(self, record: Mapping[str, Any]) -> None:
-        """Takes note of what was read."""
         self.refusal = record["refusal"]
         if not self.refusal:
             # What may be touched makes outlines of one shape two parts; a prism is its shape alone.
@@ -118,13 +116,6 @@ class Part:
 
 
 def reading_of(request: Request) -> Reading:
-    """The task that reads a part.
-
-    Raises
-    ------
-    InputError
-        When its file cannot be opened.
-    """
     path = request.listed.path
     content = read_bytes(path)
     ending = Path(path).suffix.lower()
@@ -158,7 +149,6 @@ class Job:
         return f"{self.part.request.listed.name} in {self.held_in.name}"
 
     def answering(self, record: bytes, best: int) -> Answering:
-        """Task of a job, from the record of its part."""
         assert isinstance(self.held_in.query, Query)
         return Answering(self.name, self.title, record, self.held_in.query, best)
 
@@ -218,14 +208,8 @@ class BatchRun:
     ) -> tuple[dict[str, Outcome], int]:
         """Does the tasks of items that are not done, longest first, each name once.
 
-        Returns
-        -------
-        The outcome of each task that was done now, by its name, and how many were done before.
-
-        Raises
-        ------
-        InputError
-            When a record cannot be kept.
+        Returns the outcome of each task that was done now, by its name, and how many were done before.
+        Refuses to go on when a record cannot be kept.
         """
         by_name: dict[str, T] = {}
         for item in items:
@@ -262,13 +246,7 @@ class BatchRun:
         return outcomes, len(by_name) - len(reckoned)
 
     def keep(self, outcome: Outcome) -> None:
-        """Keeps the record of a task, unless its worker has, and what it took.
-
-        Raises
-        ------
-        InputError
-            When that cannot be written.
-        """
+        """Keeps the record of a task, unless its worker has, and what it took."""
         try:
             self.measured.add(outcome)
             if outcome.record is not None:

@@ -55,7 +55,6 @@ FIRST, LAST = b'{"format": "workhold-', b"]}\n"
 
 
 def part_record(workpiece: Workpiece, remarks: Sequence[str]) -> bytes:
-    """The record of a drawing that was read."""
     about = {"format": PART, **workpiece_entry(workpiece), **solid_entry(workpiece.solid), "name": PART_NAME}
     heights = {
         role: (one.solid.low, one.solid.peg_height)
@@ -71,7 +70,6 @@ def part_record(workpiece: Workpiece, remarks: Sequence[str]) -> bytes:
 
 
 def refusal_record(sentence: str) -> bytes:
-    """The record of what cannot be read or asked, with the reason."""
     return ended({"format": REFUSAL, "refusal": [sentence]})
 
 
@@ -104,7 +102,6 @@ def plain_record(content: bytes) -> dict[str, Any]:
 
 
 def workpiece_of(record: dict[str, Any]) -> Workpiece:
-    """The part of a drawing's record."""
     solid = SolidOutline.of_entries(record["solid"], record) if record.get("solid") else None
     workpiece = Workpiece.from_loops(PART_NAME, record["loops"], None, record["departure"], solid)
     if "outlines" not in record:
@@ -165,11 +162,9 @@ class FolderStore(Store):
     folder: Path
 
     def place(self, name: str) -> str:
-        """The path of a record."""
         return str(self.path(name))
 
     def path(self, name: str) -> Path:
-        """The path of a record."""
         return self.folder / name[:FOLDER_LETTERS] / f"{name}.json"
 
     def read(self, name: str) -> bytes | None:
@@ -207,7 +202,6 @@ class UrlStore(Store):
     url: str
 
     def place(self, name: str) -> str:
-        """The URL of a record."""
         return f"{self.url}/{name[:FOLDER_LETTERS]}/{name}.json"
 
     def at(self, name: str) -> tuple[Any, str]:
@@ -239,7 +233,6 @@ class UrlStore(Store):
 
     @contextmanager
     def file(self, name: str) -> Iterator[Path]:
-        """A copy of a record as a file."""
         with tempfile.TemporaryDirectory(prefix="workhold-") as folder:
             path = Path(folder) / f"{name}.json"
             path.write_bytes(self.read(name) or b"")

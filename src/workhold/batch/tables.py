@@ -78,7 +78,6 @@ class JobRow:
 
 
 def job_rows(jobs: Sequence[Job], store: Store, measured: Measured) -> Iterator[JobRow]:
-    """The rows of jobs, in their order."""
     for job in jobs:
         part, query = job.part, job.held_in.query
         listed = part.request.listed
@@ -105,7 +104,6 @@ def job_rows(jobs: Sequence[Job], store: Store, measured: Measured) -> Iterator[
 
 
 def take_record(row: Row, named: Row, record: Mapping[str, Any], job: Job) -> list[Row]:
-    """Fills in a row from the record of its answer; the rows of its fixtures."""
     if record["refusal"]:
         row |= {"state": "refused", "reason": record["refusal"]}
         return []
@@ -128,7 +126,6 @@ def take_record(row: Row, named: Row, record: Mapping[str, Any], job: Job) -> li
 
 
 def fixture_row(fixture: Mapping[str, Any], job: Job) -> Row:
-    """Columns of a table on a fixture of a result file."""
     from workhold.files.result.fixture_forms import seating_figures_of
     from workhold.files.result.reader import peg_place
 
@@ -158,7 +155,6 @@ def fixture_row(fixture: Mapping[str, Any], job: Job) -> Row:
 
 
 def has_parquet() -> bool:
-    """Whether tables can be written as Parquet here."""
     return find_spec("pyarrow") is not None
 
 
@@ -169,13 +165,7 @@ def table_names() -> tuple[str, str]:
 
 
 def write_tables(rows: Iterator[JobRow], folder: Path) -> Iterator[JobRow]:
-    """Writes both tables of a folder and passes the rows on; files take their names at the end.
-
-    Raises
-    ------
-    InputError
-        When a table cannot be written.
-    """
+    """Writes both tables of a folder and passes the rows on; files take their names at the end."""
     table = parquet_table if has_parquet() else csv_table
     with ExitStack() as files:
         add_results, add_best = (
@@ -198,7 +188,6 @@ def write_tables(rows: Iterator[JobRow], folder: Path) -> Iterator[JobRow]:
 
 
 def cell(value: Any) -> Any:
-    """A value as a cell shows it."""
     if isinstance(value, str):
         return encodable(value)
     if isinstance(value, bool):

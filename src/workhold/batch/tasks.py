@@ -109,13 +109,7 @@ class Task:
         raise NotImplementedError
 
     def record(self) -> bytes:
-        """Does the work.
-
-        Raises
-        ------
-        InputError
-            For what cannot be read or asked.
-        """
+        """Does the work; refuses what cannot be read or asked."""
         raise NotImplementedError
 
 
@@ -174,7 +168,6 @@ class Answering(Task):
     best: int
 
     def prepare(self) -> None:
-        """Loads the search."""
         import workhold.search.design  # noqa: F401
 
     def record(self) -> bytes:
@@ -219,7 +212,6 @@ class FirstFixtures:
 
     @property
     def count(self) -> int:
-        """How many there are."""
         return 0 if self.table is None else len(self.table)
 
 
@@ -280,10 +272,7 @@ class UnfitWorkerError(WorkholdError):
 def make_ready(task: Task) -> None:
     """Prepare for a task.
 
-    Raises
-    ------
-    UnfitWorkerError
-        When the worker has another program, or lacks something.
+    Raises UnfitWorkerError when the worker has another program, or lacks something.
     """
     if task.program != program():
         raise UnfitWorkerError(

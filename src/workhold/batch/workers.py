@@ -49,7 +49,6 @@ def memory_share(workers: int) -> int:
 
 
 def worker(connection: Connection, memory_bytes: int) -> None:
-    """The main function of a worker."""
     worker_main(connection, memory_bytes, {"task": lambda task, _: done(task)}, lambda: None)
 
 
@@ -137,7 +136,6 @@ class LocalWorkers:
             yield Outcome(task.name, None, words, one.seconds, one.title)
 
     def hand_out(self, waiting: deque[Task]) -> None:
-        """Gives what waits to the workers that are ready, and start some where there are too few of them."""
         for one in self.workers:
             if waiting and one.is_ready and one.task is None:
                 self.give(one, waiting.popleft())
@@ -146,14 +144,12 @@ class LocalWorkers:
             self.workers.append(self.started(self.free_title()))
 
     def free_title(self) -> str:
-        """What a further worker is called."""
         taken = {one.title for one in self.workers}
         return next(
             title for title in (f"worker {k}" for k in range(1, self.count + 1)) if title not in taken
         )
 
     def started(self, title: str) -> Worker:
-        """Starts a worker."""
         context = get_context("spawn")
         ours, theirs = context.Pipe()
         memory = memory_share(self.count) if self.memory_bytes is None else self.memory_bytes
@@ -204,13 +200,7 @@ class LocalWorkers:
         self.watcher.ended(one.title)
 
     def refuse_failed_starts(self, one: Worker) -> None:
-        """Raises an error when one worker after the other ends before it is ready.
-
-        Raises
-        ------
-        InputError
-            With what ended the last of them.
-        """
+        """Raises an error when one worker after the other ends before it is ready."""
         self.failed_starts += 1
         if self.failed_starts >= MOST_FAILED_STARTS:
             raise InputError(
@@ -235,7 +225,6 @@ class LocalWorkers:
 
 
 def ended_by(one: Worker) -> str:
-    """How a worker that is no more ended, in words."""
     code = one.process.exitcode
     return f"by signal {-code}" if code is not None and code < 0 else f"with code {code}"
 

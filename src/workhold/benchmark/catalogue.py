@@ -100,7 +100,6 @@ def data_bytes(name: str) -> bytes:
 
 @cache
 def manifest() -> Mapping[str, Any]:
-    """The manifest as it is written."""
     content: dict[str, Any] = json.loads(data_bytes(MANIFEST))
     return content
 
@@ -139,13 +138,7 @@ def set_named(name: str) -> SetEntry:
 
 
 def query_of(entry: SetEntry) -> Query:
-    """What is asked to make the list of a set.
-
-    Raises
-    ------
-    InputError
-        When the workpiece's file is not the one that the manifest knows.
-    """
+    """What is asked to make the list of a set; refuses a workpiece's file that is not the manifest's."""
     content = data_bytes(f"parts/{entry.part}.json")
     if sha256(content).hexdigest() != manifest()["workpieces"][entry.part]["sha256"]:
         raise InputError(f"the benchmark's workpiece {entry.part} has been changed: install workhold anew.")
@@ -155,13 +148,7 @@ def query_of(entry: SetEntry) -> Query:
 
 
 def set_text(name: str, result: Result) -> SetText:
-    """The head and the lines of a set's file.
-
-    Parameters
-    ----------
-    name : of the set.
-    result : complete, of the set's query.
-    """
+    """The head and the lines of a set's file, from the complete result of the set's query."""
     fixtures = [
         reduced(json.loads(line))
         for lines in fixture_lines(result.table, result.toolkit, result.workpiece)
@@ -178,7 +165,6 @@ def reduced(fixture: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def place_in_order(fixture: Mapping[str, Any]) -> tuple[Any, ...]:
-    """What fixtures of a set are sorted by."""
     pegs = fixture["pegs"]
     pose = fixture["pose"]
     return (
@@ -191,7 +177,6 @@ def place_in_order(fixture: Mapping[str, Any]) -> tuple[Any, ...]:
 
 
 def head_of(name: str, result: Result) -> dict[str, Any]:
-    """The head of a set's file."""
     said = result_head(result)
     key = next(key for key in TOOLKIT_KEYS if key in said)
     workpiece = {key: said["workpiece"][key] for key in ("name", "units", "loops")}
@@ -212,7 +197,6 @@ def head_of(name: str, result: Result) -> dict[str, Any]:
 
 
 def file_text(head: Mapping[str, Any], lines: Iterable[str]) -> str:
-    """The text of a set's file."""
     entries = "".join(f"{json.dumps(key)}: {json.dumps(value)},\n" for key, value in head.items())
     return "{" + entries + '"fixtures": [\n' + ",\n".join(lines) + "\n]}\n"
 
@@ -220,10 +204,8 @@ def file_text(head: Mapping[str, Any], lines: Iterable[str]) -> str:
 def sums_of(head: Mapping[str, Any], lines: Sequence[str]) -> dict[str, str]:
     """The checksums (SHA-256) of a set, by what they are of.
 
-    Returns
-    -------
-    ``file`` of the whole text, ``fixtures`` of the lines joined by line ends, and ``holes`` of what is whole
-    numbers in them. The last is the same on machines whose arithmetic rounds otherwise.
+    ``file`` is of the whole text, ``fixtures`` of the lines joined by line ends, and ``holes`` of what is
+    whole numbers in them. The last is the same on machines whose arithmetic rounds otherwise.
     """
     return {
         "file": digest(file_text(head, lines)),

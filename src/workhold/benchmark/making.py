@@ -112,13 +112,7 @@ def write_common(chosen: Sequence[SetEntry], folder: Path) -> None:
 
 
 def write_parquet(path: Path, head: Mapping[str, Any], lines: Sequence[str]) -> None:
-    """Writes a set as Parquet: a row for each fixture, and the head in the metadata of the schema.
-
-    Raises
-    ------
-    InputError
-        Where pyarrow is not installed.
-    """
+    """Writes a set as Parquet: a row for each fixture, and the head in the metadata of the schema."""
     arrow, tables = load_arrow()
     rows = [json.loads(line) for line in lines]
     table = arrow.Table.from_pylist(rows)

@@ -71,7 +71,6 @@ class EnteredPeg:
 
     @property
     def push(self) -> tuple[float, float]:
-        """The direction in which it pushes."""
         return PUSHES[self.role]
 
 
@@ -140,10 +139,7 @@ def numbered(number: int, fixture: Any) -> Entered:
 def entered_fixture(fixture: Mapping[str, Any]) -> Entered:
     """A fixture of an object of JSON.
 
-    Raises
-    ------
-    KeyError, TypeError, ValueError
-        Where it has not the form.
+    Raises KeyError, TypeError or ValueError where it has not the form.
     """
     pose = fixture["pose"]
     pegs = tuple(
@@ -165,7 +161,6 @@ def role_of(peg: Mapping[str, Any], direction: str | None) -> str:
 
 
 def finite(value: Any) -> float:
-    """A finite number."""
     number = nan if isinstance(value, bool) else real(value)
     if not isfinite(number):
         raise ValueError(f"{str(value)[:40]!r} is no number")
@@ -174,7 +169,6 @@ def finite(value: Any) -> float:
 
 
 def rows_of(text: str) -> tuple[Entered, ...]:
-    """The fixtures of a text in CSV."""
     table = table_of(text, Budget(LIMITS["list"], len(text))) if text.strip() else None
     names = {*table.names} if table is not None else set[str]()
     pegs = sorted(
@@ -216,7 +210,6 @@ class Places:
 
     @places.default
     def all_places(self) -> list[Array]:
-        """The places of all fixtures."""
         points = np.concatenate([loop[:, :2] for loop in self.part.loops])
         scale = float(np.hypot(*np.ptp(points, axis=0)) / 2)
         return [place_of(one, scale) for one in self.entered]
@@ -236,12 +229,7 @@ class Places:
 
 
 def place_of(entered: Entered, scale: float) -> Array:
-    """The place (P, 6) of a fixture.
-
-    Parameters
-    ----------
-    scale : in mm, by which directions are multiplied.
-    """
+    """The place (P, 6) of a fixture; directions are multiplied by the scale in mm."""
     theta = np.radians(entered.theta_deg)
     rows = []
     for peg in entered.pegs:
@@ -279,10 +267,8 @@ class Comparison:
 def compared(complete: Places, theirs: Places, tolerance: float, symmetric: bool) -> Comparison:
     """Compares another program's list with the complete one.
 
-    Parameters
-    ----------
-    tolerance : in mm, how far pegs and directions may be off, these at half the part's extent.
-    symmetric : whether a fixture stands for all that a rotation of the part carries it into.
+    The tolerance is how far in mm pegs and directions may be off, these at half the part's extent.
+    ``symmetric`` says whether a fixture stands for all that a rotation of the part carries it into.
     """
     index = Index.of(complete.places, tolerance)
     hits, met = set[int](), set[int | None]()
@@ -326,7 +312,6 @@ class Index:
 
     @classmethod
     def of(cls, places: Sequence[Array], tolerance: float) -> Index:
-        """The index of some places."""
         sums = np.array([place[:, :2].sum(axis=0) for place in places]).reshape(-1, 2)
         return cls(places, sums, np.argsort(sums[:, 0], kind="stable"), tolerance)
 

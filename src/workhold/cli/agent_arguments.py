@@ -262,13 +262,6 @@ class SheetArguments(ToolArguments):
 
 
 def checked_arguments(form: type[Arguments], given: dict[str, Any] | None) -> Arguments:
-    """Checks the arguments of a tool.
-
-    Raises
-    ------
-    InputError
-        Naming the first that is not as it should be.
-    """
     try:
         return form.model_validate(given or {})
     except ValidationError as error:

@@ -117,13 +117,7 @@ def explain(asked: DesignArguments, folder: Path, cancel: Event) -> Answer:
 
 
 def answered(asked: DesignArguments, cancel: Event) -> tuple[Loaded, Result]:
-    """Returns the part and the answer of the search, which ends when its time is over.
-
-    Raises
-    ------
-    InputError
-        For a part, a toolkit or wishes that cannot be.
-    """
+    """Returns the part and the answer of the search, which ends when its time is over."""
     from workhold.search.design import answer
 
     toolkit, tolerance = held_in(asked.toolkit, asked.fields)
@@ -162,13 +156,6 @@ def answered(asked: DesignArguments, cancel: Event) -> tuple[Loaded, Result]:
 
 
 def passed_by(asked: ProgramArguments | None, workpiece: Workpiece) -> dict[str, Any]:
-    """Reads the program that fixtures are to let pass, as a query takes it.
-
-    Raises
-    ------
-    InputError
-        For a program that cannot be read, and heights that nobody knows.
-    """
     if asked is None:
         return {}
     solid = workpiece.solid
@@ -183,13 +170,7 @@ def passed_by(asked: ProgramArguments | None, workpiece: Workpiece) -> dict[str,
 
 
 def held_in(name: str, fields: Mapping[str, Any]) -> tuple[Toolkit, Tolerance | None]:
-    """Makes a toolkit of a preset, a file or a kind, with some fields changed; returns its tolerance too.
-
-    Raises
-    ------
-    InputError
-        When there is none.
-    """
+    """Makes a toolkit of a preset, a file or a kind, with some fields changed; returns its tolerance too."""
     try:
         if name in KINDS or name in ALIASES:
             return toolkit_of(name, fields), None
@@ -202,13 +183,6 @@ def held_in(name: str, fields: Mapping[str, Any]) -> tuple[Toolkit, Tolerance | 
 
 
 def loads_of(tables: list[LoadTable]) -> tuple[Load, ...]:
-    """Makes loads of their descriptions.
-
-    Raises
-    ------
-    InputError
-        For the first that cannot be used.
-    """
     given = (table.model_dump(exclude_unset=True) for table in tables)
     return tuple(load_from_words(words, f"load {number}", 1.0) for number, words in enumerate(given, 1))
 

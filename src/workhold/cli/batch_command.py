@@ -18,7 +18,7 @@ from workhold.cli.program_options import SOLIDS, ProgramWords
 from workhold.cli.progress import batch_progress
 from workhold.cli.search_options import QueryWords, SeatingWords
 from workhold.cli.table import plural, print_tables
-from workhold.cli.toolkit_lists import (
+from workhold.cli.toolkit_options import (
     ListWords,
     Named,
     heights_of_all,
@@ -221,13 +221,7 @@ def requests_of(
     reading: PartWords,
     folder: Path,
 ) -> list[Request]:
-    """Lists what is asked of each part, in the order of the command line.
-
-    Raises
-    ------
-    InputError
-        For words that mean nothing, parts that do not exist, and jobs without a toolkit.
-    """
+    """Lists what is asked of each part, in the order of the command line."""
     from workhold.cli.jobs import JOB_ENDINGS, read_jobs
 
     lists = varied.has_pitches or toolkit is not None
@@ -262,14 +256,7 @@ def requests_of(
 def requests_in(
     toolkits: Sequence[Named], parts: Sequence[str], words: AskedWords, reading: PartWords, folder: Path
 ) -> list[Request]:
-    """Lists what is asked of some parts, each of which is read once and held in all of some toolkits.
-
-    Raises
-    ------
-    InputError
-        For words that mean nothing, parts that do not exist, and toolkits that differ in the heights of a
-        carrier.
-    """
+    """Lists what is asked of some parts, each of which is read once and held in all of some toolkits."""
     from workhold.batch.run import ANY_PART, HeldIn, Request
     from workhold.files.part_list import part_list
 
@@ -304,13 +291,7 @@ def asked_toolkits(
     varied: ListWords,
     reading: PartWords,
 ) -> list[Named]:
-    """Lists the toolkits of names, files and lists; of several names one may be a kind.
-
-    Raises
-    ------
-    InputError
-        See :func:`workhold.cli.toolkit_lists.toolkits_to_try`.
-    """
+    """Lists the toolkits of names, files and lists; of several names one may be a kind."""
     from workhold.fixels.kinds import ALIASES, KINDS
 
     words = [word for text in names or () for word in words_of("--toolkit", text)]
@@ -329,13 +310,6 @@ def asked_toolkits(
 
 
 def asked_of(words: AskedWords, reading: PartWords) -> dict[str, Any]:
-    """Keyword arguments of a query.
-
-    Raises
-    ------
-    InputError
-        For words that mean nothing.
-    """
     wishes, seated_by, machined = words
     unit, has_program = length_unit(reading.unit), machined.program is not None
     asked = wishes.asked(unit, has_program, machined.has_forces) | seated_by.asked(unit)
@@ -343,7 +317,6 @@ def asked_of(words: AskedWords, reading: PartWords) -> dict[str, Any]:
 
 
 def run_sentence(done: Batch, spent: float) -> str:
-    """Says how many answers the run found, and in what time."""
     before = f"; {done.kept:,} were known from before" if done.kept else ""
     return (
         f"{plural(len(done.parts), 'part')}, {plural(done.fresh, 'answer')} found in {spent:.1f} s{before}."
@@ -353,13 +326,6 @@ def run_sentence(done: Batch, spent: float) -> str:
 def write_all(
     done: Batch, store: Store, measured: Measured, folder: Path, spent: float, events: list[str], sheets: bool
 ) -> Report:
-    """Writes tables, report and, where asked for, sheets.
-
-    Raises
-    ------
-    InputError
-        When they cannot be written.
-    """
     from workhold.batch.report import Summary, write_results
     from workhold.version import __version__
 

@@ -86,13 +86,7 @@ def benchmark(
 
 
 def chosen_sets(words: Sequence[str]) -> list[SetEntry]:
-    """The sets that words name: by name, by workpiece, or by what a name contains; all of them without words.
-
-    Raises
-    ------
-    InputError
-        For a word that names none.
-    """
+    """The sets that words name: by name, by workpiece, or by what a name contains; all of them without words."""
     from workhold.benchmark.catalogue import set_named, sets
 
     every, chosen = sets(), set[str]()
@@ -105,9 +99,18 @@ def chosen_sets(words: Sequence[str]) -> list[SetEntry]:
 
 
 def list_sets(chosen: Sequence[SetEntry], as_json: bool) -> None:
-    """Prints names, sizes and reasons of sets."""
     if as_json:
-        print_json(sets=[set_data(one) for one in chosen])
+        entries = [
+            {
+                "name": one.name,
+                "workpiece": one.part,
+                "toolkit": dict(one.toolkit),
+                "reason": one.reason,
+                "counts": dict(one.counts),
+            }
+            for one in chosen
+        ]
+        print_json(sets=entries)
         return
 
     table = Table(("set", ">fixtures", "reason"))
@@ -115,17 +118,6 @@ def list_sets(chosen: Sequence[SetEntry], as_json: bool) -> None:
         table.add_row(one.name, f"{one.size:,}", one.reason)
     total = sum(one.size for one in chosen)
     print_tables(table, f"{plural(len(chosen), 'set')}, {plural(total, 'fixture')}.")
-
-
-def set_data(entry: SetEntry) -> dict[str, Any]:
-    """A set as an object of JSON."""
-    return {
-        "name": entry.name,
-        "workpiece": entry.part,
-        "toolkit": dict(entry.toolkit),
-        "reason": entry.reason,
-        "counts": dict(entry.counts),
-    }
 
 
 def make_sets(
@@ -136,7 +128,6 @@ def make_sets(
     force: bool,
     as_json: bool,
 ) -> None:
-    """Makes sets, writes them into a folder, and says whether they are those of the manifest."""
     if out is None:
         raise InputError("run needs a folder for the sets: name one with --out.")
     folder = Path(out)
@@ -190,7 +181,6 @@ def check_entries(
     workers: int | None,
     as_json: bool,
 ) -> None:
-    """Compares other programs' lists with the complete ones, and prints what is found, missed and extra."""
     if not files:
         raise InputError("check needs a file with another program's fixtures: name one or more.")
     from workhold.benchmark.catalogue import set_named
@@ -228,7 +218,6 @@ def comparison_data(name: str, set_name: str, outcome: Comparison) -> dict[str, 
 
 
 def print_comparisons(done: Sequence[tuple[str, str, Comparison]]) -> None:
-    """Prints a row for each file, and the first fixtures that are missed or extra."""
     table = Table(("set", ">complete", ">theirs", ">found", ">missed", ">extra", ">repeated", ">share"))
     sentences = []
     for _, set_name, one in done:

@@ -100,7 +100,6 @@ def toolkits(
 
 
 def toolkits_table(unit: Unit) -> Table:
-    """All presets, one line each, with lengths in a unit."""
     from workhold.files.toolkit_file import load_toolkit, preset_names
 
     of = unit.abbreviation
@@ -120,7 +119,6 @@ def toolkits_table(unit: Unit) -> Table:
 
 
 def figures_table(loaded: LoadedToolkit, unit: Unit) -> Table:
-    """Every figure of a toolkit, one line each."""
     toolkit, of = loaded.toolkit, unit.abbreviation
     first, finest = toolkit.plates[0], unit.decimals + 1
     each = f"on {'each' if len(toolkit.plates) > 1 else 'the'} {first.noun}"
@@ -188,13 +186,11 @@ def words_of_value(form: Form, value: Any, unit: Unit) -> str:
 
 
 def pitch_words(pitch: tuple[float, float], unit: Unit) -> str:
-    """The pitch as one number, or as two where they differ."""
     x, y = (unit.figure(length) for length in pitch)
     return x if pitch[0] == pitch[1] else f"{x} x {y}"
 
 
 def limits_words(limits: Limits, unit: Unit) -> str:
-    """Two limits of a diameter."""
     return f"{unit.number(limits[0])} to {unit.text(limits[1])}"
 
 
@@ -275,11 +271,6 @@ def list_layers(part: str, reading: PartWords, unit: Unit, as_json: bool) -> Non
     """Prints the layers of a DXF file.
 
     In JSON sizes are in mm where the unit is known, else in units of the drawing.
-
-    Raises
-    ------
-    InputError
-        For other files.
     """
     from workhold.files.part.survey import drawn_layers
 
@@ -306,13 +297,6 @@ def list_layers(part: str, reading: PartWords, unit: Unit, as_json: bool) -> Non
 
 
 def list_solids(part: str, unit: Unit, as_json: bool) -> None:
-    """Prints the solids of a STEP file.
-
-    Raises
-    ------
-    InputError
-        For a file that cannot be read.
-    """
     from workhold.cli.tables import solid_table
     from workhold.files.part.loaded import solids_in
 
@@ -324,7 +308,6 @@ def list_solids(part: str, unit: Unit, as_json: bool) -> None:
 
 
 def list_parts(loaded: Loaded, unit: Unit, picture: Path | None, as_json: bool) -> None:
-    """Prints the parts of a file, and draws them."""
     table = Table(
         (">part", f">width {unit.abbreviation}", f">height {unit.abbreviation}", ">holes", "lowest corner")
     )

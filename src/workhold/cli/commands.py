@@ -127,11 +127,6 @@ class PlainGroup(TyperGroup):
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Parses the words before the subcommand; without any word it shows the help, unless a shell
         completes.
-
-        Raises
-        ------
-        typer.Exit
-            Without any word.
         """
         if not args and not ctx.resilient_parsing:
             typer.echo(ctx.get_help())
@@ -191,7 +186,6 @@ def restore_hyphens(formatter: Any) -> None:
 
 
 def write_text(command: Any, formatter: Any) -> None:
-    """Writes the text of a command's help."""
     formatter.write_paragraph()
     with formatter.indentation():
         formatter.write_text(unbroken(cleandoc(command.help or "")))

@@ -222,15 +222,9 @@ def design(
 def as_many_as_asked(
     query: Query, every: bool, out: str | None, form: str, threads: int | None, cancel: Event
 ) -> tuple[Query, int | None]:
-    """Returns the query, or one for the best fixtures where there are very many, and about how many these
-    are.
+    """Returns the query, or one for the best fixtures where there are very many, and about how many.
 
-    A remark says so before the search.
-
-    Raises
-    ------
-    InputError
-        For all of very many without a file that can carry them.
+    A remark says so before the search. Refuses all of very many without a file that can carry them.
     """
     from workhold.limits import thread_count
     from workhold.model.search_report import round_to_two_digits

@@ -24,7 +24,6 @@ THUMBNAILS, NEAREST_MISS = "thumbnails", "nearest-miss"
 
 
 def picture_names() -> list[str]:
-    """The files that a design may draw into a folder."""
     ranked = (picture_name(rank) for rank in range(1, BEST_DRAWN + 1))
     return [f"{name}{ending}" for name in (THUMBNAILS, NEAREST_MISS, *ranked) for ending in ENDINGS]
 
@@ -35,13 +34,7 @@ def picture_name(place: int) -> str:
 
 
 def draw_one(fixture: Fixture, result: Result, folder: Path, name: str, title: str, unit: Unit) -> list[Path]:
-    """Draws one fixture of a result into a folder, as SVG and PNG, and returns the files written.
-
-    Raises
-    ------
-    InputError
-        When the folder cannot be written.
-    """
+    """Draws one fixture of a result into a folder, as SVG and PNG, and returns the files written."""
     from workhold.drawing.fixture_pictures import draw_fixture
 
     with plain_errors(folder):
@@ -77,11 +70,6 @@ def draw_best(result: Result, folder: Path, unit: Unit) -> list[Path]:
 
     The folder is created. Pictures of these names from an earlier design are replaced, or removed where this
     design has fewer fixtures; nothing else in the folder is touched.
-
-    Raises
-    ------
-    InputError
-        When the folder cannot be written.
     """
     from workhold.drawing.fixture_pictures import best_at_a_glance, draw_fixture
     from workhold.drawing.path_drawn import planned_path
@@ -111,14 +99,7 @@ def explain_none(
 ) -> None:
     """Explains what each rule took away, what came nearest, and what would help.
 
-    Parameters
-    ----------
-    folder : where the nearest miss is drawn, as SVG and PNG, if anywhere.
-
-    Raises
-    ------
-    InputError
-        When the folder cannot be written.
+    The nearest miss is drawn into the folder, if there is one, as SVG and PNG.
     """
     from workhold.search.explaining import explain
 

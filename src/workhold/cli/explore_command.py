@@ -17,15 +17,15 @@ from workhold.cli.program_options import SOLIDS, ProgramWords
 from workhold.cli.progress import search_progress
 from workhold.cli.search_options import QueryWords
 from workhold.cli.table import Table, print_tables
-from workhold.cli.toolkit_lists import (
+from workhold.cli.toolkit_options import (
     SWEEP,
+    TOOLKIT,
     ListWords,
     heights_of_all,
     peg_diameter_of,
     query_of,
     toolkits_to_try,
 )
-from workhold.cli.toolkit_options import TOOLKIT
 from workhold.cli.values import length_unit
 from workhold.errors import InputError
 from workhold.units import Unit

@@ -43,7 +43,6 @@ __all__ = ["family"]
 
 
 def report(found: Family, plan: Plan | None, spent: str, unit: Unit) -> None:
-    """Prints the curve, what was left out, and the plan."""
     toolkit = found.toolkit
     for part in found.left_out:
         print_remark(f"{part.name} is left out: {part.reason}.")
@@ -84,7 +83,6 @@ def report(found: Family, plan: Plan | None, spent: str, unit: Unit) -> None:
 
 
 def curve_table(found: Family, unit: Unit) -> Table:
-    """Tabulates the curve: set-ups, the worst loss and on which part, and how many pegs are moved."""
     from workhold.family.members import loss_text
     from workhold.presenting.figure_words import figure_text, heading
 
@@ -104,7 +102,6 @@ def curve_table(found: Family, unit: Unit) -> Table:
 
 
 def setup_table(setup: SetUp, found: Family, unit: Unit) -> Table:
-    """Tabulates the parts of a set-up and how each lies."""
     from workhold.family.members import loss_text
     from workhold.model.setup import settings_of
     from workhold.presenting.figure_words import figure_text, heading
@@ -295,7 +292,6 @@ def family(
 def write_all(
     found: Family, plan: Plan | None, out: str | None, draw: str | None, sheets: str | None, unit: Unit
 ) -> list[str]:
-    """Writes the outputs asked for, and returns the names of the files."""
     from workhold.files.atomic import write_bytes
 
     contents: dict[str, bytes] = {}
@@ -321,13 +317,7 @@ def write_all(
 
 
 def loss_of(text: str) -> float:
-    """Reads a largest loss.
-
-    Raises
-    ------
-    InputError
-        For what is no number from 1 upward.
-    """
+    """Reads a largest loss; refuses what is no number from 1 upward."""
     value = number(text)
     if not (isfinite(value) and value >= 1.0):
         raise InputError(
@@ -337,13 +327,7 @@ def loss_of(text: str) -> float:
 
 
 def threshold_of(text: str) -> Threshold:
-    """Reads a threshold from words such as ``location-error=0.05``.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
+    """Reads a threshold from words such as ``location-error=0.05``."""
     from workhold.family.members import threshold
 
     name, equals, value = text.partition("=")

@@ -118,9 +118,8 @@ def kernels() -> InstallationRow:
 def extras(is_built: bool) -> Iterator[InstallationRow]:
     """Yields what was found of each extra, in the order of :data:`USES`.
 
-    Parameters
-    ----------
-    is_built : whether the package has compiled kernels for this machine, so that nothing is compiled here.
+    ``is_built`` says whether the package has compiled kernels for this machine, so that nothing is compiled
+    here.
     """
     asked = requirements()
     for extra, use in USES.items():

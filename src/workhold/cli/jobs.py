@@ -75,18 +75,10 @@ class JobWords:
         return evolve(typed, **self.options_of(type(typed)))
 
     def options_of(self, group: type[AttrsInstance]) -> dict[str, Any]:
-        """What the file says of a group of options."""
         return {name: self.options[name] for name in fields_dict(group) if name in self.options}
 
 
 def read_jobs(path: Path) -> list[JobWords]:
-    """Reads the jobs of a file.
-
-    Raises
-    ------
-    InputError
-        When it cannot be read, holds no jobs, or a word that is not known.
-    """
     from workhold.files.budget import LIMITS
     from workhold.files.tables import SAVED
     from workhold.files.text import read_text
@@ -106,13 +98,6 @@ def read_jobs(path: Path) -> list[JobWords]:
 
 
 def toml_entries(text: str) -> Iterator[dict[str, Any]]:
-    """Yields the entries of each job of a TOML file.
-
-    Raises
-    ------
-    InputError
-        When it is none, or its jobs are no tables.
-    """
     from workhold.files.budget import LIMITS, Budget
     from workhold.files.tables import MOST_COLUMNS
     from workhold.files.text import toml_table
@@ -131,13 +116,7 @@ def toml_entries(text: str) -> Iterator[dict[str, Any]]:
 
 
 def csv_entries(text: str) -> Iterator[dict[str, Any]]:
-    """Yields the cells of each row of a CSV file, without those in which nothing is given.
-
-    Raises
-    ------
-    InputError
-        For what is no such table.
-    """
+    """Yields the cells of each row of a CSV file, without those in which nothing is given."""
     from workhold.files.budget import LIMITS, Budget
     from workhold.files.tables import NOT_GIVEN, table_of
 
@@ -152,13 +131,6 @@ def named(key: str) -> str:
 
 
 def job_of(entry: Mapping[str, Any], place: str, folder: Path) -> JobWords:
-    """Makes a job of its entries.
-
-    Raises
-    ------
-    InputError
-        For a word that is not known, and a value that is none.
-    """
     words: dict[str, Any] = {}
     for key, value in entry.items():
         name = named(key)
@@ -181,13 +153,6 @@ def job_of(entry: Mapping[str, Any], place: str, folder: Path) -> JobWords:
 
 
 def flag_of(value: Any, place: str) -> bool:
-    """Reads a value that is true or false, or one of the words for that.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
     flag = value if isinstance(value, bool) else TRUTHS.get(str(value).lower())
     if flag is None:
         raise InputError(f"{place} is neither true nor false: write one of {', '.join(TRUTHS)}.")
@@ -195,13 +160,7 @@ def flag_of(value: Any, place: str) -> bool:
 
 
 def text_of(value: Any, place: str) -> str:
-    """Returns a value as it would be typed.
-
-    Raises
-    ------
-    InputError
-        For what nobody can type.
-    """
+    """Returns a value as it would be typed; refuses what nobody can type."""
     if isinstance(value, bool) or not isinstance(value, str | int | float):
         raise InputError(f"{place} is neither text nor a number: write it as on the command line, in quotes.")
     return value if isinstance(value, str) else f"{value!r}" if isinstance(value, float) else str(value)
@@ -226,13 +185,7 @@ class FamilyPart:
 
 
 def jobs_of(parts: list[str], words: QueryWords, reading: PartWords) -> list[FamilyPart]:
-    """Lists the parts of the command line and of files of jobs, each under a name of its own.
-
-    Raises
-    ------
-    InputError
-        For parts that do not exist, and jobs that mean nothing or name a toolkit of their own.
-    """
+    """Lists the parts of the command line and of files of jobs, each under a name of its own."""
     from workhold.files.part_list import part_list
 
     plain = [name for name in parts if Path(name).suffix.lower() not in JOB_ENDINGS]
@@ -282,14 +235,8 @@ def asked_of(
 ) -> tuple[list[Asked], list[LeftOut]]:
     """Makes the query of each part that can be read, and lists the parts that cannot.
 
-    Parameters
-    ----------
-    both_sides : make a second one of each part turned over; the file of a solid is read again for it.
-
-    Raises
-    ------
-    InputError
-        For a zero that a part does not have, and a query that cannot be.
+    ``both_sides`` makes a second one of each part turned over; the file of a solid is read again for it.
+    Refuses a zero that a part does not have.
     """
     from hashlib import sha256
 

@@ -195,7 +195,6 @@ app = typer.Typer(
 
 
 def show_version(wanted: bool) -> None:
-    """Prints the version and stops."""
     if wanted:
         typer.echo(f"workhold {__version__}")
         raise typer.Exit

@@ -48,13 +48,7 @@ RankArgument = Annotated[str, typer.Argument(metavar="N", help="Which fixture, b
 
 
 def asked_rank(text: str) -> int:
-    """Reads a rank, counted from 1.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
+    """Reads a rank, counted from 1."""
     rank = whole_number("fixture", text)
     if rank < 1:
         raise InputError(f"there is no fixture {rank}: fixtures are counted from 1, the best one.")
@@ -62,13 +56,7 @@ def asked_rank(text: str) -> int:
 
 
 def result_with(path: str, rank: int) -> Result:
-    """Reads a result file that lists a fixture of a rank.
-
-    Raises
-    ------
-    InputError
-        When the file cannot be used, or lists fewer.
-    """
+    """Reads a result file that lists a fixture of a rank; refuses one that lists fewer."""
     from workhold.files.result.reader import read_result
 
     result = read_result(path)
@@ -178,13 +166,7 @@ class PartWords:
     )
 
     def options(self) -> dict[str, Any]:
-        """Makes the keyword arguments of ``files.part.load.read_workpiece``.
-
-        Raises
-        ------
-        InputError
-            For words that mean nothing.
-        """
+        """Makes the keyword arguments of ``files.part.load.read_workpiece``."""
         from workhold.files.questions import number_or_name
 
         unit = length_unit(self.unit)

@@ -65,10 +65,7 @@ def refuse_output_folder(
 def asked_picture(draw: str | None, inputs: Iterable[str | Path | None], force: bool) -> Path | None:
     """Returns the path of the picture asked for; None where none is.
 
-    Raises
-    ------
-    InputError
-        For another ending than .svg and .png, and see :func:`refuse_output`.
+    Refuses another ending than .svg and .png.
     """
     if draw is None:
         return None
@@ -102,10 +99,7 @@ FORMAT = option(
 def output_form(out: str | None, asked: str | None) -> str:
     """Returns the form of a result file: the one asked for, or the one that its name suggests.
 
-    Raises
-    ------
-    InputError
-        For a form that is not known, and one that no terminal can take.
+    Refuses one that no terminal can take.
     """
     ending = "" if out is None else out.lower().rpartition(".")[2]
     form = (ending if ending in FORMS else "json") if asked is None else choice("--format", asked, FORMS)
@@ -115,25 +109,12 @@ def output_form(out: str | None, asked: str | None) -> str:
 
 
 def refuse_result_file(out: str, form: str, inputs: Iterable[str | Path | None], force: bool) -> None:
-    """Refuses a result file before anything is read or searched.
-
-    Raises
-    ------
-    InputError
-        See :func:`refuse_output`, and for a name of a file of another kind.
-    """
+    """Refuses a result file before anything is read or searched."""
     refuse_output(out, inputs, force)
     replacing.refuse_other_ending(out, [f".{form}"], "such a result file")
 
 
 def write_output(result: Result, out: str, form: str) -> None:
-    """Writes a result to a file or to the terminal.
-
-    Raises
-    ------
-    InputError
-        When the file cannot be written.
-    """
     if out != STANDARD_OUTPUT:
         from workhold.files.result.save import save
 
@@ -148,13 +129,7 @@ def write_output(result: Result, out: str, form: str) -> None:
 
 
 def write_found(result: Result, out: str, form: str) -> Result:
-    """Writes what a search found and returns it; after a Ctrl-C it writes only the best of millions.
-
-    Raises
-    ------
-    InputError
-        When the file cannot be written.
-    """
+    """Writes what a search found and returns it; after a Ctrl-C it writes only the best of millions."""
     try:
         write_output(result, out, form)
     except Interrupted:
@@ -172,13 +147,7 @@ JSON = flag(None, "Print one JSON object instead of tables; lengths in mm whatev
 
 
 def refuse_both(as_json: bool, out: str | None) -> None:
-    """Refuses two things on standard output.
-
-    Raises
-    ------
-    InputError
-        Where the file goes there too.
-    """
+    """Refuses two things on standard output."""
     if as_json and out == STANDARD_OUTPUT:
         raise InputError(
             "--json and a file on the terminal (-) are two things in one place: leave one of them out."

@@ -157,7 +157,6 @@ def force_data(forces: CuttingForces, tool: NDArray[np.int64]) -> list[dict[str,
 
 
 def force_table(program: Program, unit: Unit) -> list[Table | str]:
-    """Tabulates the largest forces of each tool, and says from what they follow; empty without forces."""
     forces = program.forces
     if forces is None:
         return []
@@ -183,7 +182,6 @@ def force_table(program: Program, unit: Unit) -> list[Table | str]:
 
 
 def stock_words(program: Program, unit: Unit) -> str:
-    """On what alone the tools press, in a sentence."""
     stock = program.stock
     assert stock is not None
     shape = "the part's outline" if stock.shape == "outline" else "the block around the part"
@@ -194,7 +192,6 @@ def stock_words(program: Program, unit: Unit) -> str:
 
 
 def report(read: ReadProgram, unit: Unit, from_z_zero: bool) -> None:
-    """Prints the tools with their figures, where they go, and the notes."""
     from workhold.model.program_figures import tip_box, tool_figures
 
     program = read.program

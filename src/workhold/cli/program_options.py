@@ -138,18 +138,11 @@ class ProgramWords:
 
     @property
     def files(self) -> tuple[str | None, ...]:
-        """The files that are read."""
         return self.program, self.tools
 
     @property
     def has_forces(self) -> bool:
-        """Whether the forces of the tools are asked for, of all or in their table.
-
-        Raises
-        ------
-        InputError
-            For a table that cannot be used.
-        """
+        """Whether the forces of the tools are asked for, of all or in their table."""
         if self.program is None:
             return False
         if any(word is not None for word in (self.cutting_force, self.power, self.material)):
@@ -223,13 +216,6 @@ class ProgramWords:
 
 
 def asked_cutting(typed: ProgramWords, unit: Unit) -> CuttingData:
-    """How tools cut, from the options of cutting forces.
-
-    Raises
-    ------
-    InputError
-        For words that mean nothing, and what cannot be.
-    """
     from workhold.model.cutting_tool import CuttingData
 
     given: dict[str, Any] = {
@@ -248,11 +234,6 @@ def asked_cutting(typed: ProgramWords, unit: Unit) -> CuttingData:
 
 def asked_stock(text: str, unit: Unit) -> dict[str, Any]:
     """What the part is cut from, as ``model.stock.Stock.of`` takes it.
-
-    Raises
-    ------
-    InputError
-        For anything but a shape, two lengths, or both.
 
     Examples
     --------
@@ -280,11 +261,6 @@ def no_force(text: str | None) -> float | None:
 def asked_power(text: str | None) -> float | None:
     """A power in kW, or None where it is not given.
 
-    Raises
-    ------
-    InputError
-        For anything else.
-
     Examples
     --------
     >>> asked_power("2.2"), round(asked_power("3 hp"), 3)
@@ -297,34 +273,14 @@ def asked_power(text: str | None) -> float | None:
 
 
 def asked_zero(text: str, unit: Unit) -> tuple[float, float]:
-    """The place of the program's zero on the part, in mm.
-
-    Raises
-    ------
-    InputError
-        For anything but two lengths.
-    """
+    """The place of the program's zero on the part, in mm."""
     return two_lengths("--zero", text, unit, "a place here: give two lengths, such as 10,5.")
-
-
-def asked_start(text: str, unit: Unit) -> tuple[float, float, float]:
-    """The place of the tip at the start of the program, in mm from its own zero.
-
-    Raises
-    ------
-    InputError
-        For anything but three lengths.
-    """
-    return three_lengths("--start", text, unit, "a place: give three lengths, such as 0,0,50.")
 
 
 def zero_on(workpiece: Workpiece | None, text: str, unit: Unit) -> tuple[float, float]:
     """The place of the program's zero in mm, which the part's own places may name as on the setup sheet.
 
-    Raises
-    ------
-    InputError
-        For a place that the part does not have, or that is named where no part is known.
+    Refuses a place that the part does not have, or that is named where no part is known.
     """
     if workpiece is None or not text.strip()[:1].isalpha():
         return asked_zero(text, unit)
@@ -336,24 +292,19 @@ def zero_on(workpiece: Workpiece | None, text: str, unit: Unit) -> tuple[float, 
 def asked_reading(
     words: ProgramWords, unit: Unit, thickness: float | None, zero: tuple[float, float]
 ) -> dict[str, Any]:
-    """Keyword arguments of ``files.program.reader.read_program``; ``thickness`` and ``zero`` are in mm.
-
-    Raises
-    ------
-    InputError
-        For words that mean nothing.
-    """
+    """Keyword arguments of ``files.program.reader.read_program``; ``thickness`` and ``zero`` are in mm."""
     named, height = words.program_unit, words.z_zero
     if height == "top" and thickness is None:
         # Of a part that nobody knows the top is where the program begins to count.
         height = "0"
+    place = "a place: give three lengths, such as 0,0,50."
     return {
         "unit": None if named is None else choice("--program-unit", named, ("mm", "inch")),
         "zero": zero,
         "z_zero": height if height in ("top", "bottom") else length("--z-zero", height, unit),
         "thickness": thickness,
         "rapid": choice("--rapid", words.rapid, ("straight", "box")),
-        "start": None if words.start is None else asked_start(words.start, unit),
+        "start": None if words.start is None else three_lengths("--start", words.start, unit, place),
         "whole_numbers": choice("--whole-numbers", words.whole_numbers, ("units", "thousandths")),
         "called": CALLED,
         "cutting": asked_cutting(words, unit),
@@ -363,13 +314,7 @@ def asked_reading(
 
 @cache
 def read_once(words: ProgramWords, unit: Unit, thickness: float | None, zero: tuple[float, float]) -> Program:
-    """Reads the program, and prints remarks on it; ``thickness`` of the part and ``zero`` in mm.
-
-    Raises
-    ------
-    InputError
-        For words that mean nothing, and a program that cannot be read.
-    """
+    """Reads the program, and prints remarks on it; ``thickness`` of the part and ``zero`` in mm."""
     assert words.program is not None
     kept = length("--program-clearance", words.program_clearance, unit)
     asked = asked_reading(words, unit, thickness, zero)

@@ -47,12 +47,8 @@ def progress_bar(
     """A progress bar on stderr, as a function of the fraction done and a count; quiet in a pipe.
 
     It appears when there is progress after a moment, so that what is done at once is not kept waiting for it.
-
-    Parameters
-    ----------
-    doing : what is being done.
-    counted : what the count is of, the word behind the number.
-    first : what is said until the first progress; the bar appears with it at once.
+    ``doing`` is what is being done, ``counted`` the word behind the number, and ``first`` what is said until
+    the first progress; the bar appears with it at once.
     """
     if not sys.stderr.isatty():
         yield lambda fraction, count: None
@@ -75,7 +71,6 @@ def progress_bar(
 
 
 def shown_bar(words: str, counted: str) -> Progress:
-    """Shows a bar on the terminal, with its one task."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
@@ -135,7 +130,6 @@ class BatchProgress:
             self.bars.update(self.whole, advance=seconds, words=self.words)
 
     def begun(self, worker: str, title: str) -> None:
-        """Shows what a worker has begun."""
         if self.bars is None:
             return
         self.ended(worker)
@@ -143,12 +137,10 @@ class BatchProgress:
         self.hands[worker] = self.bars.add_task(f"  {worker}: {words}", total=None, words="")
 
     def ended(self, worker: str) -> None:
-        """Removes the line of a worker that has ended its task."""
         if self.bars is not None and worker in self.hands:
             self.bars.remove_task(self.hands.pop(worker))
 
     def notify(self, sentence: str) -> None:
-        """Keeps and prints a sentence about an event."""
         self.events.append(sentence)
         if self.bars is None:
             print_remark(sentence)

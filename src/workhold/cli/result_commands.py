@@ -127,7 +127,6 @@ def verify(
 
 
 def print_supports(outcome: Verification, count: int, seconds: float, as_json: bool) -> None:
-    """Prints what is shown of a file of supports."""
     if as_json:
         from workhold.presenting.data import verification_data
 
@@ -140,7 +139,6 @@ def print_supports(outcome: Verification, count: int, seconds: float, as_json: b
 
 
 def compared(outcome: Verification, listing: Listing, workers: int | None) -> Verification:
-    """Adds to the verification what a search of the same query finds."""
     from workhold.cli.warming import compile_on_first_run
     from workhold.completeness import completed
 
@@ -151,7 +149,6 @@ def compared(outcome: Verification, listing: Listing, workers: int | None) -> Ve
 
 
 def scope(outcome: Verification, asked: bool, listing: Listing) -> list[str]:
-    """Says what is shown beyond the fixtures, or what is not."""
     from workhold.verification.verify import not_shown
 
     if outcome.is_compared:
@@ -163,7 +160,6 @@ def scope(outcome: Verification, asked: bool, listing: Listing) -> list[str]:
 
 
 def summary(outcome: Verification) -> str:
-    """Says how many fixtures are proven, refuted and undecided."""
     return (
         f"{plural(outcome.fixtures, 'fixture')}: {outcome.proven} proven, {outcome.refuted} refuted, "
         f"{outcome.undecided} undecided at {outcome.bits} bits"

@@ -55,11 +55,6 @@ def parse_load(text: str, unit_scale: float = 1.0) -> Load:
     text : words key=value, see ``files.loads_file``; a value with spaces stands in quotes.
     unit_scale : millimetres in one unit of length.
 
-    Raises
-    ------
-    InputError
-        When it cannot be used.
-
     Examples
     --------
     >>> parse_load("force=150 path=0,0;40,0;40,20").points
@@ -201,14 +196,7 @@ class QueryWords:
 def without_faces_cut(restrictions: Restrictions, workpiece: Workpiece, before: str | None) -> Restrictions:
     """Restrictions that also avoid what another set-up of the same solid avoided, because it was cut there.
 
-    Parameters
-    ----------
-    before : result file of the other set-up; None for none.
-
-    Raises
-    ------
-    InputError
-        For a file that cannot be used, and parts whose faces have no numbers of a solid.
+    ``before`` is the result file of the other set-up. Refuses parts whose faces have no numbers of a solid.
     """
     if before is None:
         return restrictions
@@ -228,13 +216,7 @@ def without_faces_cut(restrictions: Restrictions, workpiece: Workpiece, before: 
 
 
 def zone(text: str, unit: Unit) -> Zone:
-    """A keep-out zone from words such as ``circle=10,5,8`` or ``polygon=0,0;10,0;10,8``.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
+    """A keep-out zone from words such as ``circle=10,5,8`` or ``polygon=0,0;10,0;10,8``."""
     from workhold.model.requirements import circle_zone, polygon_zone
 
     kind, _, rest = text.partition("=")
@@ -252,13 +234,7 @@ def zone(text: str, unit: Unit) -> Zone:
 
 
 def angles(text: str) -> tuple[float, float]:
-    """A range of angles in degrees from words such as ``-10..10``; a single number is that angle alone.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
+    """A range of angles in degrees from words such as ``-10..10``; a single number is that angle alone."""
     low, dots, high = text.partition("..")
     least, most = (number(word.strip()) for word in ((low, high) if dots else (low, low)))
     if not (isfinite(least) and isfinite(most)):
@@ -267,13 +243,6 @@ def angles(text: str) -> tuple[float, float]:
 
 
 def asked_tolerance(text: str | None, unit: Unit) -> Tolerance | None:
-    """The tolerance asked for; None where none was typed.
-
-    Raises
-    ------
-    InputError
-        For words that are no lengths.
-    """
     from workhold.model.requirements import Tolerance
 
     if text is None:
@@ -295,13 +264,6 @@ def with_fit_of(asked: Tolerance | None, named: Tolerance | None) -> Tolerance |
 
 
 def asked_loads(loads: list[str] | None, file: str | None, unit: Unit) -> tuple[Load, ...]:
-    """The loads typed and those of a file.
-
-    Raises
-    ------
-    InputError
-        For words that are no load, and a file that cannot be used.
-    """
     if not loads and file is None:
         return ()
     from workhold.files.loads_file import read_loads

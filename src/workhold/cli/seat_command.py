@@ -97,7 +97,6 @@ def seat(
 
 
 def print_by_hand(result: Result, rank: int, picture: Path | None, unit: Unit, json_: bool) -> None:
-    """Prints how the part gets into its place under two clamps, and draws how it lies there."""
     from workhold.drawing.fixture_pictures import draw_fixture
     from workhold.seating.clamping import by_hand
 
@@ -155,7 +154,6 @@ def seating_words(fixture: Fixture, result: Result, unit: Unit) -> list[str]:
 
 
 def setting_words(seating: Seating, gauge: Gauge, unit: Unit) -> list[str]:
-    """Says what to do to seat the part, and what to read when it went right."""
     from workhold.model.seating import DRY_STEEL
 
     setting, carrier, ways = gauge.setting, gauge.carrier, gauge.ways
@@ -203,7 +201,6 @@ def setting_words(seating: Seating, gauge: Gauge, unit: Unit) -> list[str]:
 def wrong_words(
     seating: Seating, seats: list[Seat], opened: float | None, gauge: Gauge, unit: Unit
 ) -> list[str]:
-    """Says how many wrong seats there are, and whether a reading shows them."""
     wrong = [one for one in seats if one.is_wrong]
     alike = sum(one.same_place and not one.is_own for one in seats)
     words = []
@@ -238,7 +235,6 @@ KINDS = {
 
 
 def seat_table(seats: list[Seat], gauge: Gauge, unit: Unit) -> Table:
-    """Tabulates the seats: what is read, how the part lies, what touches, and how far it is held."""
     of, fixture = unit.abbreviation, gauge.fixture
     kinds = {**KINDS, "fixture": gauge.toolkit.setup_words.resting}
     table = Table(

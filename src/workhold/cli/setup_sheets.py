@@ -67,14 +67,8 @@ def asked_models(
 ) -> list[Path]:
     """Returns the paths of the GLB and STEP files asked for.
 
-    Parameters
-    ----------
-    of_files : options that only these files have, by name; none is given where a value is None or False.
-
-    Raises
-    ------
-    InputError
-        For another ending, an option without a file, and see :func:`refuse_output`.
+    ``of_files`` are options that only these files have, by name; none is given where a value is None or
+    False. Refuses an option without a file.
     """
     paths = []
     for name, given, endings in (("--glb", glb, (".glb",)), ("--step", step, (".step", ".stp"))):
@@ -113,13 +107,7 @@ def write_bodies(assembly: Assembly, paths: Sequence[Path], unit: Unit) -> None:
 
 
 def refuse_sheet(sheet: str | None, inputs: Iterable[str | None], out: str | None, force: bool) -> None:
-    """Refuses a sheet before anything is searched; None is no sheet.
-
-    Raises
-    ------
-    InputError
-        For another ending, the file of the result, and see :func:`refuse_output`.
-    """
+    """Refuses a sheet before anything is searched; None is no sheet."""
     if sheet is None:
         return
     path = Path(sheet)
@@ -141,17 +129,10 @@ def first_sheet(
 ) -> int | None:
     """Writes the sheet of the first choice and returns its rank; None where there is no fixture.
 
-    Parameters
-    ----------
-    out : the file that the result was written to, whose hash stands on the sheet.
-    thickness : of the part in mm, where supports are wanted: the first choice is the first that has some.
-    before : the result of the set-up of the part's other side before this one; None for none.
-    supported : the supports of the best fixtures where they are known already, in order.
-
-    Raises
-    ------
-    InputError
-        When the file cannot be written.
+    The hash of ``out``, the file of the result, stands on the sheet. The part's thickness in mm is given
+    where supports are wanted. Then the first choice is the first that has some; ``supported`` are those of
+    the best fixtures where they are known already, in order. ``before`` is the result of the set-up of the
+    part's other side before this one.
     """
     from workhold.presenting.papers import write_paper
 
@@ -213,13 +194,7 @@ def first_supported(
 def chosen_of_file(
     path: str, number: int, settings: dict[str, Any], loads: Sequence[Load] | None
 ) -> ChosenSupports:
-    """The set of three of a number in a file of supports.
-
-    Raises
-    ------
-    InputError
-        For a file that cannot be used, a number that there is none of, and what the file has decided already.
-    """
+    """The set of three of a number in a file of supports; refuses what the file has decided already."""
     from workhold.files.supports_file import read_supports
     from workhold.model.support_triples import ChosenSupports
 
@@ -241,11 +216,7 @@ def chosen_supports(
     """The best three supports under a fixture, of the usual sizes or else of smaller ones.
 
     A jaw force under which a load would lift the part off a peg is left out: the sheet warns of it anyway.
-
-    Raises
-    ------
-    InputError
-        Where there are none, and where nobody knows how thick the part is.
+    Refuses where there are none, and where nobody knows how thick the part is.
     """
     from workhold.model.support_triples import ChosenSupports
     from workhold.supports.asking import requests_by_size, supported_by_size
@@ -268,10 +239,7 @@ def chosen_supports(
 def first_side_of(result: Result, rank: int, before: str) -> FirstSide:
     """What a fixture shares with the best fixture of another result, whose part had another side up.
 
-    Raises
-    ------
-    InputError
-        For a file that cannot be used, and parts that are not of one solid.
+    Refuses parts that are not of one solid.
     """
     from workhold.files.result.reader import read_result
     from workhold.model.first_side import first_side

@@ -209,13 +209,7 @@ def refuse_in_space(
     support_height: str | None,
     first_setup: str | None,
 ) -> None:
-    """Refuses what stands on paper only in a file for a CAM system, and a height of no supports.
-
-    Raises
-    ------
-    InputError
-        Naming the option.
-    """
+    """Refuses what stands on paper only in a file for a CAM system, and a height of no supports."""
     if for_cam and first_setup is not None:
         raise InputError(
             f"--first-setup is of a sheet on paper, not of {path}: let the name end in .pdf, .svg or .png."
@@ -229,13 +223,7 @@ def refuse_in_space(
 
 
 def day_of(text: str) -> date:
-    """Reads a date typed as YYYY-MM-DD.
-
-    Raises
-    ------
-    InputError
-        When it is none.
-    """
+    """Reads a date typed as YYYY-MM-DD."""
     try:
         return date.fromisoformat(text)
     except ValueError:
@@ -245,13 +233,7 @@ def day_of(text: str) -> date:
 
 
 def position(text: str, unit: Unit) -> tuple[float, float]:
-    """Reads a position typed as X,Y; returns its two lengths in mm.
-
-    Raises
-    ------
-    InputError
-        When it is none, or beyond all lengths.
-    """
+    """Reads a position typed as X,Y; returns its two lengths in mm."""
     option_name = "--machine-position"
     place = two_lengths(option_name, text, unit, "a position: give it as X,Y, such as -312.5,-88.")
     for value in place:

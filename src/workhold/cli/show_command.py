@@ -125,9 +125,7 @@ def print_fixture(
 ) -> None:
     """Prints how to set up the fixture of a rank, its quality and what loads do to it.
 
-    Parameters
-    ----------
-    closing : the jaw force in N, None where it is open, and how stiff the jaw is.
+    ``closing`` is the jaw force in N, None where it is open, and how stiff the jaw is.
     """
     from workhold.cli.tables import first_sentence, fixture_tables, quality_table, standing_sentences
     from workhold.presenting.figure_words import no_edge
@@ -167,9 +165,7 @@ def bent_pegs_of(result: Result, rank: int, jaw_force: float | None) -> BentPegs
 def bending_words(result: Result, rank: int, unit: Unit, jaw_force: float | None) -> list[Table | str]:
     """Says how far each peg bends, and what that moves the part by; nothing where no heights are known.
 
-    Parameters
-    ----------
-    jaw_force : in N, instead of the result's.
+    The jaw force in N stands instead of the result's.
     """
     bent = bent_pegs_of(result, rank, jaw_force)
     if bent is None:
@@ -212,7 +208,6 @@ def bending_words(result: Result, rank: int, unit: Unit, jaw_force: float | None
 def load_tables(
     cases: Sequence[LoadCase], fixture: Fixture, toolkit: Toolkit, unit: Unit = MILLIMETRE
 ) -> tuple[Table | str, ...]:
-    """Tabulates the force that each load needs, and each peg's forces at the closing force that is used."""
     if not cases:
         return ()
     from workhold.statics.loads import jaw_words
@@ -290,12 +285,8 @@ def passing_words(
 ) -> list[str]:
     """Says how near the program's tools come to the fixture of a rank, and which forces they ask for.
 
-    Nothing without a program.
-
-    Parameters
-    ----------
-    jaw_force : in N, instead of the result's.
-    jaw : what closes the vise, see :func:`workhold.statics.loads.jaw_stiffness`.
+    Nothing without a program. The jaw force in N stands instead of the result's. For the jaw see
+    :func:`workhold.statics.loads.jaw_stiffness`.
     """
     from workhold.statics.program_clearance import passing_of
     from workhold.statics.program_forces import cutting_need_of

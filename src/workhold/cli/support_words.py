@@ -37,9 +37,7 @@ def supported_within(
 ) -> tuple[tuple[Supports, ...], tuple[Supports, ...]]:
     """The best supports of some fixtures as far as a limit of the work allows, with a bar on a terminal.
 
-    Parameters
-    ----------
-    fixtures, query, requests, how : see :func:`workhold.supports.asking.supported_by_size`.
+    For the arguments see :func:`workhold.supports.asking.supported_by_size`.
     """
     from workhold.supports.asking import supported_by_size
     from workhold.supports.choosing import WorkLimit
@@ -57,10 +55,7 @@ def supported_within(
 def stopped_words(last: int, count: int) -> str:
     """Says at which fixture the search of supports was stopped, what was skipped, and how to get the rest.
 
-    Parameters
-    ----------
-    last : rank of the fixture at which it was stopped.
-    count : of the fixtures that were asked for.
+    ``last`` is the rank of that fixture, ``count`` how many fixtures were asked for.
     """
     skipped = list(range(last + 1, count + 1))
     rest = f", and under {runs_of(skipped)} none" if skipped else ""
@@ -93,10 +88,8 @@ def size_notes(
 ) -> list[str]:
     """Says of which sizes the supports of some fixtures are, and why some have none.
 
-    Parameters
-    ----------
-    found, usual : of each fixture in order; those that are listed, and those of the usual sizes.
-    bare : ranks of those without supports among the listed ones.
+    Of each fixture in order ``found`` are those that are listed, ``usual`` those of the usual sizes. ``bare``
+    are the ranks of those without supports among the listed ones.
     """
     from workhold.supports.words import why_no_set
 
@@ -126,10 +119,7 @@ def size_notes(
 def with_friction(found: Supports, count: int | None, friction: float | None) -> list[float]:
     """The least clamp forces in N with friction, of the sets that are listed; none where it is not asked for.
 
-    Raises
-    ------
-    InputError
-        For a coefficient that is too large, and where there is no load.
+    Refuses a coefficient that is too large, and one where there is no load.
     """
     if friction is None:
         return []
@@ -141,10 +131,7 @@ def with_friction(found: Supports, count: int | None, friction: float | None) ->
 def friction_words(friction: float, helped: list[float], unit: Unit) -> str:
     """Says what friction could add to the sets that are listed.
 
-    Parameters
-    ----------
-    friction : its coefficient.
-    helped : least clamp forces in N, one for each set.
+    ``helped`` are their least clamp forces in N.
     """
     forces = ", ".join(unit.force_words(force) for force in helped)
     sets = "that set" if len(helped) == 1 else "these sets, in their order,"
@@ -155,13 +142,7 @@ def friction_words(friction: float, helped: list[float], unit: Unit) -> str:
 
 
 def spatial_load(text: str, thickness: float, unit: Unit) -> SpatialLoad:
-    """A load with its heights, its axial force and what tilts, from the text of ``--load``.
-
-    Raises
-    ------
-    InputError
-        For words that mean nothing.
-    """
+    """A load with its heights, its axial force and what tilts, from the text of ``--load``."""
     from workhold.model.support_request import SpatialLoad
 
     place = f'--load "{text}"'
@@ -195,13 +176,7 @@ def spatial_load(text: str, thickness: float, unit: Unit) -> SpatialLoad:
 
 
 def ranged(place: str, text: str | None, usual: tuple[float, float]) -> tuple[float, float]:
-    """One number or a range LOW..HIGH.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
+    """One number or a range LOW..HIGH."""
     if text is None:
         return usual
     low, _, high = text.partition("..")

@@ -210,10 +210,7 @@ def supports(
 def asked_thickness(wanted: bool, text: str | None, workpiece: Workpiece, unit: Unit) -> float | None:
     """How thick a part is in mm, where supports are wanted: as it is said, or as its solid is high.
 
-    Raises
-    ------
-    InputError
-        Where nobody knows, or it is said of a solid without supports.
+    Refuses where nobody knows, or it is said of a solid without supports.
     """
     if not wanted:
         if text is not None and workpiece.solid is not None:
@@ -269,13 +266,7 @@ def before_first(listed: Sequence[Triple]) -> list[str]:
 
 
 def lengths(name: str, text: str, mark: str, count: int, unit: Unit) -> tuple[float, ...]:
-    """Some lengths in mm with a mark between them.
-
-    Raises
-    ------
-    InputError
-        When there are more or fewer.
-    """
+    """Some lengths in mm with a mark between them."""
     words = text.split(mark)
     if len(words) != count:
         raise InputError(f"{name} {text!r} cannot be used: give {count} lengths with {mark!r} between them.")
@@ -292,7 +283,6 @@ def report(
     friction: float | None,
     helped: list[float],
 ) -> None:
-    """Prints the best sets, and what is not seen in the table."""
     listed = found.triples[:count]
     if as_json:
         rows = [asdict(triple) for triple in listed]
@@ -317,7 +307,6 @@ def report(
 
 
 def print_sets(found: Supports, listed: Sequence[Triple], rank: int, unit: Unit) -> None:
-    """Prints some sets of three as a table, with what is not seen in it."""
     from workhold.supports.words import set_headings, set_row
 
     with_loads = bool(found.loads)
@@ -330,7 +319,6 @@ def print_sets(found: Supports, listed: Sequence[Triple], rank: int, unit: Unit)
 
 
 def notes_of(found: Supports, listed: Sequence[Triple], unit: Unit) -> list[str]:
-    """Says what the figures mean, and what has to be set otherwise than for the fixture alone."""
     from workhold.conventions import STEADY
     from workhold.supports.words import listing_notes
 

@@ -52,7 +52,6 @@ class Table:
     spare: int = 0
 
     def add_row(self, *words: str) -> None:
-        """Adds a row at the end."""
         self.rows.append(words)
 
     def lines(self) -> list[str]:
@@ -131,7 +130,6 @@ class Table:
 
 
 def longest_word(texts: Iterable[str]) -> int:
-    """The letters of the longest word in some texts."""
     return max((len(word) for text in texts for word in text.split()), default=0)
 
 
@@ -151,7 +149,6 @@ def narrowed(widths: list[int], least: list[int], over: int) -> list[int]:
 
 
 def total(widths: list[int], gap: int) -> int:
-    """The width of a table in characters."""
     return sum(widths) + gap * (len(widths) - 1)
 
 

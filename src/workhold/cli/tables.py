@@ -99,9 +99,7 @@ def unfit_sentence(unfit: int) -> str:
 def proof_sentences(result: Result, written: str | None = None) -> list[str]:
     """Says in a line how the search was proven, and below it names the first undecided candidates.
 
-    Parameters
-    ----------
-    written : the name of the JSON file that lists all of them, if there is one.
+    ``written`` is the name of the JSON file that lists all of them, if there is one.
     """
     proof = result.proof
     if proof is None:
@@ -124,7 +122,6 @@ def proof_sentences(result: Result, written: str | None = None) -> list[str]:
 
 
 def proof_words(proof: Proof, complete: bool) -> str:
-    """Says what is proven, all of the list or only each fixture, of how many candidates, and how."""
     settled = max(proof.escalated - len(proof.undecided), 0)
     candidates = "1 candidate" if proof.candidates == 1 else f"{proof.candidates:,} candidates"
     if proof.cells == 0:
@@ -189,13 +186,10 @@ def quality_table(
     jaw_force: float | None = None,
     longest: float = inf,
 ) -> Table:
-    """Tabulates the figures of quality of a fixture, and their meaning where ``mover`` (such as a jaw)
-    presses.
+    """Tabulates the figures of quality of a fixture, and their meaning where ``mover`` (a jaw) presses.
 
-    Parameters
-    ----------
-    jaw_force : in N, at which pegs bend; None where it is not known.
-    longest : the edge distance that stands for none, see :func:`no_edge`.
+    Pegs bend at a jaw force in N, None where it is not known. ``longest`` is the edge distance that stands
+    for none, see :func:`no_edge`.
     """
     from workhold.model.quality import FIGURES, PIN_KEYS, PROGRAM_FIGURE
     from workhold.statics.bent_pegs import at_force
@@ -257,7 +251,6 @@ def fixture_tables(
 
 
 def setting_sentence(setting: LengthSetting, unit: Unit) -> str:
-    """Says what to set on a carrier that moves, and of a clamp where it is bolted and which way it pushes."""
     mover, length = setting.carrier, unit.text(setting.length)
     if setting.tip is None:
         return f"{setting.name[0].upper()}{setting.name[1:]} {length}"
@@ -334,7 +327,6 @@ def place(point: tuple[float, float], unit: Unit) -> str:
 
 
 def solid_table(solids: Sequence[FileSolid], unit: Unit) -> Table:
-    """Tabulates the solids of a file, with their names where it has any."""
     short, named = unit.abbreviation, any(solid.name for solid in solids)
     table = Table((">solid", *(("name",) if named else ()), f"size {short}", "lowest corner"))
     for solid in solids:
@@ -397,9 +389,7 @@ def slides_always(workpiece: Workpiece, rows: Sequence[HeightRow]) -> list[str]:
 def other_heights(workpiece: Workpiece, rows: Sequence[HeightRow], unit: Unit) -> list[str]:
     """What may help where pegs as high as these hold a solid nowhere: other heights, and the other side up.
 
-    Parameters
-    ----------
-    rows : what other heights of the pegs offer; those with more to touch are named first.
+    ``rows`` are what other heights of the pegs offer; those with more to touch are named first.
     """
     solid = workpiece.solid
     if solid is None:

@@ -1,24 +1,44 @@
-"""Options that describe one toolkit, made from the field table."""
+"""Options that describe a toolkit or lists of them for commands that try many, from the field table.
+
+Lists are names, files and kinds, and lists of their figures. Which figures there are, and how the words of
+each are read, the field table says.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from itertools import product
+from math import prod
 from typing import TYPE_CHECKING, Any
 
 from attrs import evolve, field, frozen
 
 from workhold.cli.commands import option
+from workhold.cli.search_options import with_fit_of
 from workhold.cli.values import length, optional_length, pitches, two_lengths, whole_number
 from workhold.errors import InputError
-from workhold.fixels.fields import MIN_GAP, NAMES, OPTIONS
-from workhold.fixels.table import TOOLKIT_SECTION
+from workhold.fixels.fields import COLUMNS, FLAT, MIN_GAP, NAMES, OPTIONS, PEG_RADIUS, PITCH, ROWS, TRAVEL
+from workhold.fixels.table import TOOLKIT_SECTION, FieldTable, Form, ToolkitField
 from workhold.units import Unit
 
 if TYPE_CHECKING:
     from workhold.fixels.toolkit import Toolkit
+    from workhold.model.query import Query
     from workhold.model.requirements import Tolerance
+    from workhold.model.workpiece import Workpiece
 
-__all__ = ["READERS", "TOOLKIT", "ToolkitWords"]
+__all__ = [
+    "READERS",
+    "TOOLKIT",
+    "ListWords",
+    "Named",
+    "ToolkitWords",
+    "heights_of_all",
+    "peg_diameter_of",
+    "query_of",
+    "toolkits_to_try",
+    "words_of",
+]
 
 TOOLKIT = option(
     TOOLKIT_SECTION,
@@ -64,13 +84,7 @@ class ToolkitWords:
         min_opening: str | None
 
     def fields(self, unit: Unit) -> dict[str, Any]:
-        """Makes keyword arguments of a toolkit, in mm, of the options that were given.
-
-        Raises
-        ------
-        InputError
-            For words that mean nothing.
-        """
+        """Makes keyword arguments of a toolkit, in mm, of the options that were given."""
         return {
             row.name: READERS[row.form](row.option, words, unit)
             for row in OPTIONS
@@ -78,13 +92,7 @@ class ToolkitWords:
         }
 
     def refuse_others(self, kind: type[Toolkit]) -> None:
-        """Refuses options that a kind of toolkit does not have.
-
-        Raises
-        ------
-        InputError
-            Naming the first of them.
-        """
+        """Refuses options that a kind of toolkit does not have."""
         from workhold.fixels.kinds import owner_of
 
         known = {row.name for row in kind.table.fields}
@@ -159,25 +167,13 @@ def lengths(option_name: str, text: str, unit: Unit) -> tuple[float, ...]:
 
 
 def span(option_name: str, text: str, unit: Unit) -> tuple[float, ...]:
-    """Reads the least and the most of a length; returns them in mm.
-
-    Raises
-    ------
-    InputError
-        For less or more than two lengths.
-    """
+    """Reads the least and the most of a length; returns them in mm."""
     remedy = "two lengths: give the least and the most, such as 10,35."
     return two_lengths(option_name, text, unit, remedy)
 
 
 def directions(option_name: str, text: str) -> list[str | tuple[str, ...]]:
-    """Reads directions such as ``-x,-y``, or pairs of them such as ``-x:-y,-x:+y``.
-
-    Raises
-    ------
-    InputError
-        For directions and pairs together.
-    """
+    """Reads directions such as ``-x,-y``, or pairs of them such as ``-x:-y,-x:+y``; refuses both together."""
     words = [word.strip() for word in text.split(",")]
     if len({":" in word for word in words}) == 2:
         raise InputError(
@@ -197,3 +193,250 @@ READERS: Mapping[str, Callable[[str, Any, Unit], Any]] = {
     "holes": lambda name, texts, unit: [hole for text in texts for hole in text.split(",")],
     "directions": lambda name, text, unit: directions(name, text),
 }
+
+
+# How the entries of a list look, by the form of a field. What is no number is not varied.
+ENTRIES: dict[Form, str] = {
+    PITCH.form: "such as 8,10,12.5 or 10x12.5.",
+    COLUMNS.form: "such as 1,2,4.",
+    PEG_RADIUS.form: "such as 2.5,3.",
+    TRAVEL.form: "the least and the most of each with a colon, such as 10:35,15:50.",
+    FLAT.form: "each with or without half its width after a colon, such as 2.5,2.5:1.5.",
+}
+LISTED = tuple(row for row in OPTIONS if row.form in ENTRIES)
+SWEEP = "Toolkits to try"
+PLURALS = {
+    PITCH.name: "Pitches",
+    COLUMNS.name: "Numbers of columns",
+    ROWS.name: "Numbers of rows",
+    PEG_RADIUS.name: "Peg radii",
+}
+
+
+def list_options() -> dict[str, Any]:
+    """Makes the attributes of :class:`ListWords` in the order of the help, from the field table."""
+    words: Any = str | None
+    made = {}
+    for row in LISTED:
+        says = ENTRIES[row.form] if not row.allowed else f"such as {','.join(map(str, row.allowed))}."
+        plural = PLURALS.get(row.name, row.labels[0].label)
+        made[row.name] = field(
+            default=option(SWEEP, "LIST", f"{plural}, {says}", row.option), type=words, kw_only=True
+        )
+    return made
+
+
+@frozen(these=list_options())
+class ListWords:
+    """Lists of figures of toolkits, as typed; None for those not given."""
+
+    def given(self) -> list[tuple[ToolkitField, str]]:
+        """Lists the fields that are varied, each with its list."""
+        typed = ((row, getattr(self, row.name)) for row in LISTED)
+        return [(row, text) for row, text in typed if isinstance(text, str)]
+
+    @property
+    def has_pitches(self) -> bool:
+        """Whether pitches are varied, with which lists alone can make toolkits."""
+        return any(row is PITCH for row, _ in self.given())
+
+
+# More toolkits than this are more likely a slip than a wish.
+MOST_TOOLKITS = 1000
+
+
+@frozen
+class Named:
+    """A toolkit to try: its name, its kind and keyword arguments, and its tolerance where it has one."""
+
+    name: str
+    kind: str
+    fields: dict[str, Any]
+    tolerance: Tolerance | None = None
+
+    def changed(self, changes: list[tuple[str, dict[str, Any]]]) -> Named:
+        name = ", ".join(filter(None, (self.name, *(words for words, _ in changes))))
+        fields = {key: value for _, change in changes for key, value in change.items()}
+        return Named(name, self.kind, self.fields | fields, self.tolerance)
+
+
+def query_of(workpiece: Workpiece, named: Named, asked: dict[str, Any]) -> Query | InputError:
+    """Makes the query for a toolkit, or returns the error that says why there is no such toolkit."""
+    from workhold.fixels.kinds import toolkit_of
+    from workhold.model.query import Query
+
+    try:
+        return Query(
+            workpiece,
+            toolkit_of(named.kind, named.fields),
+            **asked | {"tolerance": with_fit_of(asked["tolerance"], named.tolerance)},
+        )
+    except InputError as error:
+        return error
+
+
+def heights_of_all(toolkits: Sequence[Named]) -> dict[str, tuple[float, ...]]:
+    """Finds the heights of carriers, by role, with which one reading of a part serves all toolkits.
+
+    Refuses toolkits that differ in the heights of a role.
+    """
+    from workhold.fixels.kinds import toolkit_of
+
+    found: dict[str, tuple[float, ...]] = {}
+    for one in toolkits:
+        try:
+            heights = toolkit_of(one.kind, one.fields).heights
+        except InputError:
+            # Why there is no such toolkit stands in its row.
+            continue
+        for role, ends in heights.items():
+            if found.setdefault(role, ends) != ends:
+                raise InputError(
+                    f"the toolkits have two heights of the {role}, and a part is read once for all of them: "
+                    "try those of one height at a time."
+                )
+    return found
+
+
+def peg_diameter_of(named: Named) -> float | None:
+    """Finds the diameter of a toolkit's pegs in mm; None where there is no such toolkit."""
+    from workhold.fixels.kinds import toolkit_of
+
+    try:
+        return toolkit_of(named.kind, named.fields).peg_diameter
+    except InputError:
+        return None
+
+
+def toolkits_to_try(
+    names: list[str] | None, toolkit: str | None, varied: ListWords, unit: Unit
+) -> list[Named]:
+    """Lists the toolkits to try.
+
+    ``names`` are names and files with commas between them, and ``toolkit`` is one more of them, or a kind.
+    ``varied`` are the lists of figures, which are combined with each other and with each toolkit. The unit is
+    of lengths without one. Refuses lists that do not make a toolkit, and more than a thousand toolkits.
+    """
+    from workhold.fixels.kinds import ALIASES, KINDS, USUAL, kind_of, table_of
+
+    is_kind = toolkit is not None and toolkit.lower() in (*KINDS, *ALIASES)
+    kind, said = kind_of(toolkit.lower()) if toolkit is not None and is_kind else (None, {})
+    if toolkit is not None and not is_kind:
+        names = [*(names or ()), toolkit]
+    given = varied.given()
+    lists = [
+        [(name_of(row, word), {row.name: read(row, word, unit)}) for word in words_of(row.option, text)]
+        for row, text in given
+    ]
+    if kind is not None:
+        refuse_missing_fields(table_of(kind), given)
+    if names is None and varied.has_pitches:
+        refuse_too_few(table_of(kind or USUAL), {*said, *(row.name for row, _ in given)}, given)
+        refuse_missing_fields(table_of(kind or USUAL), given)
+        bases = [Named("", kind or USUAL, dict(said))]
+    else:
+        bases = named_toolkits(names, kind, said, given)
+    count = len(bases) * prod(len(entries) for entries in lists)
+    if count > MOST_TOOLKITS:
+        raise InputError(
+            f"the lists combine to {count} toolkits: give lists that combine to {MOST_TOOLKITS} or fewer."
+        )
+    return [base.changed(list(changes)) for base in bases for changes in product(*lists)]
+
+
+def named_toolkits(
+    names: list[str] | None, kind: str | None, said: Mapping[str, Any], given: list[tuple[ToolkitField, str]]
+) -> list[Named]:
+    """Loads the toolkits that are named, or all presets that have every field that is varied.
+
+    Refuses fields that a named toolkit does not have, and fields that none is left with.
+    """
+    from workhold.files.toolkit_file import load_toolkit, preset_names
+    from workhold.fixels.kinds import table_of
+
+    if names is None:
+        loaded = [
+            one for one in map(load_toolkit, preset_names()) if not unknown_fields(table_of(one.kind), given)
+        ]
+    else:
+        loaded = [load_toolkit(name) for words in names for name in words_of("--vise", words)]
+        for one in loaded:
+            refuse_missing_fields(table_of(one.kind), given)
+    # A kind picks those of the kind, and makes one sort of toolkit of another.
+    bases = [
+        Named(one.name, kind or one.kind, {**one.fields, **said}, one.tolerance)
+        for one in loaded
+        if kind is None or table_of(kind) is table_of(one.kind)
+    ]
+    if not bases:
+        which = f"that is a {table_of(kind).noun}" if kind else "with all of the fields to vary"
+        raise InputError(
+            f"there is no toolkit {which}: name others with --toolkit (see workhold toolkits), or give "
+            f"{PITCH.option} and all that such a toolkit needs."
+        )
+    return bases
+
+
+def unknown_fields(table: FieldTable, given: list[tuple[ToolkitField, str]]) -> list[ToolkitField]:
+    known = {row.name for row in table.fields}
+    return [row for row, _ in given if row.name not in known]
+
+
+def refuse_missing_fields(table: FieldTable, given: list[tuple[ToolkitField, str]]) -> None:
+    from workhold.fixels.kinds import owner_of
+
+    for row in unknown_fields(table, given):
+        raise InputError(
+            f"{row.option} is of {owner_of(row).noun}s: a {table.noun} has no {row.belongs_to}; leave it "
+            "out, or choose another toolkit."
+        )
+
+
+def refuse_too_few(table: FieldTable, known: set[str], given: list[tuple[ToolkitField, str]]) -> None:
+    """Refuses lists that lack a figure without which there is no toolkit."""
+    missing = [row.option for row in table.fields if row.is_required and row.name not in known]
+    if missing:
+        alone = "a list of pitches alone makes" if len(given) == 1 else "these lists alone make"
+        raise InputError(
+            f"{alone} no {table.noun}: give {' and '.join(missing)} too, or name toolkits with --toolkit."
+        )
+
+
+def read(row: ToolkitField, word: str, unit: Unit) -> Any:
+    """Reads an entry of the list of a field; lengths come in mm."""
+    if row is PITCH:
+        return pitch_of(word, unit)
+    if row.form == TRAVEL.form and word.count(":") != 1:
+        raise InputError(
+            f"{row.option} {word!r} is not two lengths: give the least and the most with a colon, such as "
+            "10:35."
+        )
+    value = READERS[row.form](row.option, word.replace(":", ","), unit)
+    if row.allowed and value not in row.allowed:
+        raise InputError(f"{row.option} {word} is not known: give {' or '.join(map(str, row.allowed))}.")
+    return value
+
+
+def name_of(row: ToolkitField, word: str) -> str:
+    """What an entry of a list adds to the name of a toolkit.
+
+    >>> name_of(COLUMNS, "1"), name_of(PEG_RADIUS, "2.5"), name_of(PITCH, "8")
+    ('1 column', 'radius 2.5', 'pitch 8')
+    """
+    if row.form == "count":
+        number = word.lstrip("0") or word
+        return f"{number} {row.words.removesuffix('s') if number == '1' else row.words}"
+    return f"{'radius' if row is PEG_RADIUS else row.words} {word}"
+
+
+def words_of(option: str, text: str) -> list[str]:
+    words = [word.strip() for word in text.split(",")]
+    if not all(words):
+        raise InputError(f"{option} {text!r} has an empty entry: give a list such as 1,2,4.")
+    return words
+
+
+def pitch_of(word: str, unit: Unit) -> tuple[float, float]:
+    """Reads a pitch for both directions, or ``XxY``."""
+    x, cross, y = word.partition("x")
+    return length("--pitch", x, unit), length("--pitch", y if cross else x, unit)

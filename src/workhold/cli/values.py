@@ -45,13 +45,7 @@ FRACTION = re.compile(r"(?P<sign>[+-]?)(?:(?P<whole>[0-9]+)[ -])?(?P<above>[0-9]
 
 
 def length_unit(name: str | None) -> Unit:
-    """The unit of lengths given and shown, millimetres where none is asked for, or the pixels of a drawing.
-
-    Raises
-    ------
-    InputError
-        For a unit that is not known.
-    """
+    """The unit of lengths given and shown, millimetres where none is asked for, or the pixels of a drawing."""
     name = usual_unit() if name is None else name
     return MILLIMETRE if name is None or pixels_an_inch(name) is not None else unit_named(name)
 
@@ -78,11 +72,6 @@ def length(option: str, text: str, unit: Unit = MILLIMETRE) -> float:
     text : a number or a fraction, which may carry a unit of its own.
     unit : of a number without one.
 
-    Raises
-    ------
-    InputError
-        For anything that is not one finite number, or longer than any part.
-
     Examples
     --------
     >>> length("--min-gap", "12.7"), length("--min-gap", "0.5in"), length("--min-gap", '1-1/2"')
@@ -103,13 +92,7 @@ def length(option: str, text: str, unit: Unit = MILLIMETRE) -> float:
 
 
 def length_from_zero(option: str, text: str, unit: Unit = MILLIMETRE) -> float:
-    """A length of 0 or more in mm.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
+    """A length of 0 or more in mm."""
     value = length(option, text, unit)
     if value < 0:
         raise InputError(f"{option} {text} is negative: give 0 or more.")
@@ -119,14 +102,7 @@ def length_from_zero(option: str, text: str, unit: Unit = MILLIMETRE) -> float:
 def two_lengths(option: str, text: str, unit: Unit, remedy: str) -> tuple[float, float]:
     """Two lengths in mm with a comma between them.
 
-    Parameters
-    ----------
-    remedy : what other words are not, and what to give.
-
-    Raises
-    ------
-    InputError
-        For anything else.
+    ``remedy`` says what other words are not, and what to give.
     """
     words = text.split(",")
     if len(words) != 2:
@@ -135,13 +111,7 @@ def two_lengths(option: str, text: str, unit: Unit, remedy: str) -> tuple[float,
 
 
 def three_lengths(option: str, text: str, unit: Unit, remedy: str) -> tuple[float, float, float]:
-    """Three lengths in mm with commas between them; ``remedy`` is as of :func:`two_lengths`.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
+    """Three lengths in mm with commas between them; ``remedy`` is as of :func:`two_lengths`."""
     words = text.split(",")
     if len(words) != 3:
         raise InputError(f"{option} {text!r} is not {remedy}")
@@ -168,13 +138,7 @@ def optional_length(option: str, text: str | None, unit: Unit = MILLIMETRE) -> f
 
 
 def optional_positive_length(option: str, text: str | None, unit: Unit = MILLIMETRE) -> float | None:
-    """A length above zero in mm, or None where the option is not given.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
+    """A length above zero in mm, or None where the option is not given."""
     value = optional_length(option, text, unit)
     if value is not None and value <= 0:
         raise InputError(f"{option} {text!r} is not above 0: give a positive length.")
@@ -187,11 +151,6 @@ def pitches(text: str, unit: Unit = MILLIMETRE) -> tuple[float, float]:
     Parameters
     ----------
     unit : of numbers that carry none.
-
-    Raises
-    ------
-    InputError
-        For anything else.
 
     Examples
     --------
@@ -212,13 +171,7 @@ def pitches(text: str, unit: Unit = MILLIMETRE) -> tuple[float, float]:
 
 
 def whole_number(option: str, text: str) -> int:
-    """Reads a whole number; its sign is checked elsewhere.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
+    """Reads a whole number; its sign is checked elsewhere."""
     try:
         return int(text)
     except ValueError:
@@ -226,24 +179,11 @@ def whole_number(option: str, text: str) -> int:
 
 
 def optional_count(option: str, text: str | None) -> int | None:
-    """A number of things, from 1, or None where the option is not given.
-
-    Raises
-    ------
-    InputError
-        Below 1, or when it is no whole number.
-    """
+    """A number of things, from 1, or None where the option is not given."""
     return None if text is None else counting_number(option, whole_number(option, text))
 
 
 def positive_number(option: str, text: str) -> float:
-    """A finite number above zero.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
     value = number(text.strip())
     if not (isfinite(value) and value > 0):
         raise InputError(f"{option} {text!r} is not a positive number: give one above 0.")
@@ -252,11 +192,6 @@ def positive_number(option: str, text: str) -> float:
 
 def optional_force(option: str, text: str | None) -> float | None:
     """A force above zero in N, or None where the option is not given.
-
-    Raises
-    ------
-    InputError
-        For anything else.
 
     Examples
     --------
@@ -276,16 +211,9 @@ def in_unit(
 ) -> float:
     """A number above zero with a unit of its own, in what its units are counted in.
 
-    Parameters
-    ----------
-    words : what is typed, with the groups ``number`` and ``unit``.
-    units : by their names in small letters; ``usual`` is that of a number without one.
-    remedy : what the text is not, and what to give.
-
-    Raises
-    ------
-    InputError
-        For anything else.
+    ``words`` is what is typed, with the groups ``number`` and ``unit``. Units are by their names in small
+    letters; ``usual`` is that of a number without one. ``remedy`` says what the text is not, and what to
+    give.
     """
     match = words.fullmatch(text)
     value = nan if match is None else number(match["number"]) * units[(match["unit"] or usual).lower()]
@@ -296,11 +224,6 @@ def in_unit(
 
 def choice(option: str, text: str, among: Sequence[str]) -> str:
     """One of several words, in any mixture of capitals.
-
-    Raises
-    ------
-    InputError
-        For any other word.
 
     Examples
     --------
@@ -314,13 +237,7 @@ def choice(option: str, text: str, among: Sequence[str]) -> str:
 
 
 def picture_ending(path: Path) -> str:
-    """The ending of a picture's name, ``.svg`` or ``.png``.
-
-    Raises
-    ------
-    InputError
-        For any other.
-    """
+    """The ending of a picture's name, ``.svg`` or ``.png``."""
     ending = path.suffix.lower()
     if ending not in PICTURE_ENDINGS:
         raise InputError(f"--draw {path} names no kind of picture: let the name end in .svg or .png.")

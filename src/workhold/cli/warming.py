@@ -91,12 +91,9 @@ def begin_compiling() -> SecondProcess | None:
 
 
 def compile_kernels(cancel: Event, second: SecondProcess | None = None) -> None:
-    """Compiles the kernels of a search.
+    """Compiles the kernels of a search; ``second`` is the process that :func:`begin_compiling` began.
 
-    Parameters
-    ----------
-    cancel : when set, the rest is left to the search.
-    second : the process that :func:`begin_compiling` began.
+    When ``cancel`` is set, the rest is left to the search.
     """
     share("SEARCH", WORDS, cancel, second)
 
@@ -117,9 +114,7 @@ def is_seating_compiled() -> bool:
 def compile_seating(cancel: Event) -> None:
     """Compiles the kernels of seating, which searches do without, if that has not been done.
 
-    Parameters
-    ----------
-    cancel : when set, the rest is left to who needs it.
+    When ``cancel`` is set, the rest is left to who needs it.
     """
     if is_seating_compiled():
         return

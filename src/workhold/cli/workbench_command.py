@@ -146,13 +146,7 @@ def hear_the_end(cancel: Event) -> None:
 
 
 def asked(order: WorkbenchOrder, part: str) -> Query:
-    """The query of an order; the words are those of ``design``, so that both list the same.
-
-    Raises
-    ------
-    InputError
-        For a part, a toolkit, faces or a program that cannot be used.
-    """
+    """The query of an order; the words are those of ``design``, so that both list the same."""
     from workhold.files.part.load import read_workpiece
     from workhold.model.query import Query
 
@@ -180,10 +174,7 @@ def asked(order: WorkbenchOrder, part: str) -> Query:
 def avoided(order: WorkbenchOrder, workpiece: Workpiece) -> list[int]:
     """Numbers of the outline's faces that nothing may touch, from those of the document that are named.
 
-    Raises
-    ------
-    InputError
-        For a face that nothing touches anyway, and an outline whose faces are no solid's.
+    Refuses a face that nothing touches anyway, and an outline whose faces are no solid's.
     """
     if not (order.avoid or order.only):
         return []
@@ -241,7 +232,6 @@ def design_data(result: Result, order: WorkbenchOrder, folder: Path, cancel: Eve
 
 
 def listed_in(folder: Path, name: str = RESULT) -> list[dict[str, Any]]:
-    """The fixtures of a result file."""
     fixtures: list[dict[str, Any]] = json.loads((folder / name).read_text(encoding="utf-8"))["fixtures"]
     return fixtures
 
@@ -249,11 +239,8 @@ def listed_in(folder: Path, name: str = RESULT) -> list[dict[str, Any]]:
 def rank_in(fixtures: Sequence[Mapping[str, Any]], marks: str) -> int | None:
     """The rank of the fixture of a result file that the marks are of, from 1; None where none is.
 
-    The same holes may hold a part in two ways, such as turned by half a turn.
-
-    Parameters
-    ----------
-    marks : as JSON the kind, directions and holes of a fixture, and the angle at which the part lies in them.
+    Marks are, as JSON, the kind, directions and holes of a fixture, and the angle at which the part lies in
+    them: the same holes may hold a part in two ways, such as turned by half a turn.
     """
     if not marks:
         return None
@@ -312,7 +299,6 @@ def supported(fixture: Fixture, query: Query) -> tuple[ChosenSupports | None, st
 
 
 def draw_nearest_miss(result: Result, folder: Path) -> None:
-    """Draws what comes nearest to a fixture where there is none, if anything does."""
     from workhold.drawing.fixture_pictures import draw_fixture
     from workhold.search.explaining import explain
 

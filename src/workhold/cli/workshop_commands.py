@@ -95,13 +95,7 @@ def copies(
 
 
 def plate_size(result: Result, asked: tuple[int | None, int | None]) -> tuple[int, int]:
-    """Returns columns and rows of the plate: those asked for, or those of the result.
-
-    Raises
-    ------
-    InputError
-        Where neither says.
-    """
+    """Returns columns and rows of the plate: those asked for, or those of the result."""
     plate = result.toolkit.carriers[0]
     columns, rows = asked[0] or plate.columns, asked[1] or plate.rows
     if columns is None or rows is None:
@@ -113,7 +107,6 @@ def plate_size(result: Result, asked: tuple[int | None, int | None]) -> tuple[in
 def print_copies(
     found: list[Fixture], packing: Packing, result: Result, size: tuple[int, int], unit: Unit
 ) -> None:
-    """Prints how many copies there are, and where each stands."""
     from workhold.model.setup import part_zero
 
     zero = part_zero(result.workpiece)
@@ -203,13 +196,7 @@ def drill(
 
 
 def asked_bolts(places: str | None, diameter: str | None, unit: Unit) -> Bolts | None:
-    """Reads the bolts asked for; None where there are none.
-
-    Raises
-    ------
-    InputError
-        For words that mean nothing, and one of the two options without the other.
-    """
+    """Reads the bolts asked for; None where there are none, and refuses one of the two options alone."""
     if places is None and diameter is None:
         return None
     size = optional_positive_length("--bolt-diameter", diameter, unit)

@@ -54,11 +54,8 @@ def dimension_line(
 ) -> Point:
     """Draws a dimension line between two page points; returns its unit direction.
 
-    Parameters
-    ----------
-    tight : of a shorter line the arrows are outside, page units.
-    outside : how far these reach past the ends, page units.
-    head : length of the heads, page units.
+    In page units, a line shorter than ``tight`` has its arrows outside, these reach ``outside`` past the
+    ends, and heads are ``head`` long.
     """
     length = dist(start, end)
     ux, uy = ((end[0] - start[0]) / length, (end[1] - start[1]) / length) if length > 0 else (1.0, 0.0)
@@ -87,11 +84,8 @@ def dimension(
 ) -> Box:
     """Draws a dimension line between two page points, its text above it, readable from below or the right.
 
-    Parameters
-    ----------
-    past : the end of an upright line past which a text longer than the line is written.
-
-    Returns the box of the text.
+    ``past`` is the end of an upright line past which a text longer than the line is written. Returns the box
+    of the text.
     """
     ux, uy = dimension_line(scene, start, end)
     width = text_width(text, size, bold)
@@ -238,13 +232,9 @@ def around(
 ) -> Label:
     """A label with candidates around an anchor.
 
-    Parameters
-    ----------
-    direction : preferred direction from the anchor, radians on the page (y down).
-    size : width and height in page units.
-    distances : from the anchor to the label's rim, page units; each page unit costs 0.3.
-    turns : turns away from the preferred direction, radians; each radian costs ``turn_cost``.
-    extra : cost of every candidate.
+    The preferred direction, and turns away from it, are in radians on the page (y down). Width and height of
+    the label, and distances from the anchor to its rim, are in page units. Each page unit costs 0.3, each
+    radian ``turn_cost``, and every candidate ``extra``.
     """
     width, height = size
     distance, turn = (grid.ravel() for grid in np.meshgrid(distances, turns, indexing="ij"))

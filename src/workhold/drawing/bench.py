@@ -115,7 +115,6 @@ def wall_contact(center: Point, face: Segment) -> tuple[Point, Point]:
 
 
 def pin_contact(center: Point, face: Segment) -> tuple[Point, Point]:
-    """The contact of a pin about a centre with a face."""
     half = face.half_extent
     parameter = max(-half, min(half, face.parameter(center)))
     return face.at(parameter), face.normal(parameter)
@@ -185,7 +184,6 @@ class Bench:
 
     @property
     def on_walls(self) -> list[int]:
-        """The ends of the contact with a wall."""
         pegs = enumerate(self.fixture.pegs)
         return [k for k, peg in pegs if self.toolkit.carrier(peg.carrier).contact is WALL_END]
 
@@ -195,7 +193,6 @@ class Bench:
         return [index for index, peg in enumerate(self.fixture.pegs) if peg in self.fixture.placed]
 
     def radius(self, view: View, index: int) -> float:
-        """Radius of a peg on the page."""
         carrier = self.toolkit.carrier(self.fixture.pegs[index].carrier)
         return max(carrier.peg_radius * view.scale, THINNEST_PEG)
 
@@ -288,7 +285,6 @@ def draw_part(scene: Scene, bench: Bench, view: View, weight: float) -> None:
 
 
 def draw_pegs(scene: Scene, bench: Bench, view: View, weight: float) -> None:
-    """Draws the pegs with their centres marked."""
     pegs = scene.group("pegs", view)
     holes = {carrier.carrier.name: view.scale * carrier.hole_radius for carrier in bench.shown.carriers}
     for index in bench.placed:
@@ -324,10 +320,8 @@ def draw_inset(
 ) -> None:
     """Draws the unturned part with its touched faces and contacts into a page box.
 
-    Parameters
-    ----------
-    zero : part zero in the part's coordinates, mm, to mark where it lies within the part's extent; holes are
-        numbered too.
+    Part zero, in the part's coordinates in mm, is marked where it lies within the part's extent; holes are
+    numbered too then.
     """
     if box.height < LOWEST:
         return
@@ -355,7 +349,6 @@ def draw_inset(
 
 
 def number_holes(scene: Scene, view: View, workpiece: Workpiece) -> None:
-    """Writes the number of each hole at its centre, where it has room for it."""
     for count, (loop, center) in enumerate(
         zip(workpiece.hole_segments, hole_centers(workpiece), strict=True), 1
     ):

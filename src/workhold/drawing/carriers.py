@@ -14,8 +14,7 @@ from workhold.drawing.scene import BLACK, GREY, Box, Scene, View
 from workhold.geometry.segment import Point
 from workhold.geometry.symmetry import rotated
 from workhold.model.clamps import ShownClamp
-from workhold.model.reach import Side
-from workhold.model.shown import Shown, ShownCarrier
+from workhold.model.shown import Shown, ShownCarrier, Side
 
 __all__ = [
     "SLIDING",
@@ -186,7 +185,6 @@ def draw_push(scene: Scene, clamp: ShownClamp, view: View, weight: float) -> Non
 
 
 def draw_bolt(scene: Scene, at: Point, radius: float, weight: float = 1.0) -> None:
-    """Draws the head of a bolt with its hexagonal socket about a page point."""
     scene.circle(at, radius, BOLT, BLACK, 1.1 * weight, **{"class": "bolt"})
     corners = [
         (at[0] + 0.55 * radius * cos(k * pi / 3), at[1] + 0.55 * radius * sin(k * pi / 3)) for k in range(6)

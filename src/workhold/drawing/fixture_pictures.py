@@ -78,7 +78,6 @@ def draw_fixture(
     Parameters
     ----------
     title : what to call the fixture, such as ``Fixture 3 of 70``.
-    unit : of the lengths written.
     path : of a program's tools, to draw as well.
 
     Returns
@@ -163,20 +162,8 @@ def draw_thumbnails(
 ) -> str:
     """Draws up to twelve fixtures on an A4 sheet to one scale, with type, closure margin and opening.
 
-    Parameters
-    ----------
-    titles : what to call each of them, such as its rank.
-    unit : of the lengths written.
-
-    Returns
-    -------
-    str
-        SVG text.
-
-    Raises
-    ------
-    InputError
-        For no fixture, more than twelve, or another number of titles.
+    Each has a title, such as its rank. Returns SVG text. Refuses no fixture, more than twelve, or another
+    number of titles.
     """
     count = len(fixtures)
     if not 1 <= count <= MOST_THUMBNAILS:
@@ -245,7 +232,6 @@ def grid(count: int) -> list[Box]:
 
 
 def draw_cell(scene: Scene, bench: Bench, title: str, cell: Box, view: View, lengths: LengthUnit) -> None:
-    """Draws one thumbnail with its caption."""
     group = scene.group("thumbnail")
     group.rectangle(cell, "#ffffff", "#b9bec6", 1.0, 5)
     draw_bench(group, bench, view, weight=0.55, longest=26.0, axes=False)

@@ -21,7 +21,6 @@ SHORTER = 2.0
 
 
 def hardware_items(sheet: Sheet) -> list[HardwareItem]:
-    """What the set-up of a sheet takes."""
     chosen, heights, details = sheet.details.supports, sheet.heights, sheet.details
     length = details.peg_length if heights is None else heights.peg_length
     # Where the pegs' height was assumed, so would be the length, of which nothing then is known.
@@ -171,5 +170,4 @@ def hardware_of(
 
 
 def plural(noun: str, count: int) -> str:
-    """A noun for a number of things."""
     return noun if count == 1 else f"{noun}s"

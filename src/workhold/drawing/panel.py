@@ -106,7 +106,6 @@ class TextColumn:
         self.y += 0.62 * size
 
     def rule(self, width: float = 1.0) -> None:
-        """Draws a line across."""
         self.y += 4
         self.scene.line([(self.x, self.y), (self.x + self.width, self.y)], BLACK, width)
         self.y += 9
@@ -186,7 +185,6 @@ def arrangement_words(arrangement: Arrangement, toolkit: Toolkit) -> str:
 
 
 def fixture_words(fixture: Fixture, toolkit: Toolkit) -> str:
-    """The arrangement of a fixture in words."""
     return arrangement_words(toolkit.arrangement(fixture.type, fixture.direction), toolkit)
 
 
@@ -230,7 +228,6 @@ def draw_title(
 
 
 def draw_settings(column: TextColumn, fixture: Fixture, toolkit: Toolkit, lengths: LengthUnit) -> None:
-    """Writes what to set, with the travel first."""
     first, settings, several = toolkit.plates[0], settings_of(fixture, toolkit), len(fixture.travels) > 1
     # What moves in this fixture, which of several clamps the toolkit has need not be its first.
     moving = settings[0].carrier
@@ -279,7 +276,6 @@ def holes_words(carrier: Carrier) -> str:
 
 
 def diameter_words(carrier: Carrier, lengths: LengthUnit) -> str:
-    """The diameter of a carrier's pegs."""
     return f"Ø {lengths.short(2 * carrier.peg_radius)}" if carrier.peg_radius else "points, no diameter"
 
 
@@ -313,12 +309,10 @@ WORDS = 11.5
 
 
 def peg(scene: Scene, at: Point) -> None:
-    """Draws a peg."""
     scene.circle(at, 7, PEG_FILL, BLACK, 1.2)
 
 
 def hole(scene: Scene, at: Point) -> None:
-    """Draws an empty hole."""
     scene.circle(at, 7, "#ffffff", GREY, 0.9)
 
 
@@ -333,7 +327,6 @@ def line(scene: Scene, at: Point) -> None:
 
 
 def wall(scene: Scene, at: Point) -> None:
-    """Draws a piece of a wall."""
     draw_wall(scene, Box(at[0] - 15, -at[1] - 6, at[0] + 16, -at[1] + 3), View(1.0, 0.0, 0.0))
 
 
@@ -345,7 +338,6 @@ def force(scene: Scene, at: Point) -> None:
 
 
 def face(scene: Scene, at: Point) -> None:
-    """Draws a face that is touched."""
     ends = [(at[0] - 15, at[1]), (at[0] + 16, at[1])]
     scene.line(ends, TOUCHED, 8)
     scene.line(ends, BLACK, 2.2)

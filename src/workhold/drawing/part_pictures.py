@@ -46,7 +46,6 @@ def draw_features(workpiece: Workpiece, *, peg_radius: float | None = None, unit
     Parameters
     ----------
     peg_radius : draw the contact features for pegs of this radius in mm as well.
-    unit : of the lengths written.
 
     Returns
     -------
@@ -90,7 +89,6 @@ def draw_header(scene: Scene, page: tuple[float, float], name: str, words: str) 
 
 
 def part_words(workpiece: Workpiece, bounds: Box, peg_radius: float | None, lengths: LengthUnit) -> str:
-    """What the part is, and what is drawn of it."""
     faces, holes = len(workpiece.faces), len(workpiece.hole_segments)
     words = [plural(faces, "face"), plural(holes, "hole") if holes else "no holes"]
     words.append(f"{lengths.number(bounds.width)} × {lengths.words(bounds.height)}")
@@ -103,7 +101,6 @@ def part_words(workpiece: Workpiece, bounds: Box, peg_radius: float | None, leng
 
 
 def draw_outline(scene: Scene, workpiece: Workpiece, view: View) -> None:
-    """Draws the part with a tick across every joint of two segments."""
     part = scene.group("part", view)
     d = outline_path(workpiece.loop_segments, view)
     part.path(d, BLACK, 2.2, PART_FILL, fill_rule="evenodd", **{"class": "outline"})
@@ -150,13 +147,11 @@ def draw_numbers(
 
 
 def draw_leader(scene: Scene, place: Place) -> None:
-    """Draws the leader of a number, which begins in a dot."""
     scene.line(place.leader(), LEADER, 0.9)
     scene.circle(place.anchor, 1.7, LEADER)
 
 
 def write_number(scene: Scene, place: Place, number: int, size: float) -> None:
-    """Writes a number in a frame with round ends."""
     scene.rectangle(place.box, "#ffffff", LEADER, 0.9, place.box.height / 2)
     scene.text(place.box.center, str(number), size, "middle", bold=True)
 
@@ -185,7 +180,6 @@ def number_label(face: Face, view: View, size: float, shares: Sequence[float], o
 
 
 def draw_overall(scene: Scene, bounds: Box, view: View, numbers: float, lengths: LengthUnit) -> None:
-    """Dimensions the overall width below the part and its height at the left."""
     group = scene.group("overall")
     box = view.box(bounds)
     y = box.y1 + numbers + 22
@@ -210,10 +204,8 @@ def draw_parts(
 
     Parameters
     ----------
-    name : what to call the file.
     parts : for each part its loops, (N, 3) vertices in mm; part k + 1 is called by that number.
     chosen : the number of the part that is used, which has another colour.
-    unit : of the lengths written.
 
     Returns
     -------

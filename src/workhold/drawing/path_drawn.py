@@ -217,7 +217,6 @@ def draw_paths(group: Scene, program: Program, paths: PagePaths, weight: float =
 def add(
     group: Scene, paths: PagePaths, rows: NDArray[np.int64], colour: str, wide: float, name: str, **more: str
 ) -> None:
-    """Adds the moves of some rows as one path of a class, where there are any."""
     d = paths.data(rows)
     if d:
         group.path(d, colour, wide, stroke_linecap="round", **{"class": name}, **more)
@@ -324,7 +323,6 @@ class PlannedPath:
             placer.avoid_box(Box(x, y, x, y).grown(6))
 
     def labels(self, view: View, lengths: LengthUnit) -> list[Label]:
-        """Candidates for the label of the nearest move."""
         if self.passing is None:
             return []
         size = (text_width(self.words(lengths), NAME, bold=True) + 8, HIGH)

@@ -99,7 +99,6 @@ def draw_children(pdf: FPDF, group: ET.Element) -> None:
 
 
 def draw_shapes(pdf: FPDF, shapes: list[PaintedPath]) -> None:
-    """Puts shapes on the page."""
     if not shapes:
         return
     context: DrawingContext
@@ -109,20 +108,13 @@ def draw_shapes(pdf: FPDF, shapes: list[PaintedPath]) -> None:
 
 
 def refuse_unknown(tag: str, attributes: dict[str, str], known: set[str]) -> None:
-    """Refuses attributes that would be lost on paper.
-
-    Raises
-    ------
-    ValueError
-        Naming them.
-    """
+    """Refuses attributes that would be lost on paper."""
     unknown = sorted(set(attributes) - known)
     if unknown:
         raise ValueError(f"no way to print the attributes {', '.join(unknown)} of the SVG element {tag}")
 
 
 def shape(tag: str, attributes: dict[str, str]) -> PaintedPath:
-    """A rectangle, circle or path with its style."""
     path = PaintedPath()
     if tag == "rect":
         refuse_unknown(tag, attributes, STYLE | SILENT | {"x", "y", "width", "height", "rx"})
@@ -168,9 +160,7 @@ def trace_arc(path: PaintedPath, start: Point, values: Sequence[float]) -> None:
     Riskus, *Approximation of a cubic Bezier curve by circular arcs and vice versa*, 2006); two quarter turns
     are off by 3e-4 radii.
 
-    Parameters
-    ----------
-    values : of the command A: two equal radii, no turn, no large arc, the sense, and the end.
+    The values are those of the command A: two equal radii, no turn, no large arc, the sense, and the end.
     """
     radius, other, turn, large, positive, x1, y1 = values
     if radius != other or turn or large:
@@ -198,7 +188,6 @@ def trace_arc(path: PaintedPath, start: Point, values: Sequence[float]) -> None:
 
 
 def set_style(style: GraphicsStyle, attributes: dict[str, str]) -> None:
-    """Sets fill and stroke from an element's attributes."""
     style.auto_close = False
     style.stroke_join_style = "round"
     style.stroke_cap_style = attributes.get("stroke-linecap", "butt")
@@ -217,7 +206,6 @@ def set_style(style: GraphicsStyle, attributes: dict[str, str]) -> None:
 
 
 def draw_text(pdf: FPDF, element: ET.Element) -> None:
-    """Writes a line of text, its halo below it."""
     attributes = element.attrib
     known = {"x", "y", "font-size", "font-weight", "text-anchor", "transform", "paint-order", "fill"}
     refuse_unknown("text", attributes, known | {"stroke", "stroke-width"} | SILENT)

@@ -48,7 +48,6 @@ def draw_program(program: Program, *, workpiece: Workpiece | None = None, unit: 
     Parameters
     ----------
     workpiece : the part, drawn below them.
-    unit : of the lengths written.
 
     Returns
     -------
@@ -84,7 +83,6 @@ def bounds_of(program: Program, workpiece: Workpiece | None) -> Box:
 
 
 def draw_zero(scene: Scene, at: tuple[float, float]) -> None:
-    """Draws the program's X0 Y0 with its axes."""
     group = scene.group("program-zero")
     x, y = at
     group.arrow((x, y), (x + 34, y), BLACK, 1.4, 8)
@@ -95,7 +93,6 @@ def draw_zero(scene: Scene, at: tuple[float, float]) -> None:
 
 
 def draw_legend(scene: Scene, program: Program, lengths: LengthUnit, box: Box) -> None:
-    """Lists the tools with their colours, and says what shades and dashes mean."""
     group, figures, y = scene.group("legend"), tool_figures(program), box.y0 + 8
     for place, one in enumerate(figures[:MOST_LISTED]):
         tool = program.tools[one.tool]
@@ -124,7 +121,6 @@ def draw_legend(scene: Scene, program: Program, lengths: LengthUnit, box: Box) -
 
 
 def write_program(column: TextColumn, sheet: Sheet) -> None:
-    """Writes the program of a setup sheet."""
     details = sheet.details
     assert details.program is not None
     heading(column, "Program")
@@ -142,12 +138,7 @@ def write_program(column: TextColumn, sheet: Sheet) -> None:
 
 
 def write_path(column: TextColumn, path: PlannedPath, lengths: LengthUnit, fill: str = BLACK) -> None:
-    """Writes where a program runs, its tools in their colours with their lines, and where they come nearest.
-
-    Parameters
-    ----------
-    fill : colour of the words.
-    """
+    """Writes where a program runs, its tools in their colours with their lines, and where they come nearest."""
     program = path.program
     x, y = program.zero
     name = shortened(program.name, BODY, 0.75 * column.width, bold=True)
@@ -169,7 +160,6 @@ def write_path(column: TextColumn, path: PlannedPath, lengths: LengthUnit, fill:
 
 
 def write_tools(column: TextColumn, program: Program, lengths: LengthUnit, fill: str) -> None:
-    """Writes the tools in their colours: diameter, name, where they begin, and how low they cut."""
     ends = [column.x + SWATCH + 8 + share * (column.width - SWATCH - 8) for share in COLUMNS]
     figures = tool_figures(program)
     header = ("", "tool", f"Ø {lengths.sign}", "lines", "lowest cut z")
@@ -177,7 +167,7 @@ def write_tools(column: TextColumn, program: Program, lengths: LengthUnit, fill:
     for at, words in zip(ends[1:], header[1:], strict=True):
         column.scene.text((at, column.y), words, SIZE - 1, "end" if at == ends[-1] else "start", middle=False)
     column.y += 0.7 * SIZE
-    lines = last_lines(program)
+    last_lines = dict(zip(program.moves.tool.tolist(), program.moves.line.tolist(), strict=True))
     for place, one in enumerate(figures[:MOST_TOOLS]):
         tool = program.tools[one.tool]
         y = column.y + SIZE / 2
@@ -186,7 +176,7 @@ def write_tools(column: TextColumn, program: Program, lengths: LengthUnit, fill:
             [(column.x + 3, y), (column.x + SWATCH - 3, y)], colour, 6.0, stroke_linecap="round"
         )
         low = "–" if one.lowest_cut is None else lengths.number(one.lowest_cut)
-        span = f"{one.first_line} to {lines[one.tool]}"
+        span = f"{one.first_line} to {last_lines[one.tool]}"
         cells = (f"T{one.tool}", lengths.short_number(tool.diameter), span, low)
         for number, (at, words) in enumerate(zip(ends[1:], cells, strict=True)):
             anchor = "end" if number == len(cells) - 1 else "start"
@@ -208,13 +198,7 @@ def tools_above(path: PlannedPath) -> list[str]:
     return [f"T{one.tool}" for one in tool_figures(path.program) if one.lowest > path.peg_height]
 
 
-def last_lines(program: Program) -> dict[int, int]:
-    """The last line of each tool that moves."""
-    return {int(tool): int(line) for tool, line in zip(program.moves.tool, program.moves.line, strict=True)}
-
-
 def passing_sentence(path: PlannedPath, lengths: LengthUnit) -> str:
-    """Where the tools come nearest to what holds the part, a sentence."""
     near = path.passing
     if near is None or near.distance == inf:
         return "No tool comes down to where anything holds the part."

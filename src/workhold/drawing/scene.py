@@ -195,7 +195,6 @@ class View:
         return self.left + self.scale * point[0], self.top - self.scale * point[1]
 
     def box(self, model: Box) -> Box:
-        """A model box on the page."""
         (x0, y1), (x1, y0) = self((model.x0, model.y0)), self((model.x1, model.y1))
         return Box(x0, y0, x1, y1)
 
@@ -265,7 +264,6 @@ class Scene:
     def path(
         self, d: str, stroke: str = "none", width: float = 1.0, fill: str = "none", **more: str
     ) -> ET.Element:
-        """Adds a path."""
         return self.add("path", {"d": d, "fill": fill}, stroke, width, **more)
 
     def line(
@@ -277,14 +275,12 @@ class Scene:
     def polygon(
         self, points: Sequence[Point], fill: str, stroke: str = "none", width: float = 1.0
     ) -> ET.Element:
-        """Adds a closed polygon."""
         d = "M" + "L".join(f"{number(x)} {number(y)}" for x, y in points) + "Z"
         return self.path(d, stroke, width, fill)
 
     def rectangle(
         self, box: Box, fill: str, stroke: str = "none", width: float = 1.0, round_by: float = 0.0
     ) -> ET.Element:
-        """Adds a rectangle."""
         attributes = {
             "x": number(box.x0),
             "y": number(box.y0),
@@ -305,7 +301,6 @@ class Scene:
         width: float = 1.0,
         **more: str,
     ) -> ET.Element:
-        """Adds a circle."""
         attributes = {"cx": number(center[0]), "cy": number(center[1]), "r": number(radius), "fill": fill}
         return self.add("circle", attributes, stroke, width, **more)
 
@@ -384,7 +379,6 @@ class LengthUnit:
 
     @classmethod
     def mm(cls, decimals: int = MILLIMETRE.decimals) -> LengthUnit:
-        """Millimetres."""
         return cls(MILLIMETRE, decimals)
 
     @classmethod

@@ -69,7 +69,6 @@ class SeatingSentences:
         return self.gauge.at(seat.jaw_separation)
 
     def reads(self, length: float) -> str:
-        """A reading in words."""
         return f"{self.sign} = {self.lengths.words(length)}"
 
     def bound(self, length: float) -> str:
@@ -85,7 +84,6 @@ class SeatingSentences:
 
     @cached_property
     def own(self) -> Seat:
-        """The fixture's own seat."""
         return next(seat for seat in self.seating.seats if seat.is_own)
 
     @cached_property
@@ -114,7 +112,6 @@ class SeatingSentences:
         return half, min(2.0 * degrees(asin(min(half / (2.0 * arm), 1.0))), ANY_TURN)
 
     def difference(self, seat: Seat) -> str:
-        """How the reading of a seat differs from the right one."""
         if abs(seat.difference) < 0.5 * 10.0**-self.lengths.decimals * self.lengths.unit.millimetres:
             return "the same"
         more = self.reading(seat) > self.reading(self.own)

@@ -50,7 +50,6 @@ def draw_seats(
     ----------
     seats : in the order in which they are numbered.
     title : what to call the fixture.
-    unit : of the lengths written.
 
     Returns
     -------
@@ -94,7 +93,6 @@ class Placed:
 
     @classmethod
     def of(cls, seat: Seat, fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Placed:
-        """A seat of a fixture's pegs."""
         part = workpiece.turned_over if seat.mirrored else workpiece
         lying = part.placed(seat.pose)
         touching, gauge = {contact.peg for contact in seat.contacts}, Gauge(fixture, toolkit)
@@ -128,7 +126,6 @@ def draw_lying(scene: Scene, placed: Placed, view: View, weight: float = 1.2) ->
 
 
 def draw_seat(scene: Scene, placed: Placed, number: int, cell: Box, view: View, unit: Unit) -> None:
-    """Draws one seat with its number, what is read, and how that differs."""
     seat, (reading, own) = placed.seat, placed.reading
     colour = RIGHT if seat.is_own else ALIKE if seat.same_place else PEG_FILL
     scene.rectangle(cell, "#ffffff", colour, 2.0 if seat.is_own else 1.0, 5)

@@ -56,12 +56,8 @@ def draw_sheet(
     """Draws the setup sheet of a fixture, lying or upright, whichever shows the part largest.
 
     The groups of class ``part`` and ``pegs`` carry the map from the vise frame (mm) to the page in their
-    attribute ``data-model-to-page``, written as an SVG matrix. On paper its scale is a standard one.
-
-    Returns
-    -------
-    tuple of str
-        SVG text of every page, each of the paper's size.
+    attribute ``data-model-to-page``, written as an SVG matrix. On paper its scale is a standard one. Returns
+    the SVG text of every page, each of the paper's size.
     """
     bench = bench_of(fixture, workpiece, toolkit)
     details = details if details.zero else evolve(details, zero=part_zero(workpiece))
@@ -125,7 +121,6 @@ def figure_of(sheet: Sheet, bench: Bench) -> SideFigure | None:
 
 
 def write_columns(scene: Scene, columns: tuple[Filled, ...]) -> None:
-    """Writes the blocks of each column."""
     group = scene.group("words")
     for box, blocks in columns:
         column = TextColumn(group, box.x0, box.y0, box.width)
@@ -134,7 +129,6 @@ def write_columns(scene: Scene, columns: tuple[Filled, ...]) -> None:
 
 
 def draw_foot(scene: Scene, layout: PageLayout, sheet: Sheet, page: str) -> None:
-    """Draws the foot, a line of cells as in the title block of a drawing."""
     details, (width, height) = sheet.details, layout.page
     box = Box(MARGIN, height - MARGIN - FOOT + 10, width - MARGIN, height - MARGIN)
     cells = [
@@ -377,10 +371,8 @@ def pages_of_words(
 ) -> tuple[tuple[Filled, ...], ...]:
     """The columns of as few pages as hold the blocks: three on a lying page, two on an upright one.
 
-    Parameters
-    ----------
-    inner : a page without margins and foot.
-    first : what there is of the first page, where not all of it is free.
+    ``inner`` is a page without margins and foot, ``first`` what there is of the first page, where not all of
+    it is free.
     """
     if not blocks:
         return ()

@@ -216,14 +216,10 @@ def edge_distances(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> 
 def cautions_of(
     fixture: Fixture, toolkit: Toolkit, distances: Sequence[float], details: SheetDetails, lengths: LengthUnit
 ) -> list[Caution]:
-    """The cautions of ``statics.judging``, those about contacts first, and other ways to lie in the same
-    holes.
+    """The cautions of ``statics.judging``, those about contacts first, and other ways to lie in the holes.
 
-    These come from the seating where it is known.
-
-    Parameters
-    ----------
-    distances : of the four contacts from edges, see :func:`edge_distances`.
+    These come from the seating where it is known. For the distances of the four contacts see
+    :func:`edge_distances`.
     """
     found: list[Caution] = []
     margin, error = fixture.quality.get("closure_margin", inf), fixture.quality.get("location_error", 0.0)
@@ -308,10 +304,8 @@ def pressed_height(
 ) -> float | None:
     """The height up to which pegs press on a prism in mm; None where neither height is known.
 
-    Parameters
-    ----------
-    thickness : of the part, or that which supports were asked for.
-    peg_height : above the plates, over which the part lies by ``lift``.
+    The thickness is that of the part, or that which supports were asked for. The height of the pegs is above
+    the plates, over which the part lies by ``lift``.
     """
     if thickness is None and supports is not None:
         thickness = supports.supports.request.thickness

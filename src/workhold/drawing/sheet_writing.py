@@ -115,10 +115,7 @@ def heights_of(
 ) -> SheetHeights | None:
     """The heights of a set-up; None where nobody knows how thick the part is.
 
-    Raises
-    ------
-    InputError
-        For pegs that end below the part.
+    Refuses pegs that end below the part.
     """
     solid, supports = workpiece.solid, details.supports
     thickness = details.thickness
@@ -222,12 +219,10 @@ class Sheet:
 
     @property
     def name(self) -> str:
-        """The part's name."""
         return self.details.part_name or self.workpiece.name
 
     @property
     def zero(self) -> PartZero:
-        """Part zero."""
         return self.details.zero or part_zero(self.workpiece)
 
     @property
@@ -266,7 +261,6 @@ class Sheet:
 
     @property
     def settings(self) -> tuple[LengthSetting, ...]:
-        """What is set on each thing that moves."""
         return settings_of(self.fixture, self.toolkit)
 
 
@@ -336,7 +330,6 @@ def peg_rows(sheet: Sheet) -> tuple[list[str], list[list[str]], str]:
 
 
 def write_flats(column: TextColumn, sheet: Sheet) -> None:
-    """Writes what the flats of the pegs are and how they are turned, where they have some."""
     flat = sheet.toolkit.plates[0].flat
     if flat is not None:
         column.paragraph(

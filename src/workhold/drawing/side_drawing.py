@@ -83,7 +83,6 @@ class SideFigure:
 
     @property
     def highest(self) -> float:
-        """The height of the highest thing that is drawn."""
         return max(self.view.heights.thickness, self.view.heights.peg_top)
 
     @property
@@ -110,7 +109,6 @@ class SideFigure:
 
     @property
     def top_room(self) -> float:
-        """Room above the part, page units."""
         return TITLE_ROOM + (ABOVE if self.view.clamp is None else CLAMP_ROOM)
 
     @property
@@ -120,7 +118,6 @@ class SideFigure:
 
     @property
     def notes(self) -> list[str]:
-        """Sentences on what is drawn, and what is not known."""
         heights, words = self.view.heights, self.lengths.words
         notes = [f"Heights in {self.lengths.sign} above the plane on which the part lies."]
         if heights.head_room is None:
@@ -232,7 +229,6 @@ class SideFigure:
             scene.line([page((low, 0.0)), page((high, 0.0))], BLACK, 3.4, **{"class": "foot-face"})
 
     def draw_contact(self, scene: Scene, page: View, one: SideContact) -> None:
-        """Draws a peg through its plate, or a clamp on it."""
         heights = self.view.heights
         begin, top = one.heights or (0.0, heights.peg_top)
         low = begin or -heights.supported_by
@@ -251,7 +247,6 @@ class SideFigure:
             scene.path(outline(foot), PEG_FILL, 0.9, stroke_dasharray="4 2.5", **{"class": "peg-foot"})
 
     def draw_band(self, scene: Scene, page: View, one: SideContact) -> None:
-        """Draws the line on which a peg presses."""
         if one.band is None:
             return
         ends = [page((one.touches, height)) for height in one.band]
@@ -259,7 +254,6 @@ class SideFigure:
         scene.line(ends, BLACK, 1.2)
 
     def draw_top_clamp(self, scene: Scene, page: View) -> None:
-        """Draws the clamp on top as an arrow that ends in its tip."""
         assert self.view.clamp is not None
         x, y = page((self.view.clamp, self.view.clamped_height))
         stem = page((self.view.clamp, self.highest))[1] - HEAD
@@ -268,7 +262,6 @@ class SideFigure:
         scene.rectangle(Box(x - half, y - HEAD, x + half, y), "#ffffff", SUPPORT, 1.8, 2.0)
 
     def draw_levels(self, scene: Scene, page: View, drawn: Box) -> None:
-        """Draws a thin line at each height, and at its right end what it is."""
         levels = self.levels
         wanted = [page((0.0, height))[1] for height, _ in levels]
         low, high = drawn.y0 - ABOVE - HEIGHT_OF_LINE, drawn.y1 + NAMES_ROOM - 12
@@ -279,7 +272,6 @@ class SideFigure:
             scene.text((right + BEND - 2, at), words, WORDS)
 
     def draw_dimensions(self, scene: Scene, page: View, drawn: Box) -> None:
-        """Draws the dimensions side by side; all words stand at their left, each with a line to its own."""
         lines = self.dimensions
         wanted = [page((0.0, (start + end) / 2))[1] for start, end, _ in lines]
         places = moved_apart(

@@ -249,7 +249,6 @@ SHARES = tuple(np.linspace(-1.0, 1.0, 33).tolist())
 
 
 def contacts(bench: Bench, way: ViewWay, heights: SheetHeights) -> Iterable[SideContact]:
-    """Pegs and clamps as they are seen."""
     size = max(bench.shown.part.width, bench.shown.part.height)
     step = max(size * FINE, 1e-9)
     outlines = bench.outlines(View(1.0, 0.0, 0.0), step)
@@ -275,9 +274,7 @@ def contacts(bench: Bench, way: ViewWay, heights: SheetHeights) -> Iterable[Side
 def stands_before(outline: NDArray[np.float64], at: Point, way: ViewWay) -> bool:
     """Whether a loop of the part lies between a point and the viewer.
 
-    Parameters
-    ----------
-    outline : (N, 2) points along it with y downward, as on a page, in mm.
+    The outline has points (N, 2) in mm with y downward, as on a page.
     """
     x, y = outline[:, 0], -outline[:, 1]
     across = x * way.right[0] + y * way.right[1] - way.across(at)

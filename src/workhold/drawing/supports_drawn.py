@@ -68,7 +68,6 @@ class PlannedSupports:
 
     @classmethod
     def of(cls, chosen: ChosenSupports) -> PlannedSupports:
-        """The supports of a set-up."""
         pose, request = chosen.recounted.fixture.pose, chosen.supports.request
         return cls(
             names=tuple(pad.hole for pad in chosen.pads),
@@ -80,7 +79,6 @@ class PlannedSupports:
         )
 
     def holes_on(self, carrier: str) -> set[tuple[int, int]]:
-        """Columns and rows of the supports on a carrier."""
         return {(column, row) for name, column, row in self.holes if name == carrier}
 
     def avoided(self, placer: LabelPlacer, view: View) -> None:
@@ -105,7 +103,6 @@ class PlannedSupports:
         return found
 
     def draw_names(self, scene: Scene, places: Sequence[Place], view: View) -> None:
-        """Writes the names where they were placed, with leaders from the signs."""
         for name, place, radius in zip(
             (*self.names, TOP_NAME), places, (*[self.pad_radius] * 3, self.tip_radius), strict=True
         ):
@@ -117,7 +114,6 @@ class PlannedSupports:
 
 
 def size_of(radius: float, view: View) -> float:
-    """Radius of a sign on the page."""
     return max(radius * view.scale, SMALLEST)
 
 
@@ -182,7 +178,6 @@ def write_supports(column: TextColumn, sheet: Sheet) -> None:
 
 
 def write_forces(column: TextColumn, sheet: Sheet, chosen: ChosenSupports) -> None:
-    """Writes the force wanted of the clamp on top and the largest on a support, or a line to write it on."""
     supports, clamp, unit = chosen.supports, chosen.clamp, sheet.lengths.unit
     noun = sheet.toolkit.moving.noun
     if supports.loads:
@@ -220,7 +215,6 @@ def tipping_words(chosen: ChosenSupports, unit: Unit) -> str:
 
 
 def holding_up_words(sheet: Sheet, chosen: ChosenSupports) -> str:
-    """Whether the part stands before it is clamped, a sentence."""
     triple = chosen.triple
     inside = f"the centre of its area is {sheet.lengths.words(triple.standing)} inside their triangle"
     if triple.stands:
@@ -266,7 +260,6 @@ def support_steps(sheet: Sheet, steps: list[str]) -> list[str]:
 
 
 def write_heights(column: TextColumn, sheet: Sheet) -> None:
-    """Writes all heights, and at which ones each peg presses."""
     heights, lengths = sheet.heights, sheet.lengths
     assert heights is not None
     noun = sheet.toolkit.plates[0].noun

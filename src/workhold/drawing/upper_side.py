@@ -61,7 +61,6 @@ def write_side(column: TextColumn, sheet: Sheet) -> None:
 
 
 def write_part(column: TextColumn, sheet: Sheet) -> None:
-    """Draws the part as it was drawn."""
     x0, y0, x1, y1 = sheet.workpiece.bounds
     height = INSET_ROOM + min(HIGHEST_INSET, column.width * min(TALLEST_INSET, (y1 - y0) / (x1 - x0)))
     height = max(height, LOWEST)
@@ -91,12 +90,10 @@ class Mark:
     bend: int
 
     def is_like(self, other: Mark) -> bool:
-        """Whether the two look the same."""
         sizes = ((self.length, other.length), (self.radius, other.radius))
         return self.bend == other.bend and all(abs(a - b) <= SEEN * max(a, b) for a, b in sizes)
 
     def words(self, lengths: LengthUnit) -> str:
-        """What it is."""
         if self.hole:
             return f"hole {self.hole}" + (f", Ø {lengths.short(2 * self.radius, 4)}," if self.radius else "")
         if self.radius:
@@ -150,7 +147,6 @@ def distinguishing_marks(workpiece: Workpiece) -> tuple[Mark, Mark] | None:
 
 
 def side_words(workpiece: Workpiece, fixture: Fixture, lengths: LengthUnit) -> str:
-    """Sentences on which side is up in a fixture and how to see it."""
     if is_own_mirror_image([face.segment for face in workpiece.faces]):
         if workpiece.solid is not None:
             up = f"{workpiece.solid.axis.replace('-', '−')} of the file points up"
@@ -185,7 +181,6 @@ def write_side_up(column: TextColumn, sheet: Sheet) -> None:
 
 
 def side_up_words(solid: SolidOutline, before: FirstSide | None) -> list[str]:
-    """Sentences on the side that is up, and on a set-up before."""
     up = solid.axis.replace("-", "−")
     sentences = [f"{up} of the file points up."]
     if before is None:
@@ -200,7 +195,6 @@ def side_up_words(solid: SolidOutline, before: FirstSide | None) -> list[str]:
 
 
 def face_words(before: FirstSide) -> list[str]:
-    """Sentences on faces that were cut before, and on those that both set-ups touch."""
     cut, found = numbered_faces(before.cut_of_solid), list[str]()
     if before.cut:
         found.append(

@@ -84,7 +84,6 @@ class Bodies:
 
 
 def bodies_of(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Bodies:
-    """What a fixture takes up."""
     chords = []
     for loop in workpiece.loop_segments:
         for segment in loop:
@@ -164,10 +163,7 @@ def too_near_shifts(
 def places_on(fixture: Fixture, toolkit: Toolkit, columns: int, rows: int) -> list[Shift]:
     """The shifts at which a fixture stands on a plate of so many columns and rows, row by row.
 
-    Raises
-    ------
-    InputError
-        Where one alone does not.
+    Refuses a plate on which one alone does not stand.
     """
     used_columns, used_rows = [], []
     for peg in fixture.pegs:
@@ -343,7 +339,6 @@ def draw_copies(
 
 
 def draw_whole_plate(scene: Scene, holes: Box, plate: Carrier, size: tuple[int, int], view: View) -> None:
-    """Draws a plate with all its holes and the names of its columns and rows."""
     box, (columns, rows) = view.box(holes), size
     fill, edge = STILL
     scene.group("plate").rectangle(box, fill, edge, 2.0)

@@ -101,10 +101,8 @@ def greedy(sets: BoolArray) -> tuple[int, ...]:
 def cover(sets: BoolArray, deadline: float | None = None) -> Cover:
     """The fewest of some sets (S, M) of members that hold them all; every member is in some set.
 
-    Parameters
-    ----------
-    deadline : of the clock ``time.monotonic``; when it comes, the best cover known so far and what is proven
-        of the least.
+    At the deadline, of the clock ``time.monotonic``, it is the best cover known so far, with what is proven
+    of the least.
     """
     from scipy.optimize import LinearConstraint
 
@@ -232,7 +230,6 @@ class LossTable:
         return out
 
     def only(self, chosen: IntArray) -> LossTable:
-        """The table of the patterns at some places, in order."""
         place = np.full(len(self.words), -1)
         place[chosen] = np.arange(len(chosen))
         kept = place[self.pattern] >= 0
@@ -321,13 +318,10 @@ def curve_of(
     deadline: float | None = None,
     progress: Callable[[float], None] = lambda fraction: None,
 ) -> tuple[Point, ...]:
-    """The curve, from the fewest set-ups to the least loss; numbers that gain nothing over fewer are left
-    out.
+    """The curve, from the fewest set-ups to the least loss, without numbers that gain nothing over fewer.
 
-    Parameters
-    ----------
-    most_loss : larger losses are not accepted; every member can be held within it.
-    deadline : of the clock ``time.monotonic``; points after it are what was known then.
+    Losses larger than ``most_loss``, within which every member can be held, are not accepted. Points after
+    the deadline, of the clock ``time.monotonic``, are what was known then.
     """
     least = float(np.max([table.loss[table.member == one].min() for one in range(table.members)]))
     bounds = np.unique(table.loss[(table.loss >= least) & (table.loss <= most_loss)])

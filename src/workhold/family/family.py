@@ -219,7 +219,6 @@ def family_of(
 
 
 def reason_of(member: Member, has_patterns: bool) -> str:
-    """Why a part is no member."""
     inside = member.query.toolkit.wording.inside
     if not member.fixtures:
         asked = member.query.asked
@@ -235,7 +234,6 @@ FORMAT = "workhold-family/1"
 
 
 def family_text(family: Family) -> str:
-    """The text of a family's file."""
     toolkit = family.toolkit
     head = {
         "toolkit": {"kind": toolkit.kind, **toolkit_fields(toolkit)},
@@ -266,12 +264,10 @@ def family_text(family: Family) -> str:
 
 
 def listed(entries: list[dict[str, Any]]) -> str:
-    """A list with a line for each entry."""
     return "[\n" + ",\n".join(json.dumps(entry) for entry in entries) + "\n]" if entries else "[]"
 
 
 def plan_text(plan: Plan, family: Family) -> str:
-    """A point of the curve with its plan."""
     numbers = {id(member): number for number, member in enumerate(family.members)}
     point = {
         "setups": plan.point.setups,
@@ -309,7 +305,6 @@ def peg_entry(peg: Peg, toolkit: Toolkit) -> dict[str, Any]:
 
 
 def holding_entry(one: Holding, toolkit: Toolkit, number: int) -> dict[str, Any]:
-    """How a member lies, as it is written."""
     fixture = one.fixture
     entry = {
         "part": number,
@@ -337,7 +332,6 @@ def opening_entry(fixture: Fixture, toolkit: Toolkit) -> dict[str, Any]:
 
 
 def length(value: float) -> float:
-    """A length as it is written."""
     return float(rounded(np.array([value]), LENGTH_STEPS)[0])
 
 

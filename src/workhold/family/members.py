@@ -93,7 +93,6 @@ def threshold(name: str, value: float) -> Threshold:
 
 
 def loss_figure_words(figure: Figure) -> str:
-    """What losses are computed of, in a few words."""
     return f"effective {figure.words}" if figure.key == LOCATION else figure.words
 
 
@@ -271,19 +270,11 @@ def member_of(
     zero: PartZero | None = None,
     same_zero: bool = False,
 ) -> Member:
-    """The member that a part is, from all its fixtures.
+    """The member that a part is, from all its fixtures; refuses a disk without room for them.
 
-    Parameters
-    ----------
-    result : all fixtures, ranked; the first figure of its ranking is that of losses.
-    thresholds, unfit : what may be used, see ``family.members.may_be_used``.
-    zero : the part's zero; the usual one if None.
-    same_zero : whether patterns also differ where the zero lies elsewhere or the part is turned otherwise.
-
-    Raises
-    ------
-    InputError
-        When there is no room for the fixtures.
+    The fixtures are ranked, and the first figure of the ranking is that of losses. For ``thresholds`` and
+    ``unfit`` see ``family.members.may_be_used``. The part's zero is the usual one if None. ``same_zero`` says
+    whether patterns also differ where the zero lies elsewhere or the part is turned otherwise.
     """
     query = result.query
     figure = FIGURES[figure_number(query.ranking[0]) or 0]
@@ -361,13 +352,7 @@ def at_angle(degrees: NDArray[np.float64], query: Query) -> NDArray[np.bool_]:
 
 
 def spilled(table: FixtureTable) -> FixtureTable:
-    """A table that takes little memory, however long it is.
-
-    Raises
-    ------
-    InputError
-        When there is no room on the disk for temporary files.
-    """
+    """A table that takes little memory, however long it is; refuses a disk without room for temporary files."""
     if sum(column.nbytes for column in table.columns) < IN_MEMORY:
         return table
     names = [one.name for one in fields(FixtureTable)]

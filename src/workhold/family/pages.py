@@ -78,7 +78,6 @@ def draw_curve(family: Family, chosen: Point | None = None) -> str:
 
 
 def draw_axes_and_points(scene: Scene, room: Box, points: list[Point], chosen: Point | None) -> None:
-    """Draws the axes with their numbers, and the points with theirs."""
     last, most = points[-1].setups, points[0].loss
     step = nice_step(max(most - 1.0, 0.02) / MOST_LINES)
     top = 1.0 + step * max(ceil((most - 1.0) / step - 1e-9), 1)
@@ -169,7 +168,6 @@ def draw_setups(plan: Plan, figure: Figure, day: date, unit: Unit = MILLIMETRE) 
     ----------
     figure : of which losses are computed.
     day : the date written on the sheets.
-    unit : of the lengths written.
     """
     first = plan.setups[0].holdings[0].member.query.toolkit.carriers[0]
     titles = Titles(len(plan.setups), figure, LengthUnit.suiting(unit, min(first.pitch)), day)
@@ -217,7 +215,6 @@ def new_page(setup: SetUp, before: SetUp | None, number: int, titles: Titles) ->
 
 
 def holes_of(setup: SetUp) -> list[str]:
-    """The names of the holes of a set-up, and of the lines of its clamps."""
     return [peg.hole for peg in setup.standing.fixture.placed]
 
 
@@ -234,7 +231,6 @@ def heights_words(setup: SetUp, lengths: LengthUnit) -> Iterator[str]:
 
 
 def moves_words(setup: SetUp, before: SetUp | None) -> Iterator[str]:
-    """What is moved for a set-up after another one."""
     if before is None:
         return
     here, there = Counter(holes_of(setup)), Counter(holes_of(before))
@@ -249,7 +245,6 @@ def moves_words(setup: SetUp, before: SetUp | None) -> Iterator[str]:
 
 
 def draw_pegs_plan(scene: Scene, setup: SetUp, room: Box, lengths: LengthUnit) -> None:
-    """Draws the plan of a set-up with the names of its holes, holding the first part that stands in them."""
     one = setup.standing
     workpiece, toolkit = one.member.query.workpiece, one.member.query.toolkit
     bench = bench_of(one.fixture, workpiece, toolkit)
@@ -261,7 +256,6 @@ def draw_pegs_plan(scene: Scene, setup: SetUp, room: Box, lengths: LengthUnit) -
 
 
 def draw_parts(scene: Scene, benches: Sequence[tuple[Holding, Bench]], room: Box, titles: Titles) -> None:
-    """Draws parts as they lie, to one scale, each in a cell with its name, and below them their table."""
     rows = [table_row(one, titles) for one, _ in benches]
     notes = [
         line for note in notes_of([one for one, _ in benches]) for line in wrapped(note, SMALL, room.width)
@@ -312,7 +306,6 @@ def grid(count: int, room: Box) -> list[Box]:
 
 
 def table_head(one: Holding, titles: Titles) -> list[str]:
-    """The headings of the table of parts."""
     sign, of = titles.lengths.sign, titles.figure.unit
     settings = settings_of(one.fixture, one.member.query.toolkit)
     unit = sign if of == "mm" else of
@@ -324,7 +317,6 @@ def table_head(one: Holding, titles: Titles) -> list[str]:
 
 
 def table_row(one: Holding, titles: Titles) -> list[str]:
-    """What is set and programmed for a part."""
     fixture, number = one.fixture, titles.lengths.number
     x, y = fixture.pose.apply(*one.member.zero.point)
     return [
@@ -386,9 +378,7 @@ def draw_table(
 ) -> None:
     """Draws the table of parts, numbers on the right of their columns, and the notes below it.
 
-    Parameters
-    ----------
-    most : lines of a name.
+    Names have ``most`` lines at most.
     """
     widths = column_widths(head, rows, room.width)
     heads = [in_two(words) for words in head]
@@ -424,7 +414,6 @@ def in_two(words: str) -> tuple[str, str]:
 
 
 def draw_foot(scene: Scene, titles: Titles, page: str) -> None:
-    """Writes date, program and page at the foot."""
     width, height = LANDSCAPE
     words = f"{titles.day.isoformat()} · workhold {__version__} · {page}"
     scene.text((width - EDGE, height - EDGE - 4), words, 11, "end", fill=GREY)

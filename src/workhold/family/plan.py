@@ -175,7 +175,6 @@ class Holding:
 
     @property
     def figure(self) -> float:
-        """The figure of which losses are computed."""
         return float(self.row.quality[0, figure_number(self.member.query.ranking[0]) or 0])
 
 
@@ -221,7 +220,6 @@ class Plan:
 
 
 def plan_of(point: Point, table: LossTable, members: Sequence[Member]) -> Plan:
-    """The plan at a point of a family's curve."""
     losses = table.losses_of(point.patterns)
     # Where two patterns suit a member alike, the one with the smaller identity has it.
     suits = np.argmin(np.where(np.isnan(losses), np.inf, losses), axis=0)
@@ -234,7 +232,6 @@ def plan_of(point: Point, table: LossTable, members: Sequence[Member]) -> Plan:
 
 
 def holding(member: Member, words: NDArray[np.int64]) -> Holding:
-    """How the best fixture of a member with a pattern lies."""
     place = int(np.flatnonzero((member.words == words).all(axis=1))[0])
     row = member.table.take(slice(place, place + 1))
     return Holding(

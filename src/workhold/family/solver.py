@@ -43,14 +43,8 @@ def best_choice(
 ) -> tuple[list[int] | None, float | None]:
     """The numbers of the things to choose so that their costs (N,) are least, and a lower bound of the cost.
 
-    Parameters
-    ----------
-    constraint : of SciPy, on whether each of the things is chosen, 0 or 1.
-    seconds : time limit, after which it is the best choice known; None for none.
-
-    Returns
-    -------
-    Each of the two is None where it is not known.
+    The constraint is one of SciPy on whether each of the things is chosen, 0 or 1. After ``seconds``, None
+    for no limit, it is the best choice known. Each of the two is None where it is not known.
     """
     from scipy.optimize import Bounds, milp
 

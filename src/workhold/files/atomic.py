@@ -34,13 +34,7 @@ unfinished: set[Path] = set()
 
 
 def refuse_unwritable(path: str | Path) -> None:
-    """Refuses an output file that could not be written in the end, before any work is done for it.
-
-    Raises
-    ------
-    InputError
-        When the path is a folder, lies in a folder that does not exist, or cannot be written.
-    """
+    """Refuses an output file that could not be written in the end, before any work is done for it."""
     path = Path(path)
     target = resolved_file(path)
     with plain_errors(path):
@@ -52,13 +46,7 @@ def refuse_unwritable(path: str | Path) -> None:
 
 
 def refuse_unwritable_folder(path: str | Path) -> None:
-    """Refuses an output folder that could not be created or written in the end; creates nothing.
-
-    Raises
-    ------
-    InputError
-        When the path, or what it lies in, is no folder or cannot be written.
-    """
+    """Refuses an output folder that could not be created or written in the end; creates nothing."""
     path = Path(path)
     with plain_errors(path):
         existing = resolved(path)
@@ -71,13 +59,7 @@ def refuse_unwritable_folder(path: str | Path) -> None:
 
 @contextmanager
 def text_file(path: str | Path) -> Iterator[IO[str]]:
-    """A text file (UTF-8, ``\\n`` line ends) that takes its name only when the block ends without an error.
-
-    Raises
-    ------
-    InputError
-        When the file cannot be written.
-    """
+    """A text file (UTF-8, ``\\n`` line ends) that takes its name only when the block ends without an error."""
     with (
         replacement(Path(path)) as descriptor,
         os.fdopen(descriptor, "w", encoding="utf-8", newline="\n") as stream,
@@ -101,13 +83,7 @@ def binary_file(path: str | Path) -> Iterator[BinaryIO]:
 
 
 def write_bytes(path: str | Path, content: bytes) -> None:
-    """Writes a whole file of bytes, or leave an earlier one as it was.
-
-    Raises
-    ------
-    InputError
-        When the file cannot be written.
-    """
+    """Writes a whole file of bytes, or leave an earlier one as it was."""
     with replacement(Path(path)) as descriptor, os.fdopen(descriptor, "wb") as stream:
         stream.write(content)
 

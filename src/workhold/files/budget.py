@@ -65,7 +65,6 @@ class FileLimits:
     remedy: str = "save less in it"
 
     def seconds_for(self, size: int) -> float | None:
-        """The processor seconds for a file of so many bytes."""
         return None if self.seconds is None else self.seconds + self.seconds_per_million * size / 1e6
 
 
@@ -194,13 +193,7 @@ class Budget:
         self.work(elements)
 
     def foresee(self, elements: int) -> None:
-        """Refuses elements that the reader is about to go through, where they are more than it may.
-
-        Raises
-        ------
-        InputError
-            Then.
-        """
+        """Refuses elements that the reader is about to go through, where they are more than it may."""
         most = self.limits.most_elements
         if most is not None and self.elements + elements > most:
             raise OverBudgetError(
@@ -209,16 +202,9 @@ class Budget:
             )
 
     def count_letters(self, letters: int, label: str) -> None:
-        """Counts letters of a text that is part of a file.
+        """Counts letters of a text that is part of a file; refuses more than such a file may have bytes.
 
-        Parameters
-        ----------
-        label : the text, in words that begin a sentence.
-
-        Raises
-        ------
-        InputError
-            Where there are more than such a file may have bytes.
+        ``label`` is the text, in words that begin a sentence.
         """
         self.letters += letters
         most = self.limits.most_bytes
@@ -242,13 +228,7 @@ class Budget:
             self.check_time()
 
     def check_time(self) -> None:
-        """Refuses the file if the reader has worked on it for longer than it may.
-
-        Raises
-        ------
-        InputError
-            Then.
-        """
+        """Refuses the file if the reader has worked on it for longer than it may."""
         if self.seconds is not None and time.thread_time() - self.started > self.seconds:
             raise OverBudgetError(
                 f"reading it was given up after {self.seconds:.0f} s, the most for {self.limits.what} of its "
@@ -257,16 +237,9 @@ class Budget:
 
     @contextmanager
     def nested(self, label: str) -> Iterator[None]:
-        """Counts what is read inside as one level deeper.
+        """Counts what is read inside as one level deeper; refuses what is deeper than the limit.
 
-        Parameters
-        ----------
-        label : the element, in words that begin a sentence.
-
-        Raises
-        ------
-        InputError
-            Where it is deeper than the limit.
+        ``label`` is the element, in words that begin a sentence.
         """
         try:
             self.enter(lambda: label)

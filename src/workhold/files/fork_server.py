@@ -154,7 +154,6 @@ def forked(module: str, command: Sequence[str]) -> ForkedProcess | None:
 
 @atexit.register
 def end_servers() -> None:
-    """Ends this process's server with it."""
     while SERVERS:
         SERVERS.pop().end()
 
@@ -162,10 +161,8 @@ def end_servers() -> None:
 def serve(load: Callable[[str], object], work: Callable[[], None]) -> None:
     """Forks a process for each order, until standard input is closed or nothing is asked; the server's main.
 
-    Parameters
-    ----------
-    load : loads what the work of a module needs.
-    work : what each process does, with streams of its own; it never returns.
+    ``load`` loads what the work of a module needs. ``work`` is what each process does, with streams of its
+    own; it never returns.
     """
     line = socket.socket(fileno=0)
     # Nobody waits for the processes that wait for others.

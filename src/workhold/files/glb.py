@@ -56,7 +56,6 @@ class Mesh:
 
 
 def body_mesh(body: FixtureBody) -> Mesh:
-    """The mesh of a body."""
     parts = [part for slab in body.slabs for part in slab_parts(slab)]
     points, outward, triangles = zip(*parts, strict=True)
     first = np.cumsum([0, *map(len, points[:-1])])

@@ -101,13 +101,11 @@ def optional(kind: Any, row: ToolkitField) -> tuple[Any, Any]:
 
 
 def one_of(forms: Mapping[str, Any]) -> Any:
-    """The type of a value that has one of the forms, by its kind."""
     several = [Annotated[form, Tag(f"<{noun}>")] for noun, form in forms.items()]
     return Annotated[reduce(or_, several), Discriminator(tag_of)]
 
 
 def tag_of(value: Any) -> str:
-    """Which form a toolkit's keys have."""
     return (
         f"<{table_of(value.get('kind') if isinstance(value, dict) else getattr(value, 'kind', None)).noun}>"
     )
@@ -151,11 +149,6 @@ def entry_of(row: ToolkitField) -> tuple[Any, Any]:
     return (TYPES[row.form], ...) if row.is_required else (TYPES[row.form] | None, None)
 
 
-def table_key(name: str) -> str:
-    """What the table of supports or of a clamp on top is called in a file."""
-    return name.replace("_", "-")
-
-
 # By the noun of their tables.
 FORMS = forms_by_noun(
     ToolkitForm,
@@ -163,7 +156,8 @@ FORMS = forms_by_noun(
     entry_of,
     summary="{}, as its file describes it.",
     hardware={
-        name: (kind, Field(default=None, alias=table_key(name))) for name, (kind, _) in HARDWARE_KEYS.items()
+        name: (kind, Field(default=None, alias=name.replace("_", "-")))
+        for name, (kind, _) in HARDWARE_KEYS.items()
     },
 )
 
@@ -179,13 +173,7 @@ WANTED = {
 
 
 def checked_toolkit(content: Mapping[str, Any]) -> dict[str, Any]:
-    """The entries of a toolkit's file that are given, each of the type it should have.
-
-    Raises
-    ------
-    InputError
-        Naming the first entry that is not of this shape.
-    """
+    """The entries of a toolkit's file that are given, each of the type it should have."""
     kind = content.get("kind", USUAL)
     noun = table_of(kind_of(kind)[0] if isinstance(kind, str) else None).noun
     try:
@@ -233,13 +221,7 @@ class WorkpieceFile(BaseModel):
 
 
 def checked_workpiece(content: dict[str, Any]) -> dict[str, Any]:
-    """Name (None when there is none), units and loops of a workpiece, each of the type it should have.
-
-    Raises
-    ------
-    InputError
-        Naming the place of the first thing that is not of this shape.
-    """
+    """Name (None when there is none), units and loops of a workpiece, each of the type it should have."""
     try:
         return WorkpieceFile.model_validate(content).model_dump()
     except ValidationError as error:

@@ -208,6 +208,5 @@ def directions(value: Any, place: str) -> tuple[float, float]:
 
 
 def shown(value: Any) -> str:
-    """A value as a message shows it."""
     text = f"'{value}'" if isinstance(value, str) else str(value)
     return text if len(text) <= 60 else text[:57] + "..."

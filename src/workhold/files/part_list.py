@@ -123,12 +123,7 @@ def drawings_in(folder: Path, apart: set[str]) -> Iterator[Path]:
     """The drawings in a folder: its own first, then those of each folder in it.
 
     Links that lead nowhere, pipes and inner folders that cannot be looked into stand among them: reading them
-    says what they are.
-
-    Raises
-    ------
-    InputError
-        When the folder itself cannot be looked into.
+    says what they are. Refuses a folder that cannot itself be looked into.
     """
     # Each with where it really lies: asking for that anew would look at all folders above it every time.
     waiting = [(folder, Path(os.path.realpath(folder)))]

@@ -92,54 +92,26 @@ def number_or_name(part: int | str | None) -> int | str | None:
 
 
 def refuse_layers(layers: Sequence[str] | None) -> None:
-    """Refuses a choice of layers for a file that has none.
-
-    Raises
-    ------
-    InputError
-        When layers were chosen.
-    """
+    """Refuses a choice of layers for a file that has none."""
     if layers is not None:
         raise InputError(f"layers can be chosen in DXF files only: leave {LAYERS} out.")
 
 
 def refuse_fit(fit: float | None) -> None:
-    """Refuses a fit for a built-in part, and for the outline of a solid in a result file.
-
-    Raises
-    ------
-    InputError
-        When a fit was given.
-    """
+    """Refuses a fit for a built-in part, and for the outline of a solid in a result file."""
     if fit is not None:
         raise InputError(f"its outline has no chords for arcs: leave {FIT} out.")
 
 
 def refuse_axis(options: Mapping[str, object]) -> None:
-    """Refuses a view of a solid for a file that holds a flat drawing.
-
-    Parameters
-    ----------
-    options : answers to questions by their names; those on solids are looked at.
-
-    Raises
-    ------
-    InputError
-        When an axis, a section or a height was chosen.
-    """
+    """Refuses an axis, a section or a height of a solid for a file that holds a flat drawing."""
     for question in OF_SOLIDS:
         if options.get(question[1:-1]) is not None:
             raise InputError(f"only a STEP file can be looked at along an axis: leave {question} out.")
 
 
 def by_height(options: Mapping[str, object], fit: float | None) -> bool:
-    """Whether a solid is to be looked at by the height of the pegs.
-
-    Raises
-    ------
-    InputError
-        When a section or a fit is wanted besides.
-    """
+    """Whether a solid is to be looked at by the height of the pegs; refuses a section or a fit besides."""
     usual: tuple[object, ...] = (None, {})
     asked = [
         mark for mark in (PEG_HEIGHT, HEAD_ROOM, LEAST_BAND, HEIGHTS) if options.get(mark[1:-1]) not in usual

@@ -112,11 +112,6 @@ def refuse_other_ending(path: str | Path, own: Sequence[str], what: str) -> None
     ----------
     own : endings of such files, in small letters.
     what : such a file, in words.
-
-    Raises
-    ------
-    InputError
-        Naming the endings that it may have.
     """
     ending = Path(path).suffix.lower()
     if ending in ENDINGS and ending not in own:
@@ -124,7 +119,6 @@ def refuse_other_ending(path: str | Path, own: Sequence[str], what: str) -> None
 
 
 def is_same(path: Path, given: str | Path) -> bool:
-    """Whether a path and another name lead to the same file."""
     try:
         return path.samefile(given)
     except (OSError, ValueError):

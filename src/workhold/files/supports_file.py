@@ -34,13 +34,6 @@ __all__ = ["query_of", "read_supports", "supports_entry", "write_supports"]
 
 
 def query_of(part: SupportsPart, path: Path) -> Query:
-    """The part and the toolkit of a file of supports.
-
-    Raises
-    ------
-    InputError
-        When they cannot be used.
-    """
     try:
         return checked_head(part.head(), path).query()
     except InputError as error:
@@ -122,7 +115,6 @@ def triple_of(
 
 
 def clamp_of(part: ReadFigures, point: tuple[float, float] | None) -> ClampFigures:
-    """The figures at one point of the clamp."""
     at = part.at or point or (0.0, 0.0)
     forces = part.clamp_needed, part.support_force
     return ClampFigures(at, *forces, part.arm, part.share, part.lift, part.hangs)
@@ -151,13 +143,7 @@ def write_supports(supports: Supports, path: str | Path, *, overwrite: bool = Fa
 
 
 def supports_entry(supports: Supports) -> dict[str, Any]:
-    """Supports as they are written.
-
-    Raises
-    ------
-    InputError
-        When the fixture is not one of a result.
-    """
+    """Supports as they are written; refuses a fixture that is not one of a result."""
     query, request = supports.query, supports.request
     band = (0.0, request.thickness) if request.band is None else request.band
     return {
@@ -242,7 +228,6 @@ def zone_entry(zone: Zone) -> dict[str, Any]:
 
 
 def triple_entry(triple: Triple) -> dict[str, Any]:
-    """A triple as it is written."""
     given = None if triple.given is None else known(triple.given)
     if given is not None:
         # It is at the point that the request names.
@@ -261,5 +246,4 @@ def triple_entry(triple: Triple) -> dict[str, Any]:
 
 
 def known(figures: ClampFigures) -> dict[str, Any]:
-    """Figures that are known."""
     return asdict(figures, filter=lambda _, value: value is not None and value is not False)

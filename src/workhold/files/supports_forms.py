@@ -150,7 +150,6 @@ class ReadFigures:
 
     @classmethod
     def of(cls, part: ClampFiguresPart) -> ReadFigures:
-        """Figures of their checked form."""
         at = None if part.at is None else (part.at[0], part.at[1])
         return cls(at, part.clamp_needed, part.support_force, part.arm, part.share, part.lift, part.hangs)
 

@@ -85,13 +85,7 @@ def read_limited(path: Path, limits: FileLimits) -> bytes:
 
 
 def read_at_most(path: Path, most: int | None) -> bytes:
-    """The bytes of a regular file; of one with more than ``most``, at least one more than that.
-
-    Raises
-    ------
-    OSError
-        When it cannot be read.
-    """
+    """The bytes of a regular file; of one with more than ``most``, at least one more than that."""
     size = path.stat().st_size
     with path.open("rb") as stream:
         # As many bytes as are asked for are set aside before any is read.
@@ -187,7 +181,6 @@ def refuse_long_numbers(value: Any) -> None:
 
 @lru_cache(maxsize=16)
 def decoder(hook: Callable[[dict[str, Any]], Any] | None) -> json.JSONDecoder:
-    """The decoder that makes something else of each object, or of none."""
     return json.JSONDecoder(
         parse_constant=refuse_constant,
         parse_int=whole_number,

@@ -159,13 +159,6 @@ class LoadedToolkit:
 
 
 def read_toolkit_file(path: Path) -> LoadedToolkit:
-    """The toolkit of a user's file.
-
-    Raises
-    ------
-    InputError
-        For a file that cannot be read or used, naming the entry.
-    """
     from workhold.files.input_forms import checked_toolkit
 
     try:
@@ -175,13 +168,7 @@ def read_toolkit_file(path: Path) -> LoadedToolkit:
 
 
 def described_toolkit(name: str, entries: Mapping[str, Any]) -> LoadedToolkit:
-    """The toolkit of a file's entries, which are of the right types.
-
-    Raises
-    ------
-    InputError
-        For values that no toolkit can have.
-    """
+    """The toolkit of a file's entries, which are of the right types; refuses values that no toolkit can have."""
     unit = unit_named(entries["unit"])
     if unit.name not in ("mm", "inch"):
         raise InputError('the unit of a toolkit is "mm" or "inch".')
@@ -366,7 +353,6 @@ def load_toolkit(name: str | Path) -> LoadedToolkit:
 
 
 def preset_names_of(kind: type[Toolkit]) -> tuple[str, ...]:
-    """Lists the presets that are toolkits of a class."""
     return tuple(name for name in preset_names() if KINDS[preset(name).kind] is kind)
 
 

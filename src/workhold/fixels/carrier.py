@@ -83,7 +83,6 @@ class Holes:
 
     @property
     def name(self) -> str:
-        """What it is called."""
         return hole_name(self.carrier, self.column, self.row)
 
 
@@ -94,11 +93,6 @@ def holes_named(name: str, carriers: Iterable[str], noun: str) -> Holes:
     ----------
     name : in any mixture of capitals, with or without the hyphen.
     carriers, noun : the names of the carriers it may be on, and what one of them is called.
-
-    Raises
-    ------
-    InputError
-        When it is no such name.
 
     Examples
     --------
@@ -230,7 +224,6 @@ class Carrier:
 
     @property
     def contact(self) -> ContactKind:
-        """The kind of contact that what stands on it makes with the part."""
         if self.is_wall:
             return WALL_END
         if self.on is not None:

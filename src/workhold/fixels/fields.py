@@ -248,11 +248,7 @@ WALL_OFFSET = ToolkitField(
 def heights_of(carrier: str, whose: str, belongs_to: str) -> ToolkitField:
     """Returns the field of the heights between which what stands on a carrier touches.
 
-    Parameters
-    ----------
-    carrier : its name, of which the field's name is made.
-    whose : what it is the height of, such as "the clamp's tip".
-    belongs_to : as of any field.
+    ``whose`` is what it is the height of, such as "the clamp's tip".
     """
     return ToolkitField(
         f"{carrier}_heights",

@@ -62,14 +62,7 @@ def refuse_lattice(
 ) -> None:
     """Refuses a lattice that cannot be, and pegs too fat for neighbouring holes.
 
-    Parameters
-    ----------
-    noun, peg : what the lattice and what stands in its holes are called.
-
-    Raises
-    ------
-    InputError
-        Naming the value.
+    ``noun`` and ``peg`` are what the lattice and what stands in its holes are called.
     """
     for value in pitch:
         if not (isfinite(value) and value > 0):
@@ -89,13 +82,7 @@ def refuse_lattice(
 
 
 def refuse_many_holes(columns: int | None, rows: int | None, noun: str) -> None:
-    """Refuses more holes than can be looked through.
-
-    Raises
-    ------
-    InputError
-        With their number and the limit.
-    """
+    """Refuses more holes than can be looked through."""
     holes = (columns or 1) * (rows or 1)
     if holes > MOST_HOLES:
         raise InputError(
@@ -117,10 +104,7 @@ BOUNDS = {
 def made_from_table(kind: Kind) -> Kind:
     """Makes a frozen attrs class of a kind, whose annotations name the fields, from the table of its fields.
 
-    Raises
-    ------
-    KeyError
-        For an annotation without a row.
+    Raises KeyError for an annotation without a row.
     """
     rows = {row.name: row for row in kind.table.fields}
     names = [name for name, form in kind.__annotations__.items() if not str(form).startswith("ClassVar")]
@@ -160,17 +144,7 @@ def all_holes(holes: Iterable[Holes | str], *, carriers: tuple[str, ...], noun: 
 
 
 def two_lengths(value: Iterable[float] | None, *, wrong: str) -> tuple[float, float] | None:
-    """Returns two lengths, or None.
-
-    Parameters
-    ----------
-    wrong : what is said of anything else, for which "{value}" stands.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
+    """Returns two lengths, or None; refuses anything else with ``wrong``, where "{value}" stands for it."""
     if value is None:
         return None
     numbers = tuple(value) if isinstance(value, Iterable) else (value,)
@@ -182,10 +156,7 @@ def two_lengths(value: Iterable[float] | None, *, wrong: str) -> tuple[float, fl
 def direction_names(value: str | Iterable[Any] | None) -> tuple[Any, ...]:
     """Returns directions, or pairs of them, in the order of ``DIRECTIONS``; none for None.
 
-    Raises
-    ------
-    InputError
-        For what is no direction, and no pair where there are pairs.
+    Refuses anything else.
     """
     if value is None:
         return ()
@@ -209,13 +180,7 @@ def direction_names(value: str | Iterable[Any] | None) -> tuple[Any, ...]:
 
 
 def refuse_direction(name: Any) -> None:
-    """Refuses what is no direction of a clamp.
-
-    Raises
-    ------
-    InputError
-        Naming those that are.
-    """
+    """Refuses what is no direction of a clamp."""
     if not isinstance(name, str) or name not in DIRECTIONS:
         raise InputError(
             f"direction {name!r} is none in which a clamp moves: choose among {', '.join(DIRECTIONS)}."
@@ -243,15 +208,8 @@ CONVERTERS: dict[str, Callable[[Any], Any]] = {
 def settle(toolkit: Any, *, noun: str, peg: str) -> None:
     """Puts in what follows from other fields, and refuses values that cannot be.
 
-    Parameters
-    ----------
-    toolkit : whose fields are converted; values that follow from others are put into it.
-    noun, peg : what a lattice of it and what stands in its holes are called.
-
-    Raises
-    ------
-    InputError
-        Naming the value and the remedy.
+    The toolkit's fields are converted; values that follow from others are put into it. ``noun`` and ``peg``
+    are what a lattice of it and what stands in its holes are called.
     """
     rows = toolkit.table.fields
     for row in rows:
@@ -271,13 +229,7 @@ def settle(toolkit: Any, *, noun: str, peg: str) -> None:
 
 
 def refuse_out_of_bounds(toolkit: Any, row: ToolkitField) -> None:
-    """Refuses a value below what it must be at least, or too large to reckon with.
-
-    Raises
-    ------
-    InputError
-        Naming the value and the bound.
-    """
+    """Refuses a value below what it must be at least, or too large to reckon with."""
     value = getattr(toolkit, row.name)
     match row.form:
         case "length" if value is not None:
@@ -309,13 +261,7 @@ def refuse_out_of_bounds(toolkit: Any, row: ToolkitField) -> None:
 
 
 def refuse_blocked(toolkit: Any, row: ToolkitField) -> None:
-    """Refuses blocked holes that there are not, too many of them, and a carrier without a free hole.
-
-    Raises
-    ------
-    InputError
-        Naming the hole or the carrier.
-    """
+    """Refuses blocked holes that there are not, too many of them, and a carrier without a free hole."""
     blocked, columns, rows, noun = getattr(toolkit, row.name), toolkit.columns, toolkit.rows, row.carrier_noun
     if len(blocked) > MOST_BLOCKED:
         raise InputError(
@@ -336,13 +282,9 @@ def refuse_blocked(toolkit: Any, row: ToolkitField) -> None:
 
 
 def lattice_carrier(toolkit: Any, name: str, **others: Any) -> Carrier:
-    """A carrier with the holes and pegs of a toolkit.
+    """A carrier with the pitch, counts of holes, peg radius, flat and blocked holes of a toolkit.
 
-    Parameters
-    ----------
-    toolkit : whose pitch, counts of holes, peg radius, flat and blocked holes the carrier has.
-    name : of the carrier.
-    others : what else it has, or has instead.
+    ``others`` is what else it has, or has instead.
     """
     size = toolkit.pitch, toolkit.columns, toolkit.rows, toolkit.peg_radius, toolkit.peg_radius
     rows = (row for row in toolkit.table.fields if row.form == "holes")

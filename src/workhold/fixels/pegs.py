@@ -41,11 +41,6 @@ class Flat:
 def flat_of(value: Any) -> Flat | None:
     """A flat from what stands for it: its distance, that and half its width, or a mapping of both.
 
-    Raises
-    ------
-    InputError
-        For anything else.
-
     Examples
     --------
     >>> flat_of({"distance": 2.0, "half_width": 1.5}) == flat_of((2.0, 1.5))
@@ -66,13 +61,7 @@ def flat_of(value: Any) -> Flat | None:
 
 
 def resolved_flat(flat: Flat | None, peg_radius: float) -> Flat | None:
-    """A flat on a peg of a radius in mm, as wide as it is.
-
-    Raises
-    ------
-    InputError
-        For a flat that such a peg cannot have.
-    """
+    """A flat on a peg of a radius in mm, as wide as it is; refuses one that such a peg cannot have."""
     if flat is None:
         return None
     if not (isfinite(flat.distance) and 0 <= flat.distance <= peg_radius):

@@ -88,7 +88,6 @@ class Datum:
 
     @classmethod
     def at_hole(cls, plate: Carrier) -> Datum:
-        """The first hole of a plate."""
         name, hole = hole_name(plate.name, 0, 0), f"hole {hole_name(plate.name, 0, 0)}"
         return cls(
             name=name,

@@ -28,7 +28,6 @@ USUAL = "usual"
 
 
 def length_row(name: str, least: Any, figure: str, label: str) -> ToolkitField:
-    """A row of a length that may be left out."""
     return ToolkitField(name, "length", figure, (PageLabel(label, USUAL),), least=least, figure=figure)
 
 
@@ -88,13 +87,7 @@ LIMITS = FieldTable(
 
 
 def refuse_wrong(hardware: Hardware) -> None:
-    """Refuses lengths that cannot be.
-
-    Raises
-    ------
-    InputError
-        Naming the table, the entry and the remedy.
-    """
+    """Refuses lengths that cannot be."""
     for row in hardware.table.fields:
         value, words = getattr(hardware, row.name), f"{hardware.table.noun.replace('_', '-')}: {row.words}"
         if row.form in ("length", "stress") and value is not None:

@@ -163,7 +163,6 @@ class ToolkitField:
 
     @property
     def option(self) -> str:
-        """The command line's option."""
         return f"--{(self.word or self.name).replace('_', '-')}"
 
     @property
@@ -173,7 +172,6 @@ class ToolkitField:
 
     @property
     def is_required(self) -> bool:
-        """Whether it must be given."""
         return self.default is REQUIRED
 
     def shown(self, *labels: PageLabel, **changes: Any) -> ToolkitField:

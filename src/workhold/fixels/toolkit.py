@@ -189,7 +189,6 @@ class Toolkit:
 
     @property
     def contacts(self) -> frozenset[ContactKind]:
-        """The kinds of contact that it can make with a part."""
         return frozenset(carrier.contact for carrier in self.carriers)
 
     @property
@@ -235,17 +234,14 @@ class Toolkit:
 
     @property
     def has_flats(self) -> bool:
-        """Whether some of its pegs have a flat."""
         return any(carrier.flat is not None for carrier in self.carriers)
 
     @property
     def peg_count(self) -> int:
-        """How many pegs hold the part."""
         return len(self.arrangements[0].carriers)
 
     @property
     def types(self) -> tuple[str, ...]:
-        """The names of the arrangements."""
         return tuple(dict.fromkeys(arrangement.name for arrangement in self.arrangements))
 
     @property
@@ -315,19 +311,11 @@ class Toolkit:
         return names
 
     def changed(self, fields: Mapping[str, Any]) -> Self:
-        """The toolkit with some of its fields changed.
-
-        Raises
-        ------
-        InputError
-            When there is no such toolkit.
-        """
         # Other pegs are as good as nobody says.
         others = {"tolerance": None} if PEG_RADIUS in fields else {}
         return evolve(self, **others, **fields)  # type: ignore[misc]
 
     def without(self, limits: Iterable[Limit]) -> Self:
-        """The toolkit without some of its limits."""
         return self.changed({name: value for limit in limits for name, value in limit.lifted.fields.items()})
 
     @property
@@ -342,7 +330,6 @@ class Toolkit:
 
     @property
     def moving(self) -> Carrier:
-        """The carrier that moves."""
         return next(carrier for carrier in self.carriers if carrier.travel is not None)
 
     @property
@@ -370,11 +357,9 @@ class Toolkit:
         return np.array([one.carriers for one in self.arrangements], np.int8).take(arrangement, axis=0)
 
     def carrier(self, name: str) -> Carrier:
-        """The carrier of a name."""
         return next(carrier for carrier in self.carriers if carrier.name == name)
 
     def carrier_numbers(self, names: Iterable[str]) -> list[int]:
-        """The numbers of the carriers of some names."""
         known = [carrier.name for carrier in self.carriers]
         return [known.index(name) for name in names]
 

@@ -78,7 +78,6 @@ def biarcs(pieces: Pieces, tolerance: float, interrupt: Callable[[], None] = go_
 
 
 def smooth_biarcs(pieces: Pieces, tolerance: float, interrupt: Callable[[], None]) -> Iterator[FittedCurve]:
-    """Biarcs in place of a curve without corners."""
     total = float(len(pieces))
     place, step = 0.0, total
     while place < total:
@@ -154,7 +153,6 @@ def biarc(pieces: Pieces, first: float, last: float, tolerance: float) -> Fitted
 
 
 def less(p: Point, q: Point) -> Point:
-    """The vector from q to p."""
     return p[0] - q[0], p[1] - q[1]
 
 
@@ -249,7 +247,6 @@ def fitted_curve(
 
 
 def put_together(runs: list[FittedCurve], is_disguise: bool) -> FittedCurve:
-    """One curve of runs that follow each other."""
     points = [runs[0].points[0]]
     for run in runs:
         points += run.points[1:]

@@ -295,7 +295,6 @@ def touches_along(
 
 
 def end_of(pieces: HullPieces, number: int, normal: Array) -> HullEnd:
-    """The end of a hull edge on a piece."""
     (x, y), radius = pieces.center[number].tolist(), float(pieces.radius[number])
     nx, ny = normal.tolist()
     return HullEnd((x + radius * nx, y + radius * ny), pieces.faces[number], (x, y), radius, along=False)

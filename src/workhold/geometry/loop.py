@@ -109,7 +109,6 @@ class LoopShape:
 
     @classmethod
     def of(cls, segments: Sequence[Segment]) -> LoopShape:
-        """The shape of some segments."""
         return cls(tuple(segments), np.array([bounding_box(segment) for segment in segments]))
 
     @cached_property
@@ -249,13 +248,7 @@ def reversed_vertices(vertices: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def refuse_no_area(shape: LoopShape, loop: str) -> None:
-    """Refuses a loop that runs back along itself.
-
-    Raises
-    ------
-    InputError
-        Naming the loop.
-    """
+    """Refuses a loop that runs back along itself."""
     if abs(signed_area(shape.segments)) <= TOUCHING * sum(segment.length for segment in shape.segments):
         raise InputError(f"{loop} encloses no area, it runs back along itself: draw the outline of the part.")
 
@@ -420,7 +413,6 @@ class Face:
 
 
 def merged(run: Sequence[Segment]) -> Segment:
-    """One segment for a run of segments of the same line or circle."""
     first = run[0]
     if len(run) == 1:
         return first

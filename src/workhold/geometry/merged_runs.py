@@ -384,11 +384,8 @@ def runs_merged(
 ) -> list[Piece]:
     """The longest runs one after the other; those of fewer than ``LEAST_CHORDS`` chords are lines only.
 
-    Parameters
-    ----------
-    near : how far vertices may be from a line or an arc, in mm.
-    tolerance : the same for chords between them; for arcs it is ``DISGUISE`` at most.
-    least : of chords in a run.
+    Vertices may be ``near`` mm from a line or an arc, chords between them ``tolerance``, for arcs
+    ``DISGUISE`` at most. A run has ``least`` chords or more.
     """
     points = points_of([*pieces, pieces[0]])
     corner = np.abs(turns_of(pieces)) > CORNER_OF_CHORDS
@@ -452,7 +449,6 @@ def one_piece(
 
 
 def with_middles(pieces: Sequence[Piece], points: Array) -> Array:
-    """Vertices and the middles of arcs."""
     chords = np.diff(points, axis=0)
     bulges = np.array([piece.bulge for piece in pieces])[:, None]
     middles = points[:-1] + chords / 2 + np.column_stack([chords[:, 1], -chords[:, 0]]) * bulges / 2

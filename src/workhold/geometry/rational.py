@@ -161,7 +161,6 @@ def raised(pieces: Pieces, degree: int) -> Pieces:
 
 
 def joined_pieces(curves: list[Pieces]) -> Pieces:
-    """One curve of several that follow each other."""
     degree = max(pieces.shape[1] for pieces in curves) - 1
     return np.concatenate([raised(pieces, degree) for pieces in curves])
 
@@ -214,7 +213,6 @@ def cut(pieces: Pieces, first: float, last: float) -> Pieces:
 
 
 def point_at(pieces: Pieces, parameter: float) -> Point:
-    """The point of a curve at a parameter."""
     number = min(int(parameter), len(pieces) - 1)
     t = parameter - number
     n = pieces.shape[1] - 1
@@ -328,16 +326,8 @@ def turning(u: Array, v: Array) -> Array:
 def departure(pieces: Pieces, segment: Segment, limit: float) -> float:
     """A bound on how far a curve and a line or arc between the same ends are from each other, in mm.
 
-    Parameters
-    ----------
-    pieces : the curve; its ends are those of the segment, but for rounding, or the segment is a full circle.
-    segment : the line or arc.
-    limit : the largest bound that is of use.
-
-    Returns
-    -------
-    float
-        The bound; infinity where it is not shown to be within the limit, or the curve does not run forward.
+    Ends agree but for rounding; the segment may also be a full circle. ``limit`` is the largest bound that is
+    of use: it is infinity where that is not shown to hold, or the curve does not run forward.
     """
     for halving in range(MOST_HALVINGS + 1):
         reached, bound, forward = measured(pieces, segment)

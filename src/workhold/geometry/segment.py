@@ -93,7 +93,6 @@ class Line:
         return (point[0] - x) * tx + (point[1] - y) * ty
 
     def row(self) -> tuple[float, ...]:
-        """The segment as a kernel row."""
         return (0.0, *self.middle, *self.tangent, self.half_extent, 0.0, 1.0, 0.0, 0.0)
 
     def part(self, low: float, high: float) -> Line:
@@ -142,17 +141,14 @@ class Arc:
 
     @property
     def is_full(self) -> bool:
-        """Whether the arc is a whole circle."""
         return self.half_sweep >= pi
 
     @property
     def start(self) -> Point:
-        """First point in running direction."""
         return self.at(-self.sign * self.half_sweep)
 
     @property
     def end(self) -> Point:
-        """Last point in running direction."""
         return self.at(self.sign * self.half_sweep)
 
     def at(self, parameter: float) -> Point:
@@ -177,7 +173,6 @@ class Arc:
         return atan2(mx * dy - my * dx, radius + mx * dx + my * dy)
 
     def row(self) -> tuple[float, ...]:
-        """The segment as a kernel row."""
         direction = (cos(self.mid_angle), sin(self.mid_angle))
         return (1.0, *self.center, *direction, self.half_sweep, self.radius, self.sign, *self.rest)
 
@@ -361,23 +356,19 @@ class Box:
 
     @classmethod
     def about(cls, center: Point, width: float, height: float) -> Box:
-        """The box of a width and a height about a point."""
         x, y = center
         return cls(x - width / 2, y - height / 2, x + width / 2, y + height / 2)
 
     @property
     def width(self) -> float:
-        """Extent along x."""
         return self.x1 - self.x0
 
     @property
     def height(self) -> float:
-        """Extent along y."""
         return self.y1 - self.y0
 
     @property
     def center(self) -> Point:
-        """The middle."""
         return (self.x0 + self.x1) / 2, (self.y0 + self.y1) / 2
 
     @property
@@ -386,21 +377,17 @@ class Box:
         return [(self.x0, self.y0), (self.x1, self.y0), (self.x1, self.y1), (self.x0, self.y1)]
 
     def grown(self, margin: float) -> Box:
-        """The box with every side moved out."""
         return Box(self.x0 - margin, self.y0 - margin, self.x1 + margin, self.y1 + margin)
 
     def union(self, other: Box) -> Box:
-        """The smallest box around both."""
         return Box(
             min(self.x0, other.x0), min(self.y0, other.y0), max(self.x1, other.x1), max(self.y1, other.y1)
         )
 
     def overlap(self, other: Box) -> float:
-        """Area shared with another box."""
         width = min(self.x1, other.x1) - max(self.x0, other.x0)
         height = min(self.y1, other.y1) - max(self.y0, other.y0)
         return max(width, 0.0) * max(height, 0.0)
 
     def contains(self, other: Box) -> bool:
-        """Whether another box lies inside."""
         return self.x0 <= other.x0 and self.y0 <= other.y0 and self.x1 >= other.x1 and self.y1 >= other.y1

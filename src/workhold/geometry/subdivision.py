@@ -98,7 +98,6 @@ class CutCarrier:
         return self.segment.parameter(point)
 
     def at(self, position: float) -> Point:
-        """The point at a position."""
         return self.segment.at(position)
 
     def left(self, position: float) -> Point:
@@ -327,7 +326,6 @@ class Carriers:
 
     @classmethod
     def of(cls, carriers: Sequence[CutCarrier]) -> Carriers:
-        """Carriers as arrays."""
         is_line = np.array([isinstance(one.segment, Line) for one in carriers], dtype=bool)
         across, powers, radii = [], [], []
         for carrier in carriers:
@@ -385,17 +383,14 @@ class BorderPiece:
 
     @property
     def start(self) -> Point:
-        """First point of the run."""
         return self.carrier.at(self.low if self.forward else self.high)
 
     @property
     def end(self) -> Point:
-        """Last point of the run."""
         return self.carrier.at(self.high if self.forward else self.low)
 
     @property
     def middle(self) -> Point:
-        """The point halfway."""
         return self.carrier.at((self.low + self.high) / 2)
 
     @property
@@ -411,7 +406,6 @@ class BorderPiece:
 
     @property
     def bulge(self) -> float:
-        """The DXF bulge of the run."""
         if isinstance(self.carrier.segment, Line):
             return 0.0
         quarter = (self.high - self.low) / 4
@@ -471,9 +465,7 @@ def border_pieces(
 def sides(places: Sequence[tuple[CutCarrier, float, float]], inside: Inside) -> list[tuple[bool, bool]]:
     """Whether points beside positions of carriers, on the left and the right of each, are inside.
 
-    Parameters
-    ----------
-    places : carrier, position, and how far beside it in mm.
+    A place is a carrier, a position, and how far beside it in mm.
     """
     points: list[Point] = []
     for carrier, position, beside in places:

@@ -80,7 +80,6 @@ class Sweep:
     diagonals: dict[int, list[int]] = field(factory=dict)
 
     def run(self) -> None:
-        """Goes over all vertices."""
         points = self.points
         order = sorted(range(len(points)), key=lambda k: (-points[k][1], points[k][0], k))
         place = {vertex: k for k, vertex in enumerate(order)}
@@ -106,7 +105,6 @@ class Sweep:
         self.helpers[v] = v
 
     def end(self, side: int, v: int) -> None:
-        """Drops the side that ends at a vertex."""
         if self.helpers[side] in self.merges:
             self.connect(v, self.helpers[side])
         self.sides.remove(side)
@@ -126,7 +124,6 @@ class Sweep:
         )
 
     def connect(self, v: int, other: int) -> None:
-        """Adds a diagonal."""
         self.diagonals.setdefault(v, []).append(other)
         self.diagonals.setdefault(other, []).append(v)
 
@@ -163,9 +160,7 @@ class Sweep:
 def monotone_triangles(piece: Sequence[int], points: Sequence[Point]) -> list[Triangle]:
     """Triangles of a piece that every horizontal line meets in one span.
 
-    Parameters
-    ----------
-    piece : numbers of its vertices, counter-clockwise.
+    The piece is given by the numbers of its vertices, counter-clockwise.
     """
     count = len(piece)
     order = sorted(range(count), key=lambda k: (-points[piece[k]][1], points[piece[k]][0], piece[k]))

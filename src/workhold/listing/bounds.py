@@ -89,12 +89,8 @@ def pair_bounds(
 ) -> Array:
     """Bounds (S, 3) of the pairs of clamps at seats, see ``kernels.contact.seats``.
 
-    Parameters
-    ----------
-    order : (M,) numbers of contacts, counted through all directions, seat by seat.
-    starts : (S,) where each seat begins in the order.
-    records, problems : of each direction.
-    query : what is asked.
+    ``order`` (M,) are numbers of contacts, counted through all directions, seat by seat, and ``starts`` (S,)
+    where each seat begins. Records and problems are those of each direction.
     """
     forces, directions = np.empty((len(order), FORCE_LENGTH)), np.empty(len(order), np.int64)
     seat = np.cumsum(np.bincount(starts, minlength=len(order))) - 1
@@ -165,7 +161,6 @@ def tilted_keys(query: Query, problem: Problem) -> OrderKeys | None:
 
     Parameters
     ----------
-    query : what is asked.
     problem : the search of it, or of one of its directions.
     """
     toolkit, part = query.toolkit, query.workpiece

@@ -47,7 +47,6 @@ class Rows:
         return len(getattr(self, fields(type(self))[0].name))
 
     def take(self, order: NDArray[np.int64] | NDArray[np.bool_]) -> Self:
-        """The rows of an index array or mask, in its order."""
         indices = np.flatnonzero(order) if order.dtype == np.bool_ else order
         return type(self)(*(getattr(self, one.name).take(indices, axis=0) for one in fields(type(self))))
 
@@ -84,7 +83,6 @@ class Candidates(Rows):
 
 
 def candidates_of(records: Array, problem: Problem) -> Candidates:
-    """Proven records as candidates."""
     count = len(records)
     feature, column, row = peg_integers(records)
     point, gap, null, force = (np.empty((count, *shape)) for shape in ((4, 2), (), (4,), (4,)))

@@ -81,7 +81,6 @@ class ClampContacts:
 
     @classmethod
     def joined(cls, parts: Sequence[ClampContacts]) -> ClampContacts:
-        """The contacts of several directions as one."""
         names = [one.name for one in fields(ClampContacts) if one.name != "hole_of"]
         starts = np.cumsum([0, *(len(part.theta) for part in parts)])
         hole_of = np.concatenate([part.hole_of + start for part, start in zip(parts, starts, strict=False)])
@@ -181,11 +180,8 @@ def sharpened(
 ) -> tuple[Array, Array, Array]:
     """Forces of the locators (N, 3), pushes and doubts (N,) of contacts.
 
-    They are computed in balls where doubles leave forces in doubt.
-
-    Parameters
-    ----------
-    push_off, doubt : (N,) how far pushes and forces may be off.
+    They are computed in balls where doubles leave forces in doubt. ``push_off`` and ``doubt`` (N,) are how
+    far pushes and forces may be off.
     """
     from workhold.proof.exact_contacts import sharp_reactions
 
@@ -234,13 +230,10 @@ def box_beside(
 
 
 def is_one_of_two(taken: Array, push: Array) -> BoolArray:
-    """Which clamps (N,) may be one of two: those that do not hold the part alone, and press no locator with
-    more than ``MOST_FORCE`` times their own force.
+    """Which clamps (N,) may be one of two: they neither hold the part alone nor press a locator too hard.
 
-    Parameters
-    ----------
-    taken : (N, 3) forces of the locators per unit of that on the clamp's face.
-    push : (N,) force of the clamp per unit of that on its face.
+    That is with more than ``MOST_FORCE`` times their own force. Forces ``taken`` (N, 3) of the locators and
+    ``push`` (N,) of the clamp are per unit of that on the clamp's face.
     """
     needs_another = taken.min(axis=1, initial=inf) <= NO_REACTION * (1.0 + np.abs(taken).sum(axis=1))
     return np.asarray(needs_another & (np.abs(taken).max(axis=1, initial=0.0) <= MOST_FORCE * push))

@@ -47,7 +47,6 @@ OPENING = np.array([Travel(angle, 0.0, None).unit for angle in DIRECTIONS.values
 
 
 def direction_number(toolkit: Toolkit) -> int:
-    """The number of the direction of a toolkit's only clamp."""
     return DIRECTION_NAMES.index(toolkit.arrangements[0].direction or "")
 
 

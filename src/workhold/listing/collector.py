@@ -157,7 +157,6 @@ class BestFixtures:
 
     @property
     def most(self) -> int:
-        """How many to keep."""
         assert self.problem.query.best is not None
         return self.problem.query.best
 
@@ -170,7 +169,6 @@ class BestFixtures:
         return self.needed
 
     def decide(self) -> None:
-        """Decides the records that wait, and keeps the best."""
         waiting, self.waiting = self.waiting, []
         parts = [] if self.kept is None else [self.kept]
         fresh = 0
@@ -205,7 +203,6 @@ class BestFixtures:
 
     @property
     def found_keys(self) -> OrderKeys:
-        """The keys of those kept."""
         self.decide()
         assert self.kept is not None
         table = measured(placed(self.kept, self.problem), self.problem)
@@ -296,7 +293,6 @@ class ResultCollector:
         return Needed()
 
     def decide(self, block: NDArray[np.float64]) -> None:
-        """Has a block decided."""
         self.deciding.append(self.pool.submit(self.decided, block))
         while len(self.deciding) > self.ahead:
             self.keep(*self.deciding.popleft().result())
@@ -307,12 +303,10 @@ class ResultCollector:
         return self.by_their_holes(candidates), account
 
     def by_their_holes(self, candidates: Candidates) -> SortedRun:
-        """Fixtures sorted by their holes."""
         key = key_of(*packed_holes(candidates, most_holes(self.problem)))
         return SortedRun.of(key, astuple(candidates, recurse=False))
 
     def keep(self, run: SortedRun, account: Account) -> None:
-        """Keeps decided fixtures."""
         self.by_holes.add(run)
         self.accounts.append(account)
 
@@ -399,7 +393,6 @@ class ResultCollector:
         measured.close()
 
     def ranked_run(self, part: Callable[[], SortedRun]) -> SortedRun:
-        """Measured fixtures in the order of their ranks."""
         run = part()
         *columns, error = run.columns
         if self.is_part and not self.course.is_stopped:
@@ -431,5 +424,4 @@ class ResultCollector:
 
 
 def taken(part: Callable[[], SortedRun]) -> SortedRun:
-    """A part of some runs, read and merged."""
     return part()

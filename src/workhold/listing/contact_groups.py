@@ -145,7 +145,6 @@ class SeatGroups:
         return SeatGroups(order, starts, self.bounds.followed_by(self.bounds.nothing))
 
     def between(self, groups: IntArray) -> SeatGroups:
-        """Some of the groups, with the bounds by their pairs."""
         assert self.sharpened is not None
         order, starts = self.among(groups)
         sharp, bounds = self.sharpened(order, starts), self.bounds.take(groups)

@@ -78,7 +78,6 @@ class Identity:
 
     @rotations.default
     def onto_itself(self) -> tuple[Rotation, ...]:
-        """The rotations of the part onto itself."""
         every = self.part.numbered
         return tuple(rotations_onto_itself([face.segment for face in every.faces], every.marks))
 
@@ -222,7 +221,6 @@ class SetCount:
         self.found = np.zeros(len(self.identity.toolkit.arrangements), np.int64)
 
     def add(self, table: FixtureTable) -> None:
-        """Counts further fixtures."""
         self.found += np.bincount(table.arrangement, minlength=len(self.found))
         if self.identity.is_symmetric and len(table):
             words, pose = self.identity.smallest(table)
@@ -237,7 +235,6 @@ class SetCount:
         return self.identity.count(words, pose, arrangement)
 
     def by_type(self, counts: IntArray) -> dict[str, int]:
-        """Counts (A,) of arrangements, summed by their names."""
         toolkit = self.identity.toolkit
         each = list(zip(toolkit.arrangements, counts.tolist(), strict=True))
         return {name: sum(count for one, count in each if one.name == name) for name in toolkit.types}

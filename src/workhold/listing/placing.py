@@ -60,7 +60,6 @@ class Arranged:
 
 
 def arranged(c: Candidates, problem: Problem) -> Arranged:
-    """The place of every fixture on the carriers."""
     angles, frame = problem.restrictions.angles, problem.frame
     clear = bodies_clear(c, frame)
     found = placed_as_is(c, frame)
@@ -76,7 +75,6 @@ def arranged(c: Candidates, problem: Problem) -> Arranged:
 
 
 def with_rows(one: Arranged, rows: IntArray, other: Arranged, chosen: BoolArray) -> Arranged:
-    """Some rows of an arrangement replaced by the chosen ones of another."""
     names = [a.name for a in fields(Candidates)]
     candidates = {name: getattr(one.candidates, name).copy() for name in names}
     for name, values in candidates.items():
@@ -147,7 +145,6 @@ def free_rows(c: Candidates, frame: Frame) -> IntArray:
 
 
 def placed_as_is(c: Candidates, frame: Frame) -> Arranged:
-    """The place of fixtures in the form they have."""
     pitch, travel = frame.lattice.pitch_x, frame.moving.travel
     assert travel is not None
     free_standing, free_moving = free_columns(c, frame)
@@ -169,11 +166,9 @@ def placed_as_is(c: Candidates, frame: Frame) -> Arranged:
 def clear_of_blocked(found: Arranged, frame: Frame, room: IntArray, spare: IntArray) -> Arranged:
     """Moves fixtures on until no peg stands in a blocked hole.
 
-    Parameters
-    ----------
-    room : (N, 4) fewest and most columns outward in all, and columns free on the standing and on the moving
-        carrier.
-    spare : (N,) rows free above the topmost peg, where the carriers have an end.
+    ``room`` (N, 4) has the fewest and most columns outward in all, and the columns free on the standing and
+    on the moving carrier. ``spare`` (N,) has the rows free above the topmost peg, where the carriers have an
+    end.
     """
     c = found.candidates
     standing = is_standing(c.standing)
@@ -280,7 +275,6 @@ def placed(c: Candidates, problem: Problem) -> FixtureTable:
 
 
 def placed_with_clamp(c: Candidates, problem: Problem) -> FixtureTable:
-    """The table of candidates that fit on a plate with a clamp that is bolted on it."""
     frame, placement = problem.frame, clamp_placement(c, problem)
     hole, _ = placement.nearest(problem)
     column = np.concatenate([c.column[:, LOCATOR_CONTACTS], hole[:, None]], axis=1)

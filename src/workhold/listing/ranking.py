@@ -83,7 +83,6 @@ TOGETHER = 1 << 22
 
 
 def measured(table: FixtureTable, problem: Problem) -> FixtureTable:
-    """A table of fixtures of a problem with all its figures of quality."""
     touched = Touched.of(problem.workpiece, problem.toolkit, problem.loci, problem.wrench_length)
     return measured_as(table, problem.query, touched)
 
@@ -126,12 +125,10 @@ class OrderKeys:
         return len(self.first)
 
     def take(self, chosen: NDArray[np.integer] | BoolArray | slice) -> OrderKeys:
-        """The keys of some."""
         error = None if self.error is None else self.error[chosen]
         return OrderKeys(self.first[chosen], error, self.rest[chosen])
 
     def followed_by(self, other: OrderKeys) -> OrderKeys:
-        """The keys, and others after them."""
         error = None
         if self.error is not None and other.error is not None:
             error = np.concatenate([self.error, other.error])

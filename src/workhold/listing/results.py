@@ -94,7 +94,6 @@ def listed_result(
 
     Parameters
     ----------
-    problem : what was searched.
     records : (N, 19) arrays of fixtures, laid out as ``kernels.contact.record`` says.
     progress : called as ``progress(fraction done, records that still may be fixtures)``.
     cancel : when set, records that cannot be decided quickly are left, and the result is incomplete.
@@ -139,7 +138,6 @@ def collected_result(collector: ResultCollector, work: Work, progress: Progress 
 
 
 def with_table(result: Result, collector: ResultCollector, progress: Progress | None = None) -> Result:
-    """The result of what a collector was given, with its fixtures."""
     tables, listed = list(collector.tables(progress)), collector.listed
     # If somebody asked to stop since, millions are not put together any more.
     enough = 1 + int(np.searchsorted(np.cumsum([len(table) for table in tables]), listed))
@@ -173,7 +171,6 @@ def best_result(kept: BestFixtures, work: Work, is_part: bool = False, is_limite
 def result_of(
     problem: Problem, candidates: Candidates, account: Account, work: Work, is_part: bool = False
 ) -> Result:
-    """The result of fixtures that are decided."""
     with ThreadPoolExecutor(max_workers=1) as pool:
         collector = ResultCollector(problem, pool, 1, is_part=is_part)
         collector.add(candidates, account)
@@ -181,7 +178,6 @@ def result_of(
 
 
 def proof_of(account: Account, work: Work) -> Proof:
-    """The account of a search for the result."""
     # A pair of chords that was given up counts as one candidate.
     examined = work.examined
     candidates = account.records if examined is None else examined + account.given_up - account.left
@@ -226,7 +222,6 @@ class RankedTable:
         return int(self.count.found.sum()) + sum(map(len, self.waiting))
 
     def add(self, table: FixtureTable) -> None:
-        """Takes fixtures."""
         self.waiting.append(table)
         if sum(map(len, self.waiting)) > WAITING:
             self.measure()
@@ -251,7 +246,6 @@ class RankedTable:
 
     @property
     def keys(self) -> OrderKeys:
-        """The keys of what is kept."""
         self.measure()
         if self.known is None:
             return order_keys(self.together(), self.query, self.effective)
@@ -282,7 +276,6 @@ class RankedTable:
         return self.tables[0]
 
     def result(self, account: Account, work: Work) -> Result:
-        """The result of all."""
         query, table = self.query, self.together()
         keys = order_keys(table, query, self.effective)
         order = keys.order(keys.least)[: query.best]
@@ -378,7 +371,6 @@ def joined_tables(tables: Sequence[FixtureTable]) -> FixtureTable:
 
 
 def summed(counts: Iterable[Mapping[str, int]]) -> dict[str, int]:
-    """Counts by name, summed over several."""
     total: Counter[str] = Counter()
     for one in counts:
         total.update({name: int(count) for name, count in one.items()})
@@ -386,7 +378,6 @@ def summed(counts: Iterable[Mapping[str, int]]) -> dict[str, int]:
 
 
 def joined_proofs(proofs: Sequence[Proof]) -> Proof:
-    """Several accounts as one."""
     return Proof(
         cells=sum(proof.cells for proof in proofs),
         candidates=sum(proof.candidates for proof in proofs),

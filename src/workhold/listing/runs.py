@@ -101,13 +101,11 @@ class SortedRun:
 
     @classmethod
     def of(cls, keys: Keys, columns: Columns) -> SortedRun:
-        """A run of rows in any order."""
         order = order_of(keys)
         return cls(keys.take(order), tuple(column.take(order, axis=0) for column in columns))
 
     @classmethod
     def joined(cls, runs: Sequence[SortedRun]) -> SortedRun:
-        """Several runs as one."""
         if len(runs) == 1:
             return runs[0]
         columns = zip(*(run.columns for run in runs), strict=True)
@@ -126,7 +124,6 @@ class SortedRun:
         return int(np.searchsorted(self.keys, key)[0])
 
     def rows(self, first: int, end: int) -> SortedRun:
-        """Some of its rows."""
         return SortedRun(self.keys[first:end], tuple(column[first:end] for column in self.columns))
 
 
@@ -157,7 +154,6 @@ class Scratch:
         return place
 
     def read(self, place: int, size: int) -> bytes:
-        """Some bytes."""
         with self.lock:
             self.file.seek(place)
             return self.file.read(size)
@@ -175,7 +171,6 @@ class StoredRun:
 
     @classmethod
     def of(cls, run: SortedRun, scratch: Scratch) -> StoredRun:
-        """A run written to a file."""
         arrays = (run.keys, *run.columns)
         places = tuple(scratch.write(array) for array in arrays)
         forms = tuple((array.dtype, array.shape[1:]) for array in arrays)
@@ -185,7 +180,6 @@ class StoredRun:
         return self.count
 
     def array(self, number: int, first: int, end: int) -> NDArray[Any]:
-        """Some rows of one of its arrays."""
         form, shape = self.forms[number]
         size = form.itemsize * int(np.prod(shape, dtype=np.int64))
         content = self.scratch.read(self.places[number] + first * size, (end - first) * size)
@@ -197,7 +191,6 @@ class StoredRun:
         return first + int(np.searchsorted(self.array(0, first, min(first + STRIDE, self.count)), key)[0])
 
     def rows(self, first: int, end: int) -> SortedRun:
-        """Some of its rows."""
         keys, *columns = (self.array(number, first, end) for number in range(len(self.forms)))
         return SortedRun(keys, tuple(columns))
 
@@ -252,7 +245,6 @@ class Runs:
     def part(
         self, runs: Sequence[SortedRun | StoredRun], first: list[int], end: list[int]
     ) -> Callable[[], SortedRun]:
-        """What gives one part."""
         return lambda: SortedRun.joined(
             [run.rows(low, high) for run, low, high in zip(runs, first, end, strict=True)]
         )

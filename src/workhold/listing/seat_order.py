@@ -106,7 +106,6 @@ def ordered_groups(
     ----------
     records : of each direction.
     problems : the search of each direction.
-    query : what is asked.
     """
     numbers = [
         seat_numbers(some, problem)
@@ -158,11 +157,9 @@ def group_bounds(
 ) -> OrderKeys:
     """The keys of G groups that no fixture in one has less than, the least of those of the places in it.
 
-    Parameters
-    ----------
-    order, group : (M,) numbers of contacts, group by group and in each by place, and those of the groups.
-    known : orientations and places, each (M,) with how far they may be off.
-    by_pairs : whether pairs of clamps are to bound them, too.
+    Numbers of contacts (M,) come group by group, and in each by place, with those of the groups. ``known``
+    are orientations and places (M,), each with how far they may be off. ``by_pairs`` says whether pairs of
+    clamps are to bound them, too.
     """
     place, off = (values[order] for values in known[1])
     fresh = np.ones(len(order), np.bool_)
@@ -257,10 +254,8 @@ def keys_bounding(
 ) -> OrderKeys:
     """Keys that no fixture has less than whose locators touch as those of records (N, 19) do.
 
-    Parameters
-    ----------
-    off : (N,) how far places may be off in mm.
-    pairs : (N, 3) bounds of the pairs of clamps; None where they are not known.
+    Places may be ``off`` by so many mm (N,); ``pairs`` (N, 3) are bounds of the pairs of clamps, None where
+    they are not known.
     """
     quality = best_figures(records, off, problem, query, pairs)
     theta = seen_angles(records, problem)

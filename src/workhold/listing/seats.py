@@ -222,7 +222,6 @@ class ClampedSeats:
 
     @property
     def turns_half(self) -> bool:
-        """Whether half a turn of everything leaves the toolkit as it is."""
         return half_turns(self.toolkit)
 
     def half_of(self, seats: Seats) -> IntArray:
@@ -246,7 +245,6 @@ class ClampedSeats:
         return len(np.unique(rows[:, SEAT] * len(self.toolkit.arrangements) + rows[:, KIND]))
 
     def add(self, seats: Seats) -> None:
-        """Pairs the clamps of further seats."""
         self.looked_at += len(seats)
         half, every = self.half_of(seats), self.query.listing == "all"
         rows = pairs_of(seats.spans, half, seats.clamps, self.hardware, every)
@@ -375,14 +373,12 @@ class ClampedSeats:
         return column, row, lowest
 
     def result(self, account: Account, work: Work) -> Result:
-        """The result of all."""
         account = evolve(account, undecided=(*account.undecided, *self.undecided))
         result = self.ranked.result(account, work)
         return result if self.ranked.has_dropped else evolve(result, pairs=self.pairs, seats=self.seats)
 
 
 def undecided_pairs(table: FixtureTable, toolkit: Toolkit) -> list[Undecided]:
-    """Pairs of which it is not decided whether they close, for the account."""
     columns = table.arrangement, table.face, table.column, table.row, np.degrees(table.theta) % 360.0
     return [
         Undecided(

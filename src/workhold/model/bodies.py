@@ -190,7 +190,6 @@ def fixture_bodies(
 
     Parameters
     ----------
-    fixture, workpiece, toolkit : the set-up.
     sizes : heights; those of :meth:`BodySizes.of` if None.
     more : further bodies, such as supports under the part.
 
@@ -314,9 +313,7 @@ def drilled(carrier: ShownCarrier, thickness: float, top: float = 0.0) -> Slab:
 def notched(box: Box, notches: dict[int, list[tuple[Point, float]]]) -> Loop:
     """The sides of a box, counter-clockwise from the lower one, with round notches from discs over them.
 
-    Parameters
-    ----------
-    notches : by number of the side, the centres within the box and the radii in mm of discs apart.
+    ``notches`` has, by the number of the side, discs that are apart: centres within the box and radii in mm.
     """
     border: list[Segment] = []
     for number, side in enumerate(rectangle(box)):

@@ -133,7 +133,6 @@ class ShownClamp:
 
     @property
     def extent(self) -> Box:
-        """The box of the body."""
         one, other = (
             Box(x, y, x, y).grown(self.carrier.peg_radius) for x, y in (self.back, (self.tip.x, self.tip.y))
         )
@@ -154,7 +153,6 @@ class ShownClamp:
 
 
 def shown_clamps(fixture: Fixture, toolkit: Toolkit) -> Iterator[ShownClamp]:
-    """The clamps that hold the part."""
     for peg in fixture.pegs:
         carrier = toolkit.carrier(peg.carrier)
         clamping = clamping_direction(carrier, toolkit)

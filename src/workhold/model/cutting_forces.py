@@ -181,7 +181,6 @@ class CuttingForces:
         )
 
     def to_dict(self, moves: Moves, tools: Mapping[int, Tool]) -> dict[str, Any]:
-        """What is said of all moves, as plain data."""
         return {"direction": self.direction, "tools": {str(k): v for k, v in self.said(moves, tools).items()}}
 
     def said(self, moves: Moves, tools: Mapping[int, Tool]) -> dict[int, str]:

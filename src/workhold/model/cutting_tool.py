@@ -137,7 +137,6 @@ def material_named(text: str) -> CutMaterial:
 
 
 def material_of(value: str | CutMaterial) -> CutMaterial:
-    """A material, or the one of a name."""
     return value if isinstance(value, CutMaterial) else material_named(str(value))
 
 
@@ -243,7 +242,6 @@ FIELDS = tuple(asdict(CuttingData()))
 
 
 def cylinders_of(values: Iterable[Cylinder]) -> tuple[Cylinder, ...]:
-    """Cylinders as a tuple."""
     return tuple(values)
 
 

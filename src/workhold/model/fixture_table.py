@@ -114,7 +114,6 @@ class FixtureTable:
         return np.asarray(forces / forces.sum(axis=1, keepdims=True))
 
     def take(self, order: NDArray[Any] | slice) -> FixtureTable:
-        """The fixtures of an index array or slice, in its order."""
         return FixtureTable(*(column[order] for column in self.columns))
 
     def same_holes(self, index: int) -> int:
@@ -252,7 +251,6 @@ def fixtures_of(
 
 
 def pairs_of_clamps(table: FixtureTable) -> list[Pair]:
-    """What is particular to the two clamps of each fixture of a table."""
     ends, travels = zip(*(one.tolist() for one in ratios(table.force)), strict=True), table.jaw_separation
     reactions = (tuple((a, b) for a, b in pegs) for pegs in table.force.tolist())
     return [

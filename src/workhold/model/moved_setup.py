@@ -21,8 +21,7 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Box
 from workhold.model.clamps import shown_clamps
 from workhold.model.fixture import Fixture, Peg
-from workhold.model.reach import held_box
-from workhold.model.shown import placed_box
+from workhold.model.shown import held_box, placed_box
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -50,11 +49,8 @@ def counted_on(
 ) -> Fixture:
     """A fixture with its holes counted further on.
 
-    Parameters
-    ----------
-    move : by how much part and pegs stand further on, x and y in mm.
-    shifts : by how many columns and rows the holes of each plate count further on, by its name.
-    travel : of what moves, in mm, before the move.
+    Part and pegs stand further on by ``move``, x and y in mm, and the holes of a plate count further on by
+    columns and rows, by its name. ``travel`` is that of what moves in mm before the move.
     """
     dx, dy = move
 

@@ -138,7 +138,6 @@ class Moves:
             raise InputError("a move of the program has a bulge that is no number: correct it.")
 
     def __len__(self) -> int:
-        """How many moves there are."""
         return len(self.line)
 
     @classmethod
@@ -155,7 +154,6 @@ class Moves:
         return cls(*columns[:3], *ends, *columns[5:])
 
     def cut_to(self, stretches: Stretches) -> Moves:
-        """The stretches of these moves as moves."""
         move, first, last = stretches.move, stretches.first, stretches.last
         start, end, bulge = self.start[move], self.end[move], self.bulge[move]
         places = []
@@ -223,15 +221,8 @@ def bulge_of(bulge: Floats, part: Floats) -> Floats:
 def shares_between(start: Floats, end: Floats, low: Floats, high: Floats) -> tuple[Floats, Floats]:
     """The shares of moves from which and until which their tip is at given heights; (N,) arrays each.
 
-    Parameters
-    ----------
-    start, end : heights of the tip.
-    low, high : the closed interval of heights.
-
-    Returns
-    -------
-    tuple
-        First and last share; the first is larger where the tip is never there.
+    The tip goes from height ``start`` to ``end``; heights are those from ``low`` to ``high``, both included.
+    The first share is larger where the tip is never there.
     """
     rise = end - start
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -354,7 +345,6 @@ def packed_piece(entries: Mapping[str, Any]) -> bytes:
 
 
 def pair_of(values: Any) -> tuple[float, float]:
-    """Two numbers."""
     one, other = values
     return real(one), real(other)
 
@@ -362,10 +352,7 @@ def pair_of(values: Any) -> tuple[float, float]:
 def moves_of(pieces: Sequence[bytes], tools: Mapping[int, Tool]) -> Moves:
     """The moves of which these are the packed pieces, one for each cylinder of the tool.
 
-    Raises
-    ------
-    InputError
-        Where a move lacks a piece of its tool, or has one too many.
+    Refuses a move that lacks a piece of its tool, or has one too many.
     """
     table = np.frombuffer(b"".join(pieces), FIELDS)
     shapes = {

@@ -113,11 +113,9 @@ class NumberedOutlines:
         return max(min(low, own[0]), 0.0), max(high, own[1])
 
     def faces_over(self, segments: Iterable[int]) -> set[int]:
-        """Numbers of the solid's faces over some segments."""
         return {face for segment in segments for face in self.over[segment]} if self.over else set()
 
     def segments_under(self, faces: Set[int]) -> list[int]:
-        """Numbers of the segments with one of these faces of the solid over them."""
         return [segment for segment, over in enumerate(self.over) if not faces.isdisjoint(over)]
 
 
@@ -133,10 +131,7 @@ def unlike(values: Iterable[Value]) -> Iterator[Value]:
 def outer_count(name: str, shapes: Sequence[LoopShape]) -> int:
     """How many loops lie in no other, or in a hole (loops are known not to meet).
 
-    Raises
-    ------
-    InputError
-        Where they do not come before the others.
+    Refuses loops of which these do not come before the others.
     """
     boxes = np.array([shape.box for shape in shapes])
     around = [
@@ -159,10 +154,7 @@ def outer_count(name: str, shapes: Sequence[LoopShape]) -> int:
 def refuse_misplaced_holes(name: str, shapes: Sequence[LoopShape], comparisons: Comparisons) -> None:
     """Refuses holes outside the outer loop and holes inside one another (loops are known not to meet).
 
-    Raises
-    ------
-    InputError
-        Naming the hole; also for more comparisons than may be made.
+    Refuses as well what takes more comparisons than may be made.
     """
     boxes = np.array([shape.box for shape in shapes])
     for index, hole in enumerate(shapes[1:], start=1):

@@ -72,10 +72,7 @@ def numbered_solid(workpiece: Workpiece) -> SolidOutline | None:
 def met_by(workpiece: Workpiece, toolkit: Toolkit) -> Workpiece:
     """The workpiece with the outlines of a toolkit's carriers, in their order, and no others.
 
-    Raises
-    ------
-    InputError
-        When the solid was read without the heights of a carrier.
+    Refuses a solid that was read without the heights of a carrier.
     """
     wanted = {} if workpiece.solid is None else toolkit.heights
     if not wanted and not workpiece.outlines:

@@ -54,12 +54,10 @@ def tools_of(values: Mapping[int, Tool]) -> dict[int, Tool]:
 
 
 def lines_of(values: Iterable[int]) -> tuple[int, ...]:
-    """Numbers of lines as a tuple."""
     return tuple(values)
 
 
 def notes_of(values: Iterable[str]) -> tuple[str, ...]:
-    """Sentences as a tuple."""
     return tuple(values)
 
 

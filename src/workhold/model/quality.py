@@ -306,13 +306,7 @@ def words(value: Iterable[str] | None) -> tuple[str, ...] | None:
 
 
 def listed(name: str, values: Iterable[T]) -> tuple[T, ...]:
-    """Some values as a tuple.
-
-    Raises
-    ------
-    InputError
-        When it is something else than several values.
-    """
+    """Some values as a tuple; refuses what is not several values."""
     try:
         return tuple(values)
     except TypeError as error:
@@ -328,14 +322,9 @@ def chosen_ranking(
 ) -> tuple[str, ...]:
     """Keys of the figures to rank by, from their names as a user writes them; None is the default ranking.
 
-    A file that was ranked by the default names what that begins with, too.
-
-    Raises
-    ------
-    InputError
-        For a name that is no figure, one given twice, and none at all. Also for a figure of loads without
-        loads, of two clamps where there is one, and of seating where that is not asked for. So for one of a
-        jaw's ends, unless it is ``ended``.
+    A file that was ranked by the default names what that begins with, too. Refuses a name that is no figure,
+    one given twice, and none at all. Refuses a figure of loads without loads, of two clamps where there is
+    one, of seating where that is not asked for, and of a jaw's ends, unless it is ``ended``.
     """
     if names is None:
         return for_loads(PAIR_RANKING if pairs else DEFAULT_RANKING, loaded)
@@ -405,12 +394,7 @@ def for_loads(ranking: tuple[str, ...], loaded: Loaded) -> tuple[str, ...]:
 def preferred_ranking(preference: str, loaded: Loaded, has_program: bool = False) -> tuple[str, ...]:
     """Keys of the figures to rank by for what a user wants most: square, strong, precise or roomy.
 
-    With a program a roomy fixture is first of all one that its tools pass by far.
-
-    Raises
-    ------
-    InputError
-        For any other word.
+    With a program a roomy fixture is first of all one that its tools pass by far. Refuses any other word.
     """
     word = preference.strip().lower()
     if word not in PREFERENCES:

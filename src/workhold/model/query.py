@@ -41,7 +41,6 @@ SEATING_KEYS = {figure.key for figure in SEATING_FIGURES}
 
 
 def restrictions_of(value: Restrictions | None) -> Restrictions:
-    """Restrictions, or none of them for None."""
     return Restrictions() if value is None else value
 
 
@@ -51,7 +50,6 @@ def tolerance_given(value: Tolerance | None) -> Tolerance:
 
 
 def loads_of(loads: Iterable[Load]) -> tuple[Load, ...]:
-    """Loads as a tuple."""
     return listed("loads", loads)
 
 

@@ -44,7 +44,6 @@ ANY_DIRECTION = (0.0, 360.0)
 
 
 def point_pairs(points: Iterable[Iterable[float]]) -> tuple[tuple[float, float], ...]:
-    """Points as pairs of floats."""
     return tuple((real(x), real(y)) for x, y in points)
 
 
@@ -231,12 +230,10 @@ def zone_of(vertices: Sequence[Sequence[float]]) -> Zone:
 
 
 def angle_pairs(ranges: Iterable[Iterable[float]]) -> tuple[Angles, ...]:
-    """Ranges of angles as pairs of floats."""
     return tuple((float(low), float(high)) for low, high in ranges)
 
 
 def all_zones(zones: Iterable[Zone]) -> tuple[Zone, ...]:
-    """Zones as a tuple."""
     return tuple(zones)
 
 

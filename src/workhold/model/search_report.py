@@ -287,7 +287,6 @@ def cut_note(found: int, listed: int) -> str:
 
 
 def undecided_note(count: int) -> str:
-    """The remark on candidates left undecided."""
     some = "1 candidate is undecided" if count == 1 else f"{count} candidates are undecided"
     return (
         f"{some}: it cannot be shown whether they are fixtures; the result's proof names them with the "

@@ -74,7 +74,6 @@ class SeatContact:
 
     @classmethod
     def of_fields(cls, fields: Mapping[str, Any]) -> SeatContact:
-        """The contact that a file has."""
         corner = fields.get("corner")
         return cls(fields["peg"], fields["face"] if corner is None else corner, corner is not None)
 
@@ -115,7 +114,6 @@ class Seat:
         return not (self.is_own or self.same_place)
 
     def as_fields(self) -> dict[str, Any]:
-        """The seat as files have it."""
         return {
             "kind": self.kind,
             "pose": pose_fields(self.pose),
@@ -386,5 +384,4 @@ def length(value: float | None) -> float | None:
 
 
 def pose_fields(pose: Pose) -> dict[str, float | None]:
-    """A pose as files have it."""
     return {"theta_deg": length(pose.theta_deg), "x": length(pose.x), "y": length(pose.y)}

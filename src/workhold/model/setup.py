@@ -192,7 +192,6 @@ class LengthSetting:
 
     @property
     def mounting(self) -> Mounting:
-        """How the clamp is put on its plate."""
         return MOUNTINGS[self.carrier.measure]
 
     @property

@@ -80,7 +80,6 @@ def reals_of(values: Iterable[Any]) -> tuple[float, ...]:
 
 
 def numbers_of(values: Iterable[Iterable[int]]) -> tuple[tuple[int, ...], ...]:
-    """Numbers of faces as tuples."""
     return tuple(tuple(int(number) for number in value) for value in values)
 
 
@@ -241,13 +240,7 @@ class SolidOutline:
         return self.top is not None and not self.top
 
     def for_segments(self, count: int) -> SolidOutline:
-        """Checks that there is a band for each of so many segments, and returns itself.
-
-        Raises
-        ------
-        InputError
-            When there is not one band for each.
-        """
+        """Checks that there is a band for each of so many segments, and returns itself."""
         if len(self.bands) != count or any(len(one) not in (0, count) for one in (self.faces, self.runs)):
             raise InputError(
                 f"the outline has {count} segments and {len(self.bands)} bands: give one band for each."
@@ -257,9 +250,7 @@ class SolidOutline:
     def reordered(self, order: Sequence[int], turned: Set[int] = frozenset()) -> SolidOutline:
         """A copy with the bands of the segments in another order.
 
-        Parameters
-        ----------
-        turned : numbers of segments that are run in the other direction.
+        Segments whose numbers are ``turned`` are run in the other direction.
         """
         return evolve(
             self,

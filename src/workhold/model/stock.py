@@ -53,7 +53,6 @@ AT_ONCE = 1 << 19
 
 
 def shape_of(value: Any) -> StockShape:
-    """A shape of the stock; refuses any other."""
     for shape in STOCK_SHAPES:
         if shape == value:
             return shape
@@ -112,7 +111,6 @@ class Stock:
 
     @classmethod
     def of_entries(cls, entries: Mapping[str, Any]) -> Stock:
-        """The stock of a file's entries."""
         return cls(**{name: entries[name] for name in FIELDS})
 
     def to_dict(self) -> dict[str, Any]:
@@ -154,7 +152,6 @@ class Curves:
 
     @classmethod
     def of(cls, start: Floats, end: Floats, bulge: Floats) -> Curves:
-        """The curves between some ends."""
         chord = end - start
         is_arc = (bulge != 0.0) & (chord != 0.0).any(axis=1)
         safe = np.where(is_arc, bulge, 1.0)
@@ -169,7 +166,6 @@ class Curves:
         return len(self.bulge)
 
     def take(self, chosen: Integers) -> Curves:
-        """The curves of some numbers."""
         return Curves.of(self.start[chosen], self.end[chosen], self.bulge[chosen])
 
     @property
@@ -304,10 +300,7 @@ def stretches_in(
 def near(paths: Curves, reach: Floats, border: Border) -> tuple[Integers, Floats, Floats]:
     """The parts of paths within a border or nearer to it than some reach (N,) each.
 
-    Returns
-    -------
-    tuple
-        Numbers (K,) of the paths, rising, and the shares (K,) at which each part begins and ends.
+    Numbers (K,) of the paths, rising, and the shares (K,) at which each part begins and ends.
     """
     half = paths.length / 2
     middle = paths.at(np.full((len(paths), 1), 0.5))[:, 0]

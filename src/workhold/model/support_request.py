@@ -81,13 +81,7 @@ def span_of(value: Any) -> Span:
 
 
 def loops_of(loops: Iterable[Any]) -> Loops:
-    """Loops of (x, y, bulge) vertices as read-only arrays.
-
-    Raises
-    ------
-    InputError
-        For a loop that is none.
-    """
+    """Loops of (x, y, bulge) vertices as read-only arrays; refuses what is no loop."""
     return tuple(
         checked_vertices(loop, f"face: loop {number}", partial("face: loop {}, side {}".format, number))
         for number, loop in enumerate(loops, 1)
@@ -390,13 +384,7 @@ class SupportRequest:
         return np.array([others if band is None else band for band in bands], np.float64)
 
     def refuse_fat_pads(self, toolkit: Toolkit) -> None:
-        """Refuses pads that could overlap in neighbouring holes of a toolkit.
-
-        Raises
-        ------
-        InputError
-            With the distance that there is.
-        """
+        """Refuses pads that could overlap in neighbouring holes of a toolkit."""
         apart = least_apart(toolkit)
         if 2 * self.pad_radius > apart:
             raise InputError(

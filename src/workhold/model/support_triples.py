@@ -173,13 +173,7 @@ class Supports:
         return self.count == len(self.triples)
 
     def ranked(self, rank: int) -> Triple:
-        """The set of three of a rank from 1.
-
-        Raises
-        ------
-        InputError
-            When there is none.
-        """
+        """The set of three of a rank from 1."""
         count = len(self.triples)
         if not 1 <= rank <= count:
             there = f"{count} are listed" if count else "there is no set of three"
@@ -227,7 +221,6 @@ class Recounted:
 
     @property
     def move(self) -> Hole:
-        """The columns and the rows."""
         return self.columns, self.rows
 
 
@@ -269,10 +262,8 @@ def moves(toolkit: Toolkit, start: Hole) -> Iterator[Hole]:
 def shift_of(plate: Carrier, first: Carrier, move: Hole, opened: float) -> Hole:
     """Columns and rows by which a plate's holes count further on.
 
-    Parameters
-    ----------
-    move : by how many columns and rows of the first plate all stands further on.
-    opened : how much farther than before the plate that slides has travelled, in mm.
+    All stands ``move`` columns and rows of the first plate further on, and the plate that slides has
+    travelled by ``opened`` mm more than before.
     """
     shift = [
         round((steps * own - (0.0 if plate.travel is None else opened * along)) / pitch)
@@ -349,13 +340,6 @@ class ChosenSupports:
 
     @classmethod
     def of(cls, supports: Supports, number: int = 1) -> ChosenSupports:
-        """The set of a number.
-
-        Raises
-        ------
-        InputError
-            When there is none.
-        """
         if not isinstance(supports, Supports):
             raise InputError("supports are what the fixture's own method of that name returns: give these.")
         triple = supports.ranked(number)
@@ -407,7 +391,6 @@ class ChosenSupports:
 
     @property
     def clamp(self) -> ClampFigures:
-        """Where the clamp on top presses, and how good it is there."""
         return self.triple.clamp
 
     @property

@@ -301,7 +301,6 @@ def to_cadquery(
 
 
 def title(fixture: Fixture) -> str:
-    """What an assembly is called."""
     listed = fixture.listing
     return f"{listed.result.workpiece.name} fixture {listed.rank}"
 
@@ -309,13 +308,6 @@ def title(fixture: Fixture) -> str:
 def bodies_of(
     fixture: Fixture, around: Any, thickness: float | None, supports: Supports | None, best: int
 ) -> list[tuple[str, Any, tuple[float, float, float]]]:
-    """The bodies of a fixture with their names and colours, about a part where one is given.
-
-    Raises
-    ------
-    InputError
-        As :meth:`workhold.Fixture.to_build123d`.
-    """
     result = fixture.listing.result
     chosen = None if supports is None else ChosenSupports.under(fixture, supports, best)
     assembly = Assembly.of(fixture, result, {"thickness": thickness}, chosen)
@@ -329,13 +321,7 @@ def bodies_of(
 
 
 def own_shape(part: Any) -> Any:
-    """The shape of Open CASCADE of a part, with one solid.
-
-    Raises
-    ------
-    InputError
-        For a part with no solid, or with several.
-    """
+    """The shape of Open CASCADE of a part with one solid; refuses a part with none, or with several."""
     solids = [solid for shape in wrapped_shapes(part) for solid in sub_shapes(shape, "SOLID")]
     if len(solids) != 1:
         raise InputError(f"around is a part with {len(solids)} solids: give the one that was designed for.")
@@ -345,10 +331,7 @@ def own_shape(part: Any) -> Any:
 def to_model(shape: Any, workpiece: Workpiece, fixture: Fixture) -> Any:
     """The location that carries the frame of the toolkit into the model of the part's solid.
 
-    Raises
-    ------
-    InputError
-        For a part that was not read from a solid, and for a solid of another size.
+    Refuses a part that was not read from a solid, and a solid of another size.
     """
     from OCP.gp import gp_Trsf, gp_Vec
     from OCP.TopLoc import TopLoc_Location

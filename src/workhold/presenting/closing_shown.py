@@ -35,7 +35,6 @@ MOST_KEYFRAMES = 120
 
 
 def closing_shown(picture: LivePicture) -> dict[str, Any]:
-    """What is shown of the closing of a fixture, with what is read in the end."""
     fixture, toolkit = picture.fixture, picture.result.toolkit
     if not toolkit.closes_at_once:
         return picture.closing(words=order_words(fixture))
@@ -48,13 +47,7 @@ def closing_shown(picture: LivePicture) -> dict[str, Any]:
 
 
 def closed(picture: LivePicture, solver: Solver, seating: Seating) -> dict[str, Any]:
-    """The closing of a fixture of a known seating.
-
-    Raises
-    ------
-    InputError
-        As :func:`simulate_closing`, where there is no room for the part.
-    """
+    """The closing of a fixture of a known seating; refuses one without room for the part."""
     fixture, toolkit = picture.fixture, picture.result.toolkit
     sentences = SeatingSentences(seating, fixture, toolkit, LengthUnit.mm())
     most = picture.opened if seating.capture_opening is None else OF_CAPTURE * seating.capture_opening

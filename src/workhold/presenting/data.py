@@ -102,7 +102,6 @@ def face_data(face: Face) -> dict[str, Any]:
 
 
 def fixture_data(fixture: Fixture, toolkit: Toolkit, rank: int | None = None) -> dict[str, Any]:
-    """Describes how to set up a fixture."""
     return {
         **({} if rank is None else {"rank": rank}),
         "type": fixture.type,
@@ -155,7 +154,6 @@ def by_hand_data(fixture: Fixture, rank: int | None) -> dict[str, Any]:
 
 
 def load_case_data(case: LoadCase) -> dict[str, Any]:
-    """Describes what a load does to a fixture."""
     return {
         "load": load_entry(case.load),
         "jaw_force": finite(case.jaw_force),
@@ -177,7 +175,6 @@ def worst_data(worst: Worst) -> dict[str, Any]:
 
 
 def result_data(result: Result, shown: Entries, count: int) -> dict[str, Any]:
-    """Describes what a search found, with the first of its entries."""
     indices, like = (numbers[:count].tolist() for numbers in (shown.index, shown.like))
     return {
         "workpiece": result.workpiece.name,
@@ -243,7 +240,6 @@ def helps_data(explanation: Explanation, key: str) -> list[dict[str, Any]]:
 
 
 def toolkit_data(loaded: LoadedToolkit) -> dict[str, Any]:
-    """Describes a toolkit that was found by name or read from a file."""
     return {
         "name": loaded.name,
         "kind": loaded.kind,
@@ -311,13 +307,6 @@ def to_arrow(result: Result) -> Any:
 
 
 def library(name: str) -> Any:
-    """Imports a library of an extra.
-
-    Raises
-    ------
-    InputError
-        When it is not installed.
-    """
     try:
         return import_module(name)
     except ImportError as error:

@@ -113,7 +113,6 @@ def heading(figure: Figure, unit: Unit) -> str:
 
 
 def unit_of(figure: Figure, unit: Unit) -> str:
-    """The unit in which a figure is shown."""
     shown = {"mm": unit.abbreviation, "MPa": unit.pressure, "N": unit.force}
     return shown.get(figure.unit, figure.unit)
 

@@ -224,7 +224,6 @@ def feature_of(problem: Problem, face: int, place: tuple[float, float]) -> int:
 
 
 def lesson_data(problem: Problem, result: Result, found: list[CurveFixture], avoided: int) -> dict[str, Any]:
-    """A lesson as plain data."""
     part = problem.workpiece
     features: NDArray[np.float64] = problem.rows[:, FEATURE] + np.array([0, *part.center, 0, 0, 0, 0, 0])
     return {
@@ -243,7 +242,6 @@ def lesson_data(problem: Problem, result: Result, found: list[CurveFixture], avo
 
 
 def curve_fixture_data(one: CurveFixture) -> dict[str, Any]:
-    """A fixture of a lesson as plain data."""
     fixture = one.fixture
     return {
         "rank": one.rank,

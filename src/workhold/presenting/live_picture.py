@@ -100,12 +100,10 @@ class TriedForce:
 
     @property
     def numbers(self) -> list[float]:
-        """The four numbers, in the order of its fields."""
         return [self.x, self.y, self.size, self.direction]
 
     @property
     def load(self) -> Load:
-        """The load that it is."""
         ways = (self.direction, self.direction)
         return Load(points=[(self.x, self.y)], force=self.size, directions=ways, name="pushed")
 
@@ -172,7 +170,6 @@ class LivePicture:
 
     @property
     def center(self) -> Point:
-        """The middle of the part on the page."""
         x, y = self.view(self.fixture.pose.apply(*self.result.workpiece.center))
         return float(x), float(y)
 
@@ -208,9 +205,7 @@ class LivePicture:
     def draw_set(self, scene: Scene, chosen: ChosenSupports, ways: Mapping[str, Point | None]) -> None:
         """Draws a set of three with the names of its holes; each moves with the jaw that it stands on.
 
-        Parameters
-        ----------
-        ways : in which each carrier clamps, by its name; None for those that stand still.
+        ``ways`` has by its name in which way each carrier clamps; None for those that stand still.
         """
         planned, view = PlannedSupports.of(chosen), self.view
         corners, radius = [view(place) for place in planned.places], size_of(planned.pad_radius, view)

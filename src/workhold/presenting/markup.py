@@ -50,7 +50,6 @@ def safe(words: str) -> Markup:
 
 
 def paragraph(*pieces: str) -> Markup:
-    """Pieces of text in a paragraph."""
     return Markup(f"<p>{' '.join(map(safe, pieces))}</p>")
 
 
@@ -77,10 +76,7 @@ def image(svg: str, words: str, width: int, shrinks: bool = True) -> Markup:
     """A picture, ``width`` pixels wide, as an image; ``words`` stand where it cannot be shown.
 
     A picture of more than :data:`MOST_SVG` bytes, or :data:`MOST_PAGE` of a page, becomes one of pixels.
-
-    Parameters
-    ----------
-    shrinks : whether it gets narrower in a narrow page; in a table it should not, as its column would.
+    ``shrinks`` says whether it gets narrower in a narrow page; in a table it should not, as its column would.
     """
     drawn, kind = compact(svg).encode("utf-8"), "svg+xml"
     if len(drawn) > (MOST_PAGE if width >= LARGE else MOST_SVG):
@@ -109,7 +105,6 @@ def compact(svg: str) -> str:
 
 
 def rounded(match: re.Match[str]) -> str:
-    """A number with few decimals."""
     text = f"{float(match[0]):.{DECIMALS}f}".removesuffix(".0")
     return "0" if text == "-0" else text
 

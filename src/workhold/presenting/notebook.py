@@ -86,7 +86,6 @@ def result_html(result: Result) -> str:
 
 
 def none_html(result: Result) -> str:
-    """Says why a result has no fixture, and how to find out more."""
     toolkit, found = result.toolkit, sum(result.found.values())
     inside = toolkit.wording.inside.partition(" ")[0]
     title = Markup(f"<b>{safe(f'No fixture of {result.workpiece.name} {inside} a {toolkit.noun}')}</b>")
@@ -100,7 +99,6 @@ def none_html(result: Result) -> str:
 
 
 def entries_table(result: Result, shown: Entries) -> Markup:
-    """Tabulates the first entries: rank, picture, holes, what to set, and the figures that count."""
     toolkit, unit = result.toolkit, MILLIMETRE
     figures, ranked = figures_shown(result)
     longest = no_edge(result.workpiece, toolkit)
@@ -146,7 +144,6 @@ def entries_table(result: Result, shown: Entries) -> Markup:
 
 
 def count_sentences(result: Result, shown: Entries) -> list[str]:
-    """Says how many entries are shown of how many, and what the notes of the result say."""
     rows, there, listed = min(MOST_ROWS, len(shown.index)), len(shown.index), len(result)
     out = [f"{rows:,} of {there:,} entries shown; near duplicates stand once, counted under like it."]
     if rows == there:
@@ -158,7 +155,6 @@ def count_sentences(result: Result, shown: Entries) -> list[str]:
 
 
 def thumbnail(fixture: Fixture) -> Markup:
-    """The small picture of a fixture of a result."""
     result = fixture.listing.result
     drawn = draw_thumbnail(fixture, result.workpiece, result.toolkit)
     return image(drawn, f"{fixture_title(fixture)}: {fixture_words(fixture, result.toolkit)}", SMALL, False)
@@ -178,7 +174,6 @@ def workpiece_html(workpiece: Workpiece) -> str:
 
 
 def figures_table(fixture: Fixture) -> Markup:
-    """Tabulates the figures of a fixture that are known, with units, and which way each is better."""
     result, unit = fixture.listing.result, MILLIMETRE
     noun = result.toolkit.moving.noun
     known = edgeless(fixture.figures, no_edge(result.workpiece, result.toolkit))
@@ -222,7 +217,6 @@ def supports_html(supports: Supports) -> str:
 
 
 def supports_picture(supports: Supports, rank: int) -> Markup:
-    """The small picture of a fixture on a set of three."""
     chosen = ChosenSupports.of(supports, rank)
     query = supports.query
     bench = bench_of(chosen.recounted.fixture, query.workpiece, query.toolkit)

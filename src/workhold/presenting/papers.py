@@ -73,7 +73,6 @@ class Picture(str):
 
 
 def saved(svg: str, path: str | Path | None, overwrite: bool) -> Picture:
-    """Makes a picture of SVG text, and writes it where a path is given."""
     picture = Picture(svg)
     return picture if path is None else picture.save(path, overwrite=overwrite)
 
@@ -173,13 +172,7 @@ def save_sheet(
 
 
 def refuse_other_result(result_file: str | Path, fixture: Fixture) -> None:
-    """Refuses a file whose hash would stand on the sheet of a fixture that is not in it.
-
-    Raises
-    ------
-    InputError
-        When it cannot be read, or has another fixture in that place.
-    """
+    """Refuses a file whose hash would stand on the sheet of a fixture that is not in it."""
     from workhold.files.result.reader import read_result
 
     listed, read = fixture.listing, read_result(result_file)
@@ -252,13 +245,7 @@ def pages_bytes(pages: Sequence[str], ending: str, day: date) -> bytes:
 
 
 def hash_of(result_file: str | Path | None) -> str:
-    """Returns the SHA-256 of a file in hexadecimal; empty where there is none.
-
-    Raises
-    ------
-    InputError
-        When it cannot be read.
-    """
+    """Returns the SHA-256 of a file in hexadecimal; empty where there is none."""
     if result_file is None:
         return ""
     try:

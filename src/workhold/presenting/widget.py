@@ -119,7 +119,6 @@ class FixtureWidget(anywidget.AnyWidget):  # type: ignore[misc]
         self.push(number=number)
 
     def push(self, _: Any = None, number: int = 0) -> None:
-        """Computes what the force does to the fixture."""
         try:
             pushed = TriedForce.of(self.force) if self.force else TriedForce(0.0, 0.0, 0.0, 0.0)
             found = self.live.answer(pushed, self.jaw_force or None, self.jaw)
@@ -133,7 +132,6 @@ class FixtureWidget(anywidget.AnyWidget):  # type: ignore[misc]
         return self.live.answer(TriedForce(0.0, 0.0, 0.0, 0.0), None, self.jaw)
 
     def close_jaws(self, _: Any = None) -> None:
-        """Computes how the fixture closes."""
         self.closing = {**closing_shown(self.live), "number": self.asked_closing}
 
     def _repr_mimebundle_(self, **wanted: Any) -> Any:

@@ -138,7 +138,6 @@ def contact_values(box: CandidateBox, unknowns: Sequence[Any]) -> list[Any]:
 
 
 def places(box: CandidateBox, unknowns: Sequence[arb]) -> BoxContacts:
-    """Everything about the four contacts on a box of unknowns."""
     _, x, y, _ = unknowns
     (cosine, sine), *arms = turned_pegs(box, unknowns)
     centers, rays, normals, values, slopes = [], [], [], [], []

@@ -71,7 +71,6 @@ class Course:
 
     @property
     def is_stopped(self) -> bool:
-        """Whether somebody asked to stop."""
         stopped = self.deadline < inf or (self.cancel is not None and self.cancel.is_set())
         if stopped:
             self.deadline = min(self.deadline, perf_counter() + GRACE)
@@ -117,7 +116,6 @@ class Account:
 
     @classmethod
     def together(cls, accounts: list[Account]) -> Account:
-        """Several accounts as one."""
         lost = tuple(item for account in accounts for item in account.undecided)
         records, verified, escalated, given_up, left = (
             sum(getattr(account, name) for account in accounts)
@@ -326,7 +324,6 @@ def record_in_balls(row: Array, problem: Problem, course: Course) -> BoxOutcome 
 
 
 def undecided(row: Array, problem: Problem, reason: str) -> Undecided:
-    """A record that is not decided, for the account."""
     feature, column, line = peg_integers(row[None])
     faces = problem.faces[feature[0]].tolist()
     standing = np.abs(row[[record.STANDING]]).astype(np.int64)

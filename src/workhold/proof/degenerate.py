@@ -75,7 +75,6 @@ class TouchedFeatures(NamedTuple):
     place: Points
 
     def take(self, numbers: NDArray[np.int64]) -> TouchedFeatures:
-        """What the peg touches in some of the records."""
         is_arc, middle, axis, radius, place = self
         return TouchedFeatures(
             is_arc[numbers], middle[numbers], axis[numbers], radius[numbers], place[numbers]
@@ -121,12 +120,10 @@ def touched(records: Array, rows: Array, lattice: Lattice) -> list[TouchedFeatur
 
 
 def dot(a: Points, b: Points) -> Array:
-    """Scalar products of vectors."""
     return np.asarray((np.conj(a) * b).real)
 
 
 def cross(a: Points, b: Points) -> Array:
-    """Cross products of vectors."""
     return np.asarray((np.conj(a) * b).imag)
 
 

@@ -130,7 +130,6 @@ def sharp_reactions(box: CandidateBox, limits: Limits) -> SharpReactions | None:
 
 
 def reactions_in(box: CandidateBox, limits: Limits) -> SharpReactions | None:
-    """``sharp_reactions`` at the precision in force."""
     frame = SingularFrame.of(box, limits)
     place: list[arb] | None = frame.start()
     for _ in range(MOST_STEPS):

@@ -107,7 +107,6 @@ class SharpContacts:
 
 
 def middles(values: Sequence[arb]) -> list[float]:
-    """The middles of balls as doubles."""
     return [float(value.mid()) for value in values]
 
 
@@ -378,10 +377,8 @@ def crossing_of(one: BallFeature, other: BallFeature, between: Point, branch: in
 def on_line(between: Point, axis: Point, radius: arb, branch: int) -> Point | None:
     """Returns where a line crosses a circle, from the line's middle; None where it surely misses it.
 
-    Parameters
-    ----------
-    between : from the middle of the line to that of the circle, in mm.
-    axis : unit vector along the line.
+    ``between`` leads from the middle of the line to that of the circle, ``axis`` is of length 1 along the
+    line.
     """
     (ax, ay), (x, y) = axis, between
     away = ax * y - ay * x

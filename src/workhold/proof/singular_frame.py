@@ -52,7 +52,6 @@ class SingularFrame:
 
     @classmethod
     def of(cls, box: CandidateBox, limits: Limits) -> SingularFrame:
-        """The frame of a box."""
         slopes = places(box, [arb(m) for m in box.middle]).slopes
         jacobian = np.array([[float(s.mid()) for s in row] for row in slopes])
         jacobian[:, 0] /= limits.wrench_length
@@ -67,13 +66,11 @@ class SingularFrame:
         return [arb(0, float(span) * (1.0 + RIM)) for span in spans]
 
     def unknowns(self, place: Sequence[arb]) -> list[arb]:
-        """The unknowns at a place in the frame."""
         turn, *rest = (self.turning * arb_mat(4, 1, place)).entries()
         steps = turn / self.length, *rest
         return [m + s for m, s in zip(self.box.middle, steps, strict=True)]
 
     def places(self, place: Sequence[arb]) -> BoxContacts:
-        """The contacts at a place in the frame."""
         return places(self.box, self.unknowns(place))
 
     def values(self, place: Sequence[arb]) -> list[arb]:

@@ -97,7 +97,6 @@ class SolutionCurve:
         return self.rest.at(t - self.center)
 
     def slope(self, t: arb) -> arb:
-        """The derivatives of that on a ball."""
         return self.rest.slope(t - self.center)
 
     def has_zero(self, t: arb) -> bool:

@@ -116,7 +116,6 @@ def antipodal_contacts(boundary: ObstacleBoundary) -> list[AntipodalContacts]:
 
 
 def pocket_pieces(boundary: ObstacleBoundary, pocket: int) -> tuple[int, ...]:
-    """The two pieces of a pocket."""
     return tuple(boundary.pocket_pieces[pocket].tolist())
 
 
@@ -143,7 +142,6 @@ def reached(row: Array, ux: float, uy: float, x: float, y: float) -> tuple[float
 
 
 def of_pieces(rows: Array, a: int, b: int) -> list[AntipodalContacts]:
-    """The antipodal contacts from piece a to piece b."""
     one, two = rows[a], rows[b]
     if one[IS_ARC] == 0.0 and two[IS_ARC] == 0.0:
         return []
@@ -212,7 +210,6 @@ def antipodal_candidates(boundary: ObstacleBoundary, pattern: Pattern) -> Array:
 def pressed(
     pattern: Pattern, normal: AntipodalContacts, i: int, j: int, omega: float, separation: float
 ) -> Array:
-    """The candidate of antipodal contacts, pressed by peg i and peg j in direction omega."""
     (px, py), (qx, qy), d = normal.one, normal.two, normal.length
     theta = omega - atan2((qy - py) / d, (qx - px) / d)
     c, s = cos(theta), sin(theta)

@@ -101,7 +101,6 @@ class Gauge:
 
     @property
     def carrier(self) -> Carrier:
-        """What moves."""
         carriers = (self.toolkit.carrier(peg.carrier) for peg in self.fixture.pegs)
         return next(carrier for carrier in carriers if carrier.travel is not None)
 
@@ -112,7 +111,6 @@ class Gauge:
 
     @property
     def ways(self) -> OpeningWords:
-        """Words for opening and closing what moves."""
         return VISE[self.toolkit.clamping] if self.carrier.on is None else CLAMP
 
     @property
@@ -163,11 +161,8 @@ PRECISION = 1e-9
 def sticking_friction(points: Array, normals: Array, right: Array) -> float:
     """The least friction at which three of four contacts, or two, balance the jaw; infinite if there is none.
 
-    Parameters
-    ----------
-    points : (4, 2) contact points in mm, in the vise frame.
-    normals : (4, 2) outward unit normals there.
-    right : (4,) 1 for contacts of the right jaw's pegs, 0 for others.
+    Contact points (4, 2) are in mm in the vise frame, normals (4, 2) outward and of length 1. ``right`` (4,)
+    is 1 for contacts of the right jaw's pegs, 0 for others.
     """
     size = max(float((points.max(axis=0) - points.min(axis=0)).max()), SMALLEST)
     contacts = (
@@ -208,10 +203,8 @@ def balances_without_a_locator(edges: Array, share: Array, ratio: float) -> bool
     If there is a solution that is not negative, one has no more entries above zero than there are equations
     (V. Chvatal, *Linear Programming*, 1983, chapter 3). So all choices of so many entries are tried.
 
-    Parameters
-    ----------
-    edges, share : of five pegs, the clamps last: see ``statics.loads.cone_edges``.
-    ratio : the second clamp's force over the first's.
+    Edges and shares, see ``statics.loads.cone_edges``, are of five pegs, the clamps last. The ratio is the
+    second clamp's force over the first's.
     """
     count = len(edges) // 2
     clamps = [np.isin(np.arange(2 * count) % count, [k]) * share for k in (LOCATORS, LOCATORS + 1)]
@@ -265,7 +258,6 @@ class ByHand:
 
     @property
     def pair(self) -> Pair:
-        """What is particular to the two clamps."""
         assert self.fixture.pair is not None
         return self.fixture.pair
 

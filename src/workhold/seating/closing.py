@@ -233,10 +233,7 @@ ROOM = 65_536
 def descent_starts(rows: Array, size: float) -> tuple[Array, Array]:
     """Where descent paths begin, to one and the other side of each of some passes (N, 24).
 
-    Returns
-    -------
-    tuple
-        Configurations (2 N, 4), and how long the first steps are in mm (2 N, 2).
+    Configurations (2 N, 4), and how long the first steps are in mm (2 N, 2).
     """
     starts, lengths = np.empty((2 * len(rows), 4)), np.empty((2 * len(rows), 2))
     begin_descents(np.ascontiguousarray(rows), size, starts, lengths)
@@ -311,7 +308,6 @@ class DescentPaths:
         self.first = self.cache.with_candidates(len(self.candidates))
 
     def follow(self, numbers: IntArray) -> None:
-        """Follows the paths off some of the candidates, by their numbers in the cache."""
         # Another thread may follow some at the same time: then both are there, and are the same.
         starts, first = descent_starts(self.candidates[numbers - self.first], self.closing.size)
         self.cache.add(numbers, *self.closing.followed(starts, first, self.seats))

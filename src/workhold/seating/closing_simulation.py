@@ -155,10 +155,7 @@ class Center:
 def entered(solver: Solver, fixture: Fixture, pattern: Pattern, config: Array, turned_over: bool) -> float:
     """The depth in mm to which a peg, or a wall, stands in the part in a configuration; 0 where none does.
 
-    Raises
-    ------
-    InputError
-        When it is deeper than a part that is put by hand may go.
+    Refuses what is deeper than a part that is put by hand may go.
     """
     rows = solver.outline.rows
     points = pattern.at(config[None])[0] * ([-1.0, 1.0] if turned_over else [1.0, 1.0])

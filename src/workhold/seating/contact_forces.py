@@ -71,10 +71,7 @@ def verdicts(candidates: Array, slack: float, slack_in_doubt: float) -> NDArray[
 def contact_normals(boundary: ObstacleBoundary, pattern: Pattern, row: Array) -> tuple[Array, Array, Array]:
     """The contacts of a candidate, in directions of the closing frame.
 
-    Returns
-    -------
-    tuple
-        Places (n, 2) from the part's, outward normals (n, 2), and 1 where what touches moves (n,).
+    Places (n, 2) from the part's, outward normals (n, 2), and 1 where what touches moves (n,).
     """
     c, s, count = cos(row[THETA]), sin(row[THETA]), int(row[CONTACTS])
     pegs, right = pattern.at(row[CONFIG][None])[0].tolist(), pattern.right.tolist()
@@ -138,16 +135,10 @@ def settle_on_wall(candidates: Array, boundary: ObstacleBoundary, pattern: Patte
 def forces_of(
     boundary: ObstacleBoundary, pattern: Pattern, row: Array, size: float
 ) -> tuple[Array, float, int]:
-    """The forces of the contacts of a candidate, per unit of the force on what moves.
+    """The forces (n,) of the contacts of a candidate, per unit of the force on what moves.
 
-    Parameters
-    ----------
-    size : in mm, by which moments are divided.
-
-    Returns
-    -------
-    tuple
-        Forces (n,), how well they balance, and how many of the contacts are independent.
+    Moments are divided by the size in mm. Beside the forces, how well they balance, and how many of the
+    contacts are independent.
     """
     places, normals, moves = contact_normals(boundary, pattern, row)
     moments = (places[:, 0] * normals[:, 1] - places[:, 1] * normals[:, 0]) / size
@@ -201,7 +192,6 @@ def balance(wrenches: Sequence[Sequence[float]]) -> bool:
 
 
 def cross(a: Sequence[float], b: Sequence[float]) -> tuple[float, ...]:
-    """The vector square to two."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
@@ -232,13 +222,9 @@ OTHERS_MAY_BE = (
 def as_candidate(
     boundary: ObstacleBoundary, pattern: Pattern, config: Array, faces: Sequence[int], size: float
 ) -> Array:
-    """The candidate (24,) of a fixture.
+    """The candidate (24,) of a fixture whose pegs touch faces of some numbers.
 
-    Parameters
-    ----------
-    config : (4,) theta, x, y and S, in the frame of seating.
-    faces : that the pegs touch, by their numbers.
-    size : of the part in mm.
+    The configuration (4,) is theta, x, y and S in the frame of seating, and ``size`` is the part's in mm.
     """
     contacts, away = [], np.empty(1)
     for peg, (at, side) in enumerate(zip(pattern.at(config[None])[0], pattern.right.tolist(), strict=True)):

@@ -138,7 +138,6 @@ class SubsetCache:
 
     @classmethod
     def empty(cls, _: ObstacleBoundary) -> SubsetCache:
-        """An empty cache."""
         return cls()
 
 
@@ -209,12 +208,10 @@ def jaw_equilibria(boundary: ObstacleBoundary, subset: PegSubset, _: float) -> F
 
 
 def in_balance(candidates: Array, given: Given, size: float) -> Array:
-    """The candidates of a subset that may be equilibria."""
     return np.asarray(candidates[verdicts(with_forces(candidates, given, size), inf, inf) != NO_BALANCE])
 
 
 def wall_manifolds(finder: ManifoldFinder) -> list[Manifolds]:
-    """All equilibrium manifolds on a wall."""
     wall = WallEquilibria(finder.boundary, finder.pattern)
     return sliding_on_wall(finder, wall) + turning_on_wall(finder, wall)
 
@@ -357,7 +354,6 @@ def equilibria(boundary: ObstacleBoundary, pattern: Pattern, size: float) -> Equ
 
 
 def equilibria_on_wall(boundary: ObstacleBoundary, pattern: Pattern, size: float) -> Equilibria:
-    """All equilibria between a wall, a locator and a tip."""
     pressed = antipodal_candidates(boundary, pattern)
     candidates = np.concatenate([pressed, wall_candidates(boundary, pattern)])
     settle_on_wall(candidates, boundary, pattern, size)

@@ -61,9 +61,7 @@ IntArray = NDArray[np.int64]
 def pass_descents(found: Equilibria, closing: Closing, seats: Array) -> tuple[Array, Array, NDArray[np.int8]]:
     """Where the descent paths off both sides of all passes begin, where they end (2 N, 4), and how.
 
-    Parameters
-    ----------
-    seats : (M, 4) configurations at which closing is known to end.
+    ``seats`` (M, 4) are configurations at which closing is known to end.
     """
     starts, lengths = descent_starts(found.passes, closing.size)
     ends, how, left = np.array(starts), np.full(len(starts), AT_REST, np.int8), np.ones(len(starts), np.int8)
@@ -87,14 +85,8 @@ def free_paths(
 ) -> tuple[IntArray, IntArray, IntArray]:
     """The paths off both sides of some passes, as far as the pattern's other pegs are not in the part.
 
-    Parameters
-    ----------
-    shifts : see ``shifts_of``.
-
-    Returns
-    -------
-    tuple
-        Numbers of the paths in the cache, their subsets, and the last node of each: all (2 N,).
+    Numbers of the paths in the cache, their subsets, and the last node of each, all (2 N,). For the shifts
+    see ``shifts_of``.
     """
     whose, numbers = found.origins[passes, 0], found.origins[passes, 1]
     cache = found.subsets[0][1].cache

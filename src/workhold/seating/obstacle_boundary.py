@@ -99,10 +99,7 @@ class ObstacleBoundary:
     def obstacles(self, pattern: Pattern, size: float, stop: float) -> Obstacles:
         """The pieces about the pegs of a pattern, as kernels take them.
 
-        Parameters
-        ----------
-        size : of the part in mm, by which turns are counted.
-        stop : S in mm at which what moves is stopped.
+        Turns are counted by the part's size in mm. What moves is stopped at ``stop``, S in mm.
         """
         pegs = np.array(pattern.pegs), pattern.right, self.parts
         hull, half_plane = np.zeros((0, 6)), np.zeros(3)

@@ -231,13 +231,6 @@ class Silhouette:
 
     @classmethod
     def of(cls, workpiece: Workpiece) -> Silhouette:
-        """The outline of a part.
-
-        Raises
-        ------
-        InputError
-            As :func:`refuse_own_outlines`.
-        """
         refuse_own_outlines(workpiece)
         segments = [face.segment for face in workpiece.faces]
         rows = centered(segment_rows(segments), workpiece.center)
@@ -257,13 +250,7 @@ class Silhouette:
 
 
 def refuse_own_outlines(workpiece: Workpiece) -> None:
-    """Refuses a part of which some carriers meet another outline than others.
-
-    Raises
-    ------
-    InputError
-        Naming such a carrier.
-    """
+    """Refuses a part of which some carriers meet another outline than others."""
     if workpiece.outlines:
         role, _ = workpiece.outlines[0]
         raise InputError(

@@ -114,13 +114,7 @@ class CommonToPatterns:
     @classmethod
     @lru_cache(maxsize=TOOLKITS)
     def of(cls, toolkit: Toolkit, names: tuple[str, ...]) -> CommonToPatterns:
-        """What patterns on carriers of some names have in common.
-
-        Raises
-        ------
-        InputError
-            As ``Pattern.of``.
-        """
+        """What patterns on carriers of some names have in common."""
         refuse_unseated(toolkit)
         standing_on = [toolkit.carrier(name) for name in names]
         numbers = tuple(k for k, carrier in enumerate(standing_on) if carrier.contact.is_placed)
@@ -327,7 +321,6 @@ class PegSubset:
 
     @classmethod
     def of(cls, pattern: Pattern, numbers: Sequence[int]) -> PegSubset:
-        """The subset of some pegs of a pattern, by their numbers."""
         pegs, right, beside = places_of(pattern)
         # Pegs of each jaw from left to right, those that stand still before those that move.
         start = {right[k]: k for k in reversed(numbers)}

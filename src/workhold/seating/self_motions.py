@@ -105,7 +105,6 @@ class Opposed:
 
 
 def opposed_lines(boundary: ObstacleBoundary) -> list[Opposed]:
-    """All pairs of opposed straight pieces of a part."""
     rows, found = boundary.rows.tolist(), list[Opposed]()
     standing, moving = (
         [k for k in range(first, end) if rows[k][IS_ARC] == 0.0] for first, end in boundary.parts.tolist()
@@ -193,9 +192,7 @@ def on_parallel_lines(
 ) -> list[SelfMotion]:
     """Self-motions on parallel faces: the middle one of three pegs presses against the outer two.
 
-    Parameters
-    ----------
-    slides : (S, 7) of the two pegs of one jaw.
+    ``slides`` (S, 7) are those of the two pegs of one jaw.
     """
     if not len(slides):
         return []
@@ -272,7 +269,6 @@ NO_MOTIONS = SelfMotions.room(0, 0)
 
 
 def of_pattern(found: Sequence[tuple[PegSubset, SelfMotions]]) -> SelfMotions:
-    """The self-motions of subsets of pegs as those of their pattern."""
     some = [(subset, motions) for subset, motions in found if len(motions.counts)]
     if not some:
         return NO_MOTIONS
@@ -286,7 +282,6 @@ def of_pattern(found: Sequence[tuple[PegSubset, SelfMotions]]) -> SelfMotions:
 
 
 def joined(parts: Sequence[Manifolds]) -> Manifolds:
-    """Manifolds, one after the other."""
     rows, configs, _, closed, across = (
         np.concatenate(same) for same in zip(NO_MANIFOLDS, *parts, strict=True)
     )
@@ -310,12 +305,10 @@ class ManifoldFinder:
 
     @property
     def rows(self) -> Array:
-        """The pieces."""
         return self.boundary.rows
 
     @cached_property
     def lines(self) -> list[int]:
-        """Numbers of the straight pieces."""
         return np.flatnonzero(self.rows[:, IS_ARC] == 0.0).tolist()
 
     @cached_property

@@ -70,7 +70,6 @@ class Solver:
         self.outline = Silhouette.of(self.workpiece)
 
     def closing(self, pattern: Pattern, turned_over: bool) -> Closing:
-        """The jaws of a pattern about the part, also turned over."""
         if pattern.radii not in self.boundaries:
             self.boundaries[pattern.radii] = ObstacleBoundary.of(self.workpiece, pattern.radii)
         boundary = self.boundaries[pattern.radii]
@@ -102,7 +101,6 @@ class Solver:
         return self.read(fixture, Pattern.of(fixture, self.toolkit), with_cage)
 
     def read(self, fixture: Fixture, pattern: Pattern, with_cage: bool) -> Seating:
-        """The seating of a fixture of a pattern."""
         return self.in_pattern(fixture, pattern).seating(with_cage)
 
     def in_pattern(self, fixture: Fixture, pattern: Pattern) -> FixtureInPattern:
@@ -122,16 +120,9 @@ class Solver:
     ) -> list[Seating]:
         """The seatings of many fixtures, in their order; patterns are shared out among threads.
 
-        Parameters
-        ----------
-        with_cage : see :meth:`of`.
-        threads : how many; None for one on each processor. The seatings do not depend on it.
-
-        Raises
-        ------
-        InputError
-            As ``Pattern.of``, for a number of threads that is too large, and for a fixture of another part or
-            toolkit.
+        None stands for a thread on each processor; the seatings do not depend on it. For ``with_cage`` see
+        :meth:`of`. Raises InputError as ``Pattern.of`` does, for a number of threads that is too large, and
+        for a fixture of another part or toolkit.
         """
         fixtures = list(fixtures)
         for fixture in fixtures:
@@ -246,7 +237,6 @@ class FixtureInPattern:
         return int(np.argmin(away)) if len(away) and away.min() <= AGREES else None
 
     def as_candidate(self) -> Array:
-        """The fixture as a candidate of the solved pattern."""
         closing, faces = self.solver.closing(self.known, False), [peg.face for peg in self.fixture.pegs]
         touched = [faces[number] for number in self.order]
         return as_candidate(closing.boundary, self.known, self.own - self.shift, touched, closing.size)
@@ -307,7 +297,6 @@ class FixtureInPattern:
         return tuple([seats[k] for k in np.lexsort((poses[0], rests.turned_over, separations)).tolist()])
 
     def seating(self, with_cage: bool) -> Seating:
-        """The seating of the fixture."""
         tree = self.trees[0]
         place = self.place
         assert place is not None
@@ -368,7 +357,6 @@ class FixtureInPattern:
         return Cage((float(turns[0]) * 180.0 / pi, float(turns[1]) * 180.0 / pi), x, y), around.placing
 
     def sticking(self, row: Array) -> float:
-        """The friction below which the part cannot stick near its seat."""
         boundary = self.solver.closing(self.known, False).boundary
         places, normals, moves = contact_normals(boundary, self.known, row)
         return sticking_friction(places, normals, moves)

@@ -204,7 +204,6 @@ class TwoContactCurves:
 
     @classmethod
     def of(cls, boundary: ObstacleBoundary, pattern: Pattern) -> TwoContactCurves:
-        """The two-contact curves of a pattern on a part."""
         parts: list[tuple[NDArray[Any], ...]] = []
         jaws: dict[int, tuple[JawCurves, int, float]] = {}
         before = curves_before = 0
@@ -234,7 +233,6 @@ class TwoContactCurves:
         return cls(*given, slides, {side: (known, 0, float(own.shift[2]))})
 
     def of_jaw(self, right: int) -> JawCells:
-        """The cells of one jaw's curves in order."""
         known, before, height = self.jaws[right]
         return JawCells(known.ordered, before, height)
 
@@ -250,7 +248,6 @@ def given_of(
 
 
 def pocket_rows(boundary: ObstacleBoundary, right: NDArray[np.int64]) -> Array:
-    """The rows of each peg in each pocket."""
     held = [
         (peg, pocket)
         for peg, side in enumerate(right.tolist())

@@ -137,7 +137,6 @@ class WallEquilibria:
         return Given(*none, self.stood.rows, pegs, self.pattern.right, self.boundary.parts)
 
     def on(self, piece: int, second: bool = False) -> Contact:
-        """The contact of a piece of the hull with the wall."""
         return ON_WALL[second], len(self.boundary.rows) + piece
 
     def with_tip(self, fixed: Array) -> Array:

@@ -69,12 +69,10 @@ class BentPegs:
 
     @property
     def most(self) -> BentPeg:
-        """The peg that gives way most."""
         return max(self.pegs, key=lambda peg: peg.deflection)
 
     @property
     def hardest(self) -> BentPeg:
-        """The peg that is bent hardest."""
         return max(self.pegs, key=lambda peg: peg.stress)
 
     @property

@@ -200,12 +200,9 @@ class Touched:
     ) -> ContactMatrices:
         """Contact matrices of N fixtures.
 
-        Parameters
-        ----------
-        pegs : (N, P, 2) peg centres in the toolkit's frame, in mm.
-        pose : (N, 3) orientation in radians and translation in mm.
-        carriers : (N, P) numbers of the pegs' carriers.
-        faces : (N, P) numbers of the faces touched.
+        Peg centres (N, P, 2) are in the toolkit's frame in mm. Poses (N, 3) are orientation in radians and
+        translation in mm. Carriers and faces (N, P) are numbers of the pegs' carriers and of the faces
+        touched.
         """
         on = np.asarray(carriers, np.int64)
         on_wall = self.lies_flush.take(on)
@@ -280,7 +277,6 @@ class Touched:
         return np.stack(rotated(along[..., 0], along[..., 1], -pose[:, :1]), axis=-1)
 
     def of_fixture(self, fixture: Fixture, toolkit: Toolkit) -> ContactMatrices:
-        """The contact matrix of one fixture in a toolkit."""
         pose = fixture.pose
         return self.contact_matrices(
             np.array([[(peg.x, peg.y) for peg in fixture.pegs]]),
@@ -302,11 +298,8 @@ def locators_inverse(all_wrenches: Array) -> Array:
 def pair_reactions(points: Array, normals: Array, pushes: Array, length: float) -> Array:
     """Forces (N, 5, 2) of three locators and two clamps per unit of the force of each clamp.
 
-    Parameters
-    ----------
-    points, normals : (N, 5, 2) about the centre of the part.
-    pushes : (N, 2, 2) unit vectors along which the clamps push, in the part's frame.
-    length : L in mm.
+    Points and normals (N, 5, 2) are about the centre of the part, pushes (N, 2, 2) of length 1 in its frame,
+    L is in mm.
     """
     each = wrenches(points, normals, length)
     push = -(normals[:, LOCATORS:] * pushes).sum(axis=-1)

@@ -79,7 +79,6 @@ class EffectiveErrors:
 
     @classmethod
     def of(cls, query: Query) -> EffectiveErrors:
-        """What is needed for a query."""
         every = query.workpiece.numbered
         lines = np.full((len(every.segments), 5), np.nan)
         for face in every.faces:

@@ -116,10 +116,8 @@ def jaw_words(stiffness: float, toolkit: Toolkit) -> str:
 def shared_forces(free: Array, closing: Array, stiffness: float) -> Array:
     """Peg forces (..., P, 3) per unit of g_x, g_y and moment behind jaws of a stiffness.
 
-    Parameters
-    ----------
-    free : (..., P, 3) the same for a jaw that keeps its force.
-    closing : (..., P, M) peg forces per unit of the force of each jaw or clamp, H.
+    ``free`` (..., P, 3) are the same for a jaw that keeps its force, ``closing`` (..., P, M) the peg forces
+    per unit of the force of each jaw or clamp, H.
     """
     if stiffness == 0:
         return free
@@ -134,12 +132,9 @@ def jaw_forces_needed(inverses: Array, closing: Array, length: float, loads: Arr
     Peg i presses with f0_i - h_i (h . f0) / (h . h) + F h_i, where h_i > 0. Of two clamps F is the sum of
     their forces, at the working ratio, and what is taken from f0 is its part in the plane of both.
 
-    Parameters
-    ----------
-    inverses : (N, 4, P) of the contact matrices; their last rows are h.
-    closing : (N, P, M) peg forces per unit of the force of each jaw or clamp.
-    length : L in mm.
-    loads : (M, 11) rows, see ``kernels.contact.quality``.
+    The inverses (N, 4, P) of the contact matrices have h in their last rows. ``closing`` (N, P, M) are peg
+    forces per unit of the force of each jaw or clamp, and ``length`` is L in mm. Loads (M, 11) are rows of
+    ``kernels.contact.quality``.
     """
     held = inverses[:, 3]
     back = np.swapaxes(closing, 1, 2)
@@ -286,7 +281,6 @@ def load_cases(
 
     Parameters
     ----------
-    fixture, workpiece, toolkit : the fixture, of what and in what.
     loads : see :class:`workhold.model.requirements.Load`.
     jaw_force : force in N that pushes the moving carrier; by default the one needed so that no peg lets go
         under any load.

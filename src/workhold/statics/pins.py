@@ -201,12 +201,9 @@ def bent_pins(
 ) -> BentPins:
     """How far pegs bend, and what that moves the part by.
 
-    Parameters
-    ----------
-    diameters, heights : (N, P) of the pegs, and of the forces on them above their plates, in mm; NaN of others.
-    jaw_force : in N; None is for each kN.
-    length : L in mm.
-    extremes : corners and convex arcs of the silhouette, see ``statics.quality.extremes``.
+    Diameters of the pegs (N, P), and heights of the forces on them above their plates, are in mm, NaN of
+    others. A jaw force is in N; None is for each kN. ``length`` is L in mm. For the extremes of the
+    silhouette see ``statics.quality.extremes``.
     """
     force = (STATED_FORCE if jaw_force is None else jaw_force) * np.abs(contacts.inverses[:, 3, :])
     deflection = np.asarray(deflections(force, heights, diameters))

@@ -177,9 +177,7 @@ def take(
 ) -> None:
     """Takes over clearances (R,) of a contact of some rows where they are less than those known.
 
-    Parameters
-    ----------
-    below : whether ``swept`` is what is swept below the part.
+    ``below`` says whether ``swept`` is what is swept below the part.
     """
     less = (clearance < found.clearance[rows]) & (span >= 0)
     chosen, spans = rows[less], span[less]

@@ -25,7 +25,7 @@ from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import ContactMatrices, Touched
 from workhold.statics.loads import jaw_stiffness, shared_forces
-from workhold.statics.path_pieces import path_forces
+from workhold.statics.path_forces import path_forces
 from workhold.statics.program_clearance import element_name, renamed
 from workhold.units import Unit
 
@@ -147,8 +147,6 @@ class CuttingNeed:
         return asked | {"jaw_force": self.jaw_force, "room": self.room}
 
     def in_holes(self, before: Sequence[str], after: Sequence[str]) -> CuttingNeed:
-        """Renames the holes, contact by contact."""
-
         def of(asked: AskedForce) -> AskedForce:
             return evolve(asked, element=asked.element and renamed(asked.element, before, after))
 
@@ -249,10 +247,8 @@ def scale(touched: Touched) -> Array:
 def reactions(free: Array, held: Array) -> Array:
     """Functions (N, P (P - 1), 3) of the load, of which the largest value is the load reaction.
 
-    Parameters
-    ----------
-    free : (N, P, 3) peg forces per unit of load where the jaw keeps its force.
-    held : (N, P) the same per unit of jaw force.
+    ``free`` are peg forces (N, P, 3) per unit of load where the jaw keeps its force, ``held`` (N, P) those
+    per unit of jaw force.
     """
     count = held.shape[1]
     one, other = np.nonzero(~np.eye(count, dtype=bool))

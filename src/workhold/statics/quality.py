@@ -114,8 +114,6 @@ def quality_of(
 
     Parameters
     ----------
-    table : N fixtures.
-    workpiece, toolkit : what they hold and in what.
     tolerance : how far pegs and faces may be off, for the location error; by default 0.01 mm each.
     loads : for the load reaction, the worst of them; each acts by itself.
     threads : how many threads share the work; the outcome does not depend on it.

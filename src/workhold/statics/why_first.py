@@ -19,10 +19,6 @@ __all__ = ["why_first"]
 def why_first(result: Result, unit: Unit = MILLIMETRE) -> str:
     """Says why the first fixture of a result stands first; nothing where another order was asked for.
 
-    Parameters
-    ----------
-    unit : of lengths.
-
     Examples
     --------
     >>> import workhold
@@ -71,9 +67,7 @@ def why_first(result: Result, unit: Unit = MILLIMETRE) -> str:
 def lies_so(result: Result, angle: int) -> str:
     """Says how the first fixture of a result lies, and of one that is turned what stands less so.
 
-    Parameters
-    ----------
-    angle : class of its angle, see :mod:`workhold.statics.effective_error`.
+    ``angle`` is the class of its angle, see :mod:`workhold.statics.effective_error`.
     """
     if angle == 0:
         return "as drawn"

@@ -76,11 +76,6 @@ def requests_by_size(
     Parameters
     ----------
     thickness, asked : as of :func:`asked_request`.
-
-    Raises
-    ------
-    InputError
-        As :func:`asked_request`.
     """
     usual = last = asked_request(query, thickness, asked or {})
     yield usual
@@ -126,11 +121,6 @@ def supported_by_size(
     Returns
     -------
     These, or those of the last request where none has any, and those of the first request.
-
-    Raises
-    ------
-    InputError
-        As :func:`workhold.supports.listing.supports_of`.
     """
     usual = found = tuple[Supports, ...]()
     for request in requests:
@@ -191,11 +181,6 @@ def result_supports(
     ----------
     best : how many fixtures.
     each : how many sets of three for each of them; the rest as in :meth:`workhold.Fixture.supports`.
-
-    Raises
-    ------
-    InputError
-        As that method.
     """
     count, sets = counting_number("best", best), counting_number("each", each)
     request, sets = asked_request(result.query, thickness, asked), 3 if sets is None else sets

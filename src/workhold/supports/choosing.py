@@ -75,7 +75,6 @@ class WorkLimit:
     done: int = 0
 
     def is_set(self) -> bool:
-        """Whether the search is to stop."""
         return self.done >= self.most
 
 
@@ -134,7 +133,6 @@ class BoundFigures:
         return self.falls, self.late, self.hang
 
     def take(self, rows: NDArray[np.intp] | Flags) -> BoundFigures:
-        """Some of the triples."""
         every = (*self.classes, self.need, self.force, self.arm, self.standing)
         return BoundFigures(*(one[rows] for one in every))
 
@@ -376,7 +374,6 @@ class TripleChoice:
         return points, need, classes
 
     def triangles(self, corners: Corners) -> Triangles:
-        """The triangles of triples."""
         return Triangles.of(self.sides.points[corners.numbers])
 
     def judged(self, corners: Corners, last: Key | None) -> list[Ranked]:
@@ -415,7 +412,6 @@ class TripleChoice:
     def keyed(
         self, corners: Corners, late: float, hang: Array, need: Array, force: Array, arm: Array
     ) -> list[Ranked]:
-        """Triples with the keys that they are ranked by."""
         standing = self.standing(corners)
         falls = falls_over(standing)
         out: list[Ranked] = []

@@ -18,8 +18,7 @@ from attrs import define, field
 from numpy.typing import NDArray
 
 from workhold.conventions import GAP_SLACK
-from workhold.supports.beside_faces import LevelRegions
-from workhold.supports.faces import Curve, TouchableFace, offset_curves
+from workhold.supports.faces import Curve, LevelRegions, TouchableFace, offset_curves
 from workhold.supports.forces import Triangles
 
 __all__ = ["ClampPlaces", "RankedPlaces"]
@@ -264,7 +263,6 @@ class Pieces:
 
     @classmethod
     def joined(cls, parts: Sequence[Pieces]) -> Pieces:
-        """All pieces of several."""
         return cls(
             np.concatenate([one.curves for one in parts]), np.concatenate([one.spans for one in parts])
         )

@@ -3,11 +3,14 @@
 A face is an outer loop less its openings; keep-out zones are taken off. The room at a point is the distance
 to the nearest border of the face that it lies on, negative off all. Parity of crossings with the chords,
 changed once between each arc and its chord, says which side a point is on.
+
+Regions that have a height of such a face keep the clamp on top away from places on it. A head keeps off what
+rises above the face. A tip presses better where it keeps off what of the face hangs.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -17,7 +20,7 @@ from numpy.typing import NDArray
 from workhold.geometry.loop import loop_segments, signed_area
 from workhold.geometry.segment import Arc, Segment
 
-__all__ = ["FaceBorders", "TouchableFace", "area_center", "offset_curves"]
+__all__ = ["Curve", "FaceBorders", "LevelRegions", "TouchableFace", "area_center", "offset_curves"]
 
 Array = NDArray[np.float64]
 Loop = Sequence[Segment]
@@ -255,9 +258,7 @@ class TouchableFace:
 def offset_curves(loop: Loop, radius: float, left: bool) -> tuple[list[Curve], list[Curve]]:
     """Lines, unit normal and distance, and circles on which the middle of a disc is that touches a loop.
 
-    Parameters
-    ----------
-    left : whether the disc is on the left of the loop.
+    ``left`` says whether the disc is on the left of the loop.
     """
     lines: list[Curve] = []
     circles: list[Curve] = []
@@ -311,3 +312,45 @@ def area_center(loops: Sequence[Sequence[Segment]]) -> Array:
             moment += thin * np.array(one.center)
             moment += one.sign * one.radius**3 * 2 / 3 * np.sin(half) ** 3 * outward
     return np.asarray(moment / area)
+
+
+@define(frozen=True, eq=False)
+class LevelRegions:
+    """Regions by height in mm, each as its borders with the region on their left.
+
+    Parameters
+    ----------
+    borders : of each height.
+    turns : of each height (B,) 1 for borders around a region, -1 for its openings.
+    """
+
+    borders: dict[float, FaceBorders]
+    turns: dict[float, Array]
+
+    @classmethod
+    def of(cls, loops: Sequence[Array], heights: Sequence[float]) -> LevelRegions:
+        """The regions within loops of (x, y, bulge) vertices, each with its height."""
+        borders, turns = {}, {}
+        for height in dict.fromkeys(heights):
+            own = [
+                tuple(loop_segments(np.asarray(loop)))
+                for loop, z in zip(loops, heights, strict=True)
+                if z == height
+            ]
+            borders[height] = FaceBorders(tuple(own))
+            turns[height] = np.array([1.0 if signed_area(loop) > 0.0 else -1.0 for loop in own])
+        return cls(borders, turns)
+
+    def apart(self, height: float | None, points: Array) -> Array:
+        """Distances (N,) in mm of points (N, 2) from the region of a height, negative in it."""
+        if height is None or height not in self.borders:
+            return np.full(len(points), np.inf)
+        signed = self.borders[height].inside(points)
+        is_in = (signed > 0.0) @ self.turns[height] > 0.5
+        return np.asarray(np.where(is_in, -1.0, 1.0) * np.abs(signed).min(axis=1, initial=np.inf))
+
+    def offset_curves(self, height: float | None, radius: float) -> Iterator[tuple[list[Curve], list[Curve]]]:
+        """Lines and circles of :func:`offset_curves` on which the middle of a disc beside a region is."""
+        if height is not None and height in self.borders:
+            for loop in self.borders[height].loops:
+                yield offset_curves(loop, radius, left=False)

@@ -138,7 +138,6 @@ class Triangles:
         return cls(corners, slopes, -(slopes * after).sum(axis=-1))
 
     def take(self, rows: NDArray[np.int64]) -> Triangles:
-        """Some of the triangles."""
         return Triangles(self.corners[rows], self.slopes[rows], self.constants[rows])
 
     @property
@@ -174,13 +173,9 @@ def support_forces(
 ) -> tuple[Array, Array]:
     """Least and largest forces (N,) of supports without the clamp, over all loads and heights.
 
-    Parameters
-    ----------
-    lines : beta_j of N supports; or distances from the sides that face them, which makes all forces larger by
-        the heights of the supports over these.
-    bands : (P, 2) of the pegs.
-    loads : with their heights written out.
-    jaw_force : on what moves, F.
+    ``lines`` are beta_j of N supports; or distances from the sides that face them, which makes all forces
+    larger by the heights of the supports over these. Bands (P, 2) are those of the pegs, loads have their
+    heights written out, and the jaw force is that on what moves, F.
     """
     x, y = lines.normals[..., 0], lines.normals[..., 1]
     out = []
@@ -226,10 +221,7 @@ class WeakJawError(InputError):
 def needed_jaw_force(pegs: PegForces, loads: Sequence[SpatialLoad], jaw_force: float | None) -> float:
     """The jaw force asked for, or the one that keeps all pegs in contact under every load.
 
-    Raises
-    ------
-    WeakJawError
-        When the one asked for is too small, naming the load.
+    Raises WeakJawError, naming the load, when the one asked for is too small.
     """
     needs = [needed_for(pegs, load) for load in loads]
     if jaw_force is None:
@@ -276,7 +268,6 @@ class Corners:
     heights: Array
 
     def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Corners:
-        """Some of the triangles."""
         return Corners(self.numbers[rows], self.sides[rows], self.heights[rows])
 
 

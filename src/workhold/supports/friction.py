@@ -82,18 +82,11 @@ def clamp_with_friction(supports: Supports, triple: Triple, friction: float) -> 
 def balance(
     supports: Supports, triple: Triple, friction: float, heights: Sequence[float]
 ) -> tuple[Array, Array, float]:
-    """What the forces along the edges of pyramids do.
+    """What the forces along the edges of pyramids do: a matrix (7, V), costs (V,) and a length in mm.
 
-    Parameters
-    ----------
-    heights : at which each peg presses, in mm.
-
-    Returns
-    -------
-    matrix : (7, V) of each unit force the parts in x, y and z, the moments over a length, and the push
-        against what moves.
-    costs : (V,) what each adds to the force of the clamp.
-    length : by which moments about the centre of the part are divided, in mm.
+    The matrix has, of each unit force, the parts in x, y and z. Then come the moments about the centre of the
+    part over the length, and the push against what moves. Its cost is what it adds to the force of the clamp.
+    Each peg presses at one of the heights, in mm.
     """
     query, fixture = supports.query, supports.fixture
     touched = Touched.of(query.workpiece, query.toolkit)
@@ -166,11 +159,7 @@ def around(directions: tuple[float, float]) -> Iterator[tuple[float, float]]:
 def least_costs(matrix: Array, costs: Array, sides: Array) -> Array:
     """Least costs (N,) of programs, infinite where nothing solves one.
 
-    Parameters
-    ----------
-    matrix : (R, V) A, whose rows are of like size.
-    costs : (V,) c, none negative.
-    sides : (N, R) right sides b.
+    The matrix A (R, V) has rows of like size, no cost c (V,) is negative, and right sides b are (N, R).
     """
     out, open_ = np.full(len(sides), np.inf), np.ones(len(sides), bool)
     while open_.any():

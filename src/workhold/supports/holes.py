@@ -130,7 +130,6 @@ class CarrierRoom:
 
     @classmethod
     def of(cls, fixture: Fixture, toolkit: Toolkit, holes: HolesUnderPart) -> CarrierRoom:
-        """The room beside the pegs of a fixture."""
         carriers = toolkit.carriers
         plates = {number: one for number, one in enumerate(carriers) if one.has_lattice}
         by_name = {one.name: one for one in carriers}
@@ -228,9 +227,7 @@ class CarrierRoom:
     def clear_of_blocked(self, found: Standing, sets: IntArray, at_rest: Array) -> Standing:
         """Moves pegs and supports of sets (N, S) on until none of them stands in a blocked hole.
 
-        Parameters
-        ----------
-        at_rest : the travel (N,) nearest the opening.
+        ``at_rest`` (N,) is the travel nearest the opening.
         """
         holes, plates, numbers = self.holes, list(self.plates.values()), list(self.plates)
         travel = next(one.travel for one in plates if one.travel is not None)

@@ -19,10 +19,9 @@ from workhold.model.requirements import Load
 from workhold.model.support_request import Loops, SpatialLoad, SupportRequest
 from workhold.model.support_triples import ClampFigures, SupportPad, Supports, Triple
 from workhold.statics.contact_matrix import Touched
-from workhold.supports.beside_faces import LevelRegions
 from workhold.supports.choosing import Stop, TripleChoice, WorkLimit
 from workhold.supports.clamp_point import ClampPlaces, RankedPlaces
-from workhold.supports.faces import TouchableFace, area_center
+from workhold.supports.faces import LevelRegions, TouchableFace, area_center
 from workhold.supports.forces import (
     Corners,
     PegForces,
@@ -226,7 +225,6 @@ def clamp_figures(choice: TripleChoice, corners: Corners, points: Array) -> list
 
 
 def support_in(room: CarrierRoom, hole: int) -> SupportPad:
-    """The support in a hole."""
     holes = room.holes
     x, y = holes.points[hole].tolist()
     name = room.toolkit.carriers[holes.carrier[hole]].name
@@ -240,13 +238,7 @@ def spatial(loads: Iterable[Load | SpatialLoad], thickness: float) -> tuple[Spat
 
 
 def checked_force(jaw_force: float | None) -> float | None:
-    """A jaw force in N, or None.
-
-    Raises
-    ------
-    InputError
-        For one that is negative or no number.
-    """
+    """A jaw force in N, or None; refuses one that is negative or no number."""
     if jaw_force is None:
         return None
     if not (isfinite(real(jaw_force)) and real(jaw_force) >= 0):
@@ -302,10 +294,8 @@ def supports_one_by_one(
 ) -> Iterator[Supports]:
     """Yields the supports of each of some fixtures of a query as they are found.
 
-    Parameters
-    ----------
-    each : how many triples of each fixture, None for all; others as of :func:`supports_of`.
-    drops_weak_force : whether a jaw force that is too small for a load is left out, not refused.
+    ``each`` is how many triples of each fixture, None for all; others are as of :func:`supports_of`.
+    ``drops_weak_force`` says whether a jaw force that is too small for a load is left out, not refused.
     """
     acting = acting_on(query, request.thickness) if loads is None else loads
     asked = spatial(acting, request.thickness)

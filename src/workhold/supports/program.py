@@ -38,7 +38,7 @@ from workhold.model.requirements import Load, Zone, zone_of
 from workhold.model.support_bodies import clamp_pieces
 from workhold.model.support_request import SpatialLoad, SupportRequest
 from workhold.model.workpiece import Workpiece
-from workhold.statics.path_pieces import all_pieces, around_arcs, hull_of
+from workhold.statics.path_forces import all_pieces, around_arcs, hull_of
 from workhold.supports.faces import TouchableFace
 
 __all__ = ["acting_on", "capsule", "cutting_loads", "with_program"]
@@ -151,7 +151,6 @@ class KeyedFace:
 
     @property
     def key(self) -> bytes:
-        """The borders as bytes."""
         borders = self.face.borders
         return borders.starts.tobytes() + borders.ends.tobytes() + borders.arcs.tobytes()
 
@@ -201,12 +200,9 @@ def zones_of(
 ) -> tuple[Zone, ...]:
     """The zones of what is swept that keep discs clear of it, as few of them as do.
 
-    Parameters
-    ----------
-    clearance : kept between the cylinders and a disc, in mm.
-    on_face : how far from the border of the face the middle of a disc is at least.
-    disc : radius of the discs.
-    most : zones; where there are more, they are made wider and fewer.
+    The clearance is kept between the cylinders and a disc of radius ``disc``. The middle of a disc is at
+    least ``on_face`` from the border of the face. All are in mm. Where there are more than ``most`` zones,
+    they are made wider and fewer.
     """
     if not len(swept) or not face.faces:
         return ()
@@ -233,10 +229,8 @@ def needed(
 ) -> tuple[IntArray, IntArray]:
     """Numbers of the spans, and of the filled boxes, that decide which places of a face are left.
 
-    Parameters
-    ----------
-    keep : from the cylinders to the middle of a disc, in mm.
-    finest : half diagonal of the smallest squares, in mm.
+    ``keep`` is the distance from the cylinders to the middle of a disc, ``finest`` the half diagonal of the
+    smallest squares, both in mm.
     """
     low, high = face.box
     side = float(max(high - low)) / FIRST
@@ -279,9 +273,7 @@ def in_filled(swept: Swept, points: Array, half: float) -> tuple[NDArray[np.bool
 def covering(swept: Swept, first: IntArray, squares: Array, own: IntArray, keep: float) -> IntArray:
     """Spans that cover squares (N, 3), middles and half diagonals: some at first, then those that cover most.
 
-    Parameters
-    ----------
-    own : (N,) a span that covers each square.
+    ``own`` (N,) is a span that covers each square.
     """
     chosen, open_ = first, np.ones(len(squares), np.bool_)
     for number in first.tolist():
@@ -305,10 +297,7 @@ def covers(swept: Swept, number: int, squares: Array, keep: float) -> NDArray[np
 def capsule(path: tuple[PathVertex, ...], radius: float) -> list[list[float]]:
     """The border of all that is nearer to a point, a segment, or an arc of at most half a turn than a radius.
 
-    Returns
-    -------
-    list
-        Vertices x, y and bulge, run counter-clockwise.
+    Its vertices, x, y and bulge, run counter-clockwise.
     """
     x, y, bulge = path[0]
     if len(path) == 1:

@@ -69,17 +69,14 @@ PRECISIONS = (128, 256, 512)
 
 
 def exact_point(x: float, y: float) -> Point:
-    """A point given by floats."""
     return arb(x), arb(y)
 
 
 def minus(a: Point, b: Point) -> Point:
-    """One vector less another."""
     return a[0] - b[0], a[1] - b[1]
 
 
 def dot(a: Point, b: Point) -> arb:
-    """Scalar product."""
     return a[0] * b[0] + a[1] * b[1]
 
 
@@ -104,12 +101,10 @@ def turned(a: Point, cosine: arb, sine: arb) -> Point:
 
 
 def least(values: Sequence[arb]) -> arb:
-    """The smallest of some numbers."""
     return reduce(arb.min, values)
 
 
 def largest(values: Sequence[arb]) -> arb:
-    """The largest of some numbers."""
     return reduce(arb.max, values)
 
 
@@ -255,7 +250,6 @@ Side = LineSide | ArcSide
 
 
 def line_side(start: Point, end: Point) -> LineSide:
-    """The straight side between two points."""
     step = minus(end, start)
     length = norm(step)
     tangent = step[0] / length, step[1] / length

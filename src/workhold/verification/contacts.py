@@ -235,7 +235,6 @@ class Balance:
 
     @property
     def margin(self) -> arb:
-        """The closure margin."""
         return least(self.shares)
 
     @cached_property
@@ -269,7 +268,6 @@ def parts_spared(forces: Sequence[arb]) -> arb:
 
 
 def inner(a: Sequence[arb], b: Sequence[arb]) -> arb:
-    """Scalar product of two rows."""
     return sum((p * q for p, q in zip(a, b, strict=True)), arb(0))
 
 
@@ -287,10 +285,8 @@ def closure_findings(
 ) -> Iterator[Finding]:
     """Whether four contacts of some names close, and whether what moves clamps.
 
-    Parameters
-    ----------
-    wrench_length : L, half the diameter of the peg-centre locus, in mm.
-    slack_words : what is wrong where the clamping force is none.
+    ``wrench_length`` is L, half the diameter of the peg-centre locus, in mm, and ``slack_words`` what is
+    wrong where the clamping force is none.
     """
     vector, spanned = balance.vector, span(balance.vector, wrench_length)
     yield from rule(
@@ -347,12 +343,10 @@ def wrench_radius(
 
 
 def vector_product(a: Wrench, b: Wrench) -> Wrench:
-    """Vector product in space."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
 def difference(a: Wrench, b: Wrench) -> Wrench:
-    """One vector less another."""
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
 
 

@@ -79,7 +79,6 @@ class EffectiveJudge:
         yield HANGING, self.hangs_over(fixture)
 
     def carrier(self, peg: Peg) -> Carrier:
-        """What a peg stands on."""
         return self.query.toolkit.carrier(peg.carrier)
 
     @cached_property

@@ -74,7 +74,6 @@ class ForceWalk:
 
     @classmethod
     def of(cls, program: Program, forces: CuttingForces) -> ForceWalk:
-        """The walk along a program with its forces."""
         walk, stretches = walk_of(program), forces.stretches
         move = stretches.move
         first = np.arange(0, len(move), RUN)
@@ -262,9 +261,7 @@ def place_findings(
 ) -> Iterator[Finding]:
     """Whether a line, a tool and a contact are those of the worst value.
 
-    Parameters
-    ----------
-    functions, own : of each contact, what the load does to it, and what it has without.
+    ``functions`` are what the load does to each contact, ``own`` what the contact has without it.
     """
     if said["line"] is None:
         return

@@ -124,15 +124,13 @@ def warnings(
     """How many warnings there are.
 
     They are for contacts near an edge, a weak closure, a strong peg, a large location error, and a peg that
-    lets go. At a jaw force that is known they are for a peg that is bent too hard, and for pegs that give way.
+    lets go. At a jaw force that is known they are for a peg that is bent too hard, and for pegs that give
+    way.
 
-    Parameters
-    ----------
-    off : the sum of the tolerances in mm.
-    part : relative error of the file's figures.
-    bending : largest stress in MPa and farthest movement in mm by bent pegs.
-    states_bending : whether the file states how far pegs bend. Where it was made before there was that figure,
-        it may have counted it or not.
+    ``off`` is the sum of the tolerances in mm, ``part`` the relative error of the file's figures, and
+    ``bending`` the largest stress in MPa and the farthest movement in mm by bent pegs. ``states_bending``
+    says whether the file states how far pegs bend. Where it was made before there was that figure, it may
+    have counted it or not.
     """
     pairs = [over(-edge, -NEAR_EDGE, part) for edge in edges]
     pairs.append(over(-figures["closure_margin"], -WEAK_CLOSURE, part))
@@ -227,10 +225,8 @@ def order_faults(
 ) -> Iterator[str]:
     """A fault for a fixture out of order, where the figures ranked by are written.
 
-    Parameters
-    ----------
-    least : the least effective error of all in mm, as written.
-    is_whole : whether all that was found is listed.
+    ``least`` is the least effective error of all in mm, as written. ``is_whole`` says whether all that was
+    found is listed.
     """
     usual = query.without_seating
     if any(key not in fixture.quality for fixture in fixtures for key in figures_ranked_by(usual.ranking)):

@@ -67,13 +67,7 @@ class Claim:
 
 
 def claim_of(fields: Any, pose: Pose, query: Query, path: Path | str, number: int) -> Claim:
-    """The claim that fields make of a fixture, counted from 1, in a pose.
-
-    Raises
-    ------
-    InputError
-        When they cannot be used.
-    """
+    """The claim that fields make of a fixture, counted from 1, in a pose; refuses fields that cannot be used."""
     seating = checked_seating(fields, pose, Path(path), number)
     return Claim(fields, seating.in_toolkit(query.toolkit, query.opening))
 
@@ -81,10 +75,7 @@ def claim_of(fields: Any, pose: Pose, query: Query, path: Path | str, number: in
 def with_claims(fixtures: Sequence[Fixture], query: Query, path: Path | str = "the result") -> list[Fixture]:
     """Fixtures, whose seating is given by fields or is one of the model, with what is claimed of it.
 
-    Raises
-    ------
-    InputError
-        When fields cannot be used.
+    Refuses fields that cannot be used.
     """
     out = list(fixtures)
     for place, fixture in enumerate(out):
@@ -211,12 +202,10 @@ class Listing:
 
     @property
     def is_whole(self) -> bool:
-        """Whether all that was found is listed."""
         return self.complete and dict(self.found) == dict(self.counts) and self.query.best is None
 
     @property
     def hardware(self) -> ToolkitRules:
-        """The rules of its toolkit."""
         return ToolkitRules.of(self.query)
 
 
@@ -271,13 +260,7 @@ def read_listing(path: str | Path) -> Listing:
 
 
 def head_and_fixtures(path: Path) -> tuple[Head, list[Fixture] | Columns, list[Any]]:
-    """The head of a file, its fixtures, or their columns, and the seating of the first of a file in columns.
-
-    Raises
-    ------
-    InputError
-        When the file cannot be read or is no result file.
-    """
+    """The head of a file, its fixtures, or their columns, and the seating of the first of a file in columns."""
     try:
         if is_archive(path):
             # All of it is read once, to compare its checksums.
@@ -298,10 +281,7 @@ def taken_in(
 ) -> Sequence[Fixture]:
     """Fixtures with the travels of their clamps and with the seating that stands apart in a file of columns.
 
-    Raises
-    ------
-    InputError
-        Naming the first one that is of another kind, or whose seating cannot be used.
+    Refuses the first one that is of another kind, or whose seating cannot be used.
     """
     if not isinstance(fixtures, list):
         listed = FixturesInColumns(fixtures, hardware.toolkit)
@@ -359,13 +339,7 @@ def keys_missing(head: Head) -> list[str]:
 def numbers_of(
     counts: Mapping[str, int] | None, key: str, types: Sequence[str], usual: Mapping[str, int] | None = None
 ) -> Mapping[str, int]:
-    """Numbers of fixtures by type.
-
-    Raises
-    ------
-    InputError
-        When they are not of the toolkit's types.
-    """
+    """Numbers of fixtures by type; refuses those that are not of the toolkit's types."""
     counts = usual if counts is None else counts
     if counts is None or set(counts) != set(types):
         raise InputError(

@@ -41,13 +41,7 @@ class UnusableError(Exception):
 
 
 def fixtures_of(items: Iterable[Any], path: Path) -> list[Fixture]:
-    """Fixtures from their JSON objects.
-
-    Raises
-    ------
-    InputError
-        Naming the first one that cannot be used, counted from 1.
-    """
+    """Fixtures from their JSON objects; refuses the first one that cannot be used, counted from 1."""
     fixtures = []
     for number, item in enumerate(items, 1):
         try:
@@ -58,7 +52,6 @@ def fixtures_of(items: Iterable[Any], path: Path) -> list[Fixture]:
 
 
 def fixture_from(item: Any) -> Fixture:
-    """A fixture from its JSON object."""
     if not isinstance(item, dict):
         raise UnusableError("it is no fixture")
     is_pair, has_wall = "directions" in item, "wall" in item
@@ -129,7 +122,6 @@ def directions_from(item: Mapping[str, Any]) -> list[str]:
 
 
 def pose_from(item: Mapping[str, Any]) -> Pose:
-    """The pose of a fixture."""
     pose = item.get("pose")
     if not isinstance(pose, dict):
         raise UnusableError("it has no pose")
@@ -137,7 +129,6 @@ def pose_from(item: Mapping[str, Any]) -> Pose:
 
 
 def quality_from(item: Mapping[str, Any]) -> dict[str, float]:
-    """The figures of quality of a fixture."""
     quality = item.get("quality")
     if not isinstance(quality, dict):
         raise UnusableError("it has no quality")
@@ -218,7 +209,6 @@ def peg_from(item: Mapping[str, Any], directions: list[str]) -> Peg:
 
 
 def word(item: Mapping[str, Any], key: str) -> str:
-    """A word of a JSON object."""
     value = item.get(key)
     if not isinstance(value, str):
         raise UnusableError.of(item, key, "a word")

@@ -73,7 +73,6 @@ class PartRotations:
 
     @classmethod
     def of(cls, workpiece: Workpiece) -> PartRotations:
-        """The rotations of a workpiece."""
         every = enumerate(workpiece.every_outline)
         marks = np.array([[*marks_of(face.segment), number] for number, one in every for face in one.faces])
         center = marks[:, 0].mean()
@@ -284,7 +283,6 @@ class Stance:
 
 
 def stance(fixture: Fixture, toolkit: Toolkit) -> Stance:
-    """How the pegs of a fixture stand in a toolkit."""
     by_place = sorted(fixture.placed, key=lambda peg: (peg.x, peg.y))
     still = [peg for peg in by_place if toolkit.carrier(peg.carrier).travel is None]
     moved = [peg for peg in by_place if peg not in still]

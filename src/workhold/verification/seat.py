@@ -304,7 +304,6 @@ class SeatBalance:
 
     @cached_property
     def margin(self) -> arb:
-        """The closure margin."""
         return closure_margin(*self.pushes)
 
     @cached_property

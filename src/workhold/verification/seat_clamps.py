@@ -136,7 +136,6 @@ class SeatOnPlate:
         hardware: ToolkitRules,
         outline: BallOutline,
     ) -> SeatOnPlate:
-        """The seat of a fixture in a pose."""
         named = zip(hardware.names, fixture.pegs[:LOCATORS], contacts, strict=False)
         held = [(name, peg, contact) for name, peg, contact in named if not contact.is_flush]
         locators = [(name, contact) for name, _, contact in held]
@@ -392,5 +391,4 @@ def verdict(findings: Iterable[Finding]) -> bool | None:
 
 
 def touch(one: Point, other: Point) -> bool:
-    """Whether two tips are one."""
     return all(bool(abs(a - b) < SAME) for a, b in zip(one, other, strict=True))

@@ -43,7 +43,6 @@ class Edge:
 
     @classmethod
     def of(cls, start: Array, end: Array, bulge: float) -> Edge:
-        """The edge between two ends."""
         (x, y), half = end - start, 2.0 * np.arctan(bulge)
         if bulge == 0.0:
             return cls(start, end, bulge, start, 0.0)

@@ -73,7 +73,6 @@ class SupportPlaces:
 
     @property
     def toolkit(self) -> Toolkit:
-        """What holds the part."""
         return self.query.toolkit
 
     def point_of(self, hole: Hole) -> tuple[float, float]:
@@ -131,9 +130,7 @@ class SupportPlaces:
     def hanging_at(self, point: tuple[float, float], slack: float = 0.0) -> int:
         """How the tip stands: 0 with the part under all of it, 1 under its middle, 2 with air below.
 
-        Parameters
-        ----------
-        slack : in mm, by which the middle and the border of the tip may be over air and yet count as not.
+        By so much ``slack`` in mm the middle and the border of the tip may be over air and yet count as not.
         """
         for level in self.top_levels:
             if any(all(side * reach(one, point) > -AGREEMENT for one, side in face) for face in level.faces):
@@ -205,7 +202,6 @@ class TopLevel:
 
 
 def borders_of(loop: Array) -> Loop:
-    """The segments of a loop of vertices."""
     return tuple(loop_segments(np.asarray(loop)))
 
 
@@ -268,7 +264,6 @@ class ClampCells:
         return False
 
     def tip_slack(self, cell: tuple[int, int, int], x: float, y: float) -> float:
-        """The slack of the tip at the middle of a cell."""
         if cell not in self.slack:
             self.slack[cell] = self.rules.tip_room((x, y))
         return self.slack[cell]
@@ -296,10 +291,8 @@ def missing_triples(
 ) -> tuple[list[str], int]:
     """What speaks against a list that says it is complete, and for how many triples nobody can say.
 
-    Parameters
-    ----------
-    listed : the triples of the list, their holes in any order.
-    positions : how many holes could hold a support, as the list says.
+    Triples have their holes in any order. ``positions`` is how many holes could hold a support, as the list
+    says.
     """
     rooms = {hole: rules.pad_room(hole) for hole in holes_near(rules)}
     sure = sorted(hole for hole, room in rooms.items() if room > AGREEMENT)

@@ -278,7 +278,6 @@ def differs(written: float | None, own: float) -> bool:
 
 
 def other_figures(name: str, figures: ReadFigures, known: dict[str, float]) -> Iterator[str]:
-    """A fault for each figure that is another one."""
     for key, value in known.items():
         if differs(getattr(figures, key), value):
             yield f"{key} at the {name} point is {value:.9g}, and is written as {getattr(figures, key)}"

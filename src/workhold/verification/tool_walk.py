@@ -94,12 +94,10 @@ class Stretches:
     radius: Array
 
     def take(self, chosen: NDArray[np.bool_] | IntArray) -> Stretches:
-        """The stretches of a mask or of numbers."""
         rest = (self.first, self.last, self.under, self.over, self.radius)
         return Stretches(self.move[chosen], *(values[chosen] for values in rest))
 
     def halves(self) -> Stretches:
-        """Both halves of each."""
         middle = (self.first + self.last) / 2
         both = [np.concatenate([v, v]) for v in (self.move, self.under, self.over, self.radius)]
         first, last = np.concatenate([self.first, middle]), np.concatenate([middle, self.last])
@@ -128,7 +126,6 @@ class ToolWalk:
 
     @classmethod
     def of(cls, program: Program) -> ToolWalk:
-        """The walk along a program."""
         moves = program.moves
         start, end, bulge = moves.start[:, :2], moves.end[:, :2], moves.bulge
         chord = end - start
@@ -289,7 +286,6 @@ def do_cross(one: Array, other: Array, start: Array, end: Array) -> NDArray[np.b
 
 @lru_cache(maxsize=8)
 def walk_of(program: Program) -> ToolWalk:
-    """The walk along a program."""
     return ToolWalk.of(program)
 
 

@@ -98,7 +98,6 @@ class Judge:
 
     @cached_property
     def hardware(self) -> ToolkitRules:
-        """The rules of the toolkit."""
         return ToolkitRules.of(self.query)
 
     @cached_property
@@ -122,7 +121,6 @@ class Judge:
         return ruling
 
     def ruling_at(self, bits: int, fixture: Fixture) -> Ruling:
-        """The ruling at the precision in force."""
         if bits not in self.measures:
             self.measures[bits] = Measure.of(self.wrench_length, self.diameter, self.query)
         doubt = ""
@@ -282,7 +280,6 @@ class Verification:
 
     @property
     def fixtures(self) -> int:
-        """How many fixtures were looked at."""
         return self.proven + self.refuted + self.undecided
 
     @property
@@ -337,7 +334,6 @@ def verify_file(path: str | Path, progress: Progress = no_progress) -> Verificat
 
 
 def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verification:
-    """Verify what a result claims."""
     query, everything = listing.query, listing.fixtures
     judge, seating = Judge(query), SeatingJudge(query)
     turning = PartRotations.of(query.workpiece)

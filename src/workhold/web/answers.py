@@ -60,7 +60,6 @@ def place_in(sentence: str) -> dict[str, float] | None:
 
 
 def part_answer(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, Any]:
-    """Describes a part with its segments and faces."""
     face_of = face_numbers(workpiece)
     segments, number = [], 0
     for index, loop in enumerate(workpiece.loop_segments):
@@ -85,7 +84,6 @@ def part_answer(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, 
 
 
 def face_numbers(workpiece: Workpiece) -> dict[int, int]:
-    """Returns the number of the face of every segment."""
     return {number: face.number for face in workpiece.faces for number in face.segments}
 
 
@@ -106,7 +104,6 @@ def own_answer(workpiece: Workpiece) -> dict[str, Any]:
 
 
 def shape(segment: Segment, bulge: float) -> dict[str, Any]:
-    """Describes ends and circle of a segment."""
     arc = segment if isinstance(segment, Arc) else None
     return {
         "start": list(segment.start),
@@ -125,7 +122,6 @@ def face_answer(number: int, segment: Segment) -> dict[str, Any]:
 
 
 def figures_answer() -> list[dict[str, Any]]:
-    """Describes the figures of quality."""
     names = ("key", "words", "unit", "more_is_better", "meaning", "decimals")
     return [{name: getattr(figure, name) for name in names} for figure in FIGURES]
 
@@ -218,7 +214,6 @@ def carriers_answer(seen: Shown, fixture: Fixture) -> list[dict[str, Any]]:
 
 
 def body_answer(body: Box) -> dict[str, list[float]]:
-    """Describes the corners of what carries the pegs: a plate, a wall, or the room of a clamp."""
     return {"plate": corners(body)}
 
 
@@ -253,7 +248,6 @@ def draws_back(clamp: ShownClamp) -> float | None:
 
 
 def lattice_of_none(carrier: Carrier) -> dict[str, Any]:
-    """Describes the lattice of a carrier without holes."""
     return {
         "letter": "",
         "origin": carrier.place(0, 0),
@@ -279,11 +273,7 @@ def fixture_answer(
 
     Holes are named so, and plates lie so under the part. All places are in the frame of the fixture as it is
     listed; ``placed`` is by how much it stands further on. Where ``edgeless``, its edge distance stands for
-    none.
-
-    Parameters
-    ----------
-    longest : the edge distance that stands for none, where it is known already.
+    none. It is ``longest``, where that is known already.
     """
     longest = no_edge(workpiece, toolkit) if longest is None else longest
     move = middle_move(fixture, toolkit, workpiece)
@@ -326,7 +316,6 @@ def moved_back(carriers: list[dict[str, Any]], by: Sequence[float]) -> list[dict
         return carriers
 
     def back(place: Sequence[float]) -> list[float]:
-        """Coordinates x, y, and perhaps those of a further corner."""
         return [value - (dx, dy)[k % 2] for k, value in enumerate(place)]
 
     for carrier in carriers:
@@ -369,7 +358,6 @@ def proof_answer(proof: Proof) -> dict[str, Any]:
 
 
 def explanation_answer(explanation: Explanation, workpiece: Workpiece, toolkit: Toolkit) -> dict[str, Any]:
-    """Describes why there is no fixture."""
     nearest = explanation.nearest
     return {
         "contacts": explanation.contacts,

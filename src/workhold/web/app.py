@@ -119,7 +119,6 @@ async def static_file(request: Request, path: str) -> Response:
 
 
 def wrong(status: int, sentence: str, headers: dict[str, str] | None = None) -> JSONResponse:
-    """Makes the answer for an error."""
     more = {"Retry-After": "1"} if status in (429, 503) else {}
     if status in (408, 413):
         more["Connection"] = "close"

@@ -69,7 +69,6 @@ def described(app: FastAPI) -> dict[str, Any]:
 
 
 def add_example(operation: dict[str, Any], example: ApiExample) -> None:
-    """Writes an example into the parameters, the request and the answer of an operation."""
     for parameter in operation.get("parameters", ()):
         given = example.headers if parameter["in"] == "header" else {**example.path, **example.query}
         if parameter["name"] in given:

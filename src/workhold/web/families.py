@@ -47,13 +47,7 @@ class FamilyForm(Form):
     tolerance: ToleranceForm | None = None
 
     def queries(self, most_segments: int) -> tuple[tuple[str, Query], ...]:
-        """The query of each part, and what the part is called.
-
-        Raises
-        ------
-        InputError
-            For the first value that cannot be, and where the solver is not installed.
-        """
+        """The query of each part, and what the part is called; refuses where the solver is not installed."""
         from workhold.family.members import RANKINGS
         from workhold.family.solver import load_solver
 
@@ -86,7 +80,6 @@ class FamilyFound:
     text: str
 
     def answer(self) -> dict[str, Any]:
-        """Describes the family for the page."""
         family = self.family
         points = []
         for plan in self.plans:
@@ -110,13 +103,7 @@ class FamilyFound:
         }
 
     def plan(self, setups: int | None) -> Plan:
-        """Returns the plan with at most so many set-ups; None is the fewest.
-
-        Raises
-        ------
-        InputError
-            When there is none.
-        """
+        """Returns the plan with at most so many set-ups; None is the fewest."""
         fitting = [plan for plan in self.plans if setups is None or plan.point.setups <= setups]
         if not fitting:
             raise InputError("there is no plan with so few set-ups: ask for more.")
@@ -184,7 +171,6 @@ class FamilyPaper:
 
 
 def make_family_paper(payload: FamilyPaper, order: Order) -> bytes:
-    """Makes the bytes of what was ordered."""
     from workhold.family.pages import draw_curve, draw_setups
     from workhold.presenting.papers import pages_bytes
     from workhold.units import unit_named

@@ -63,13 +63,7 @@ Revision = Annotated[
 
 
 def ranked(result: Result, rank: int) -> int:
-    """The index of a fixture.
-
-    Raises
-    ------
-    HTTPException
-        404 when there is none of that rank.
-    """
+    """The index of a fixture; answers 404 when there is none of that rank."""
     if rank > len(result):
         raise HTTPException(404, f"There is no fixture {rank}: {len(result)} are listed.")
     return rank - 1

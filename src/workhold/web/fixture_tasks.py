@@ -103,17 +103,11 @@ class PaperOrder:
 
     @property
     def fixture(self) -> Fixture:
-        """The fixture."""
         return self.result[self.index]
 
     def chosen_supports(self) -> ChosenSupports | None:
         """Finds the supports asked for and chooses a set of them; None where none are asked for,
         or none hold the part.
-
-        Raises
-        ------
-        InputError
-            When there is no such set.
         """
         if self.supports is None:
             return None
@@ -132,7 +126,6 @@ def make_paper(payload: PaperOrder, order: Order) -> tuple[bytes, str | None]:
 
 
 def sheet(order: PaperOrder) -> tuple[bytes, str | None]:
-    """Draws the setup sheet."""
     from workhold.drawing.sheet import result_sheet
     from workhold.model.first_side import first_side
     from workhold.presenting.papers import pages_bytes
@@ -157,7 +150,6 @@ def sheet(order: PaperOrder) -> tuple[bytes, str | None]:
 
 
 def hash_of(result: Result) -> str:
-    """Returns the SHA-256 of the result's file."""
     from workhold.files.result.writer import result_text
 
     digest = sha256()
@@ -167,7 +159,6 @@ def hash_of(result: Result) -> str:
 
 
 def set_up(order: PaperOrder) -> tuple[bytes, str | None]:
-    """Writes the set-up as DXF or STEP, or lists its pins, which need no part zero."""
     from workhold.presenting.papers import model_bytes
 
     ending = Path(order.kind).suffix
@@ -188,7 +179,6 @@ def set_up(order: PaperOrder) -> tuple[bytes, str | None]:
 
 
 def picture(order: PaperOrder) -> tuple[bytes, str | None]:
-    """Draws the picture to set the vise from."""
     from workhold.drawing.fixture_pictures import draw_fixture
     from workhold.drawing.path_drawn import planned_path
     from workhold.model.moved_setup import middle_move, moved_on
@@ -206,7 +196,6 @@ def picture(order: PaperOrder) -> tuple[bytes, str | None]:
 
 
 def bodies(order: PaperOrder) -> tuple[bytes, str | None]:
-    """Writes the fixture in three dimensions."""
     from workhold.presenting.assembly import Assembly
 
     chosen = order.chosen_supports()
@@ -264,12 +253,10 @@ class ClosingOrder:
 
 
 def words_of(held: Held, seating: Seating, unit: str) -> SeatingSentences:
-    """Makes the words for a seating."""
     return SeatingSentences(seating, held[0], held[2], lengths_of(held, unit))
 
 
 def lengths_of(held: Held, unit: str) -> LengthUnit:
-    """Returns the lengths of a unit as they are written for a fixture."""
     return LengthUnit.suiting(unit_named(unit), min(min(carrier.pitch) for carrier in held[2].carriers))
 
 

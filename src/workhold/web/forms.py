@@ -60,13 +60,6 @@ class ToolkitRequest(Form):
         kind: str
 
     def toolkit(self) -> Toolkit:
-        """The toolkit.
-
-        Raises
-        ------
-        InputError
-            When there is no such toolkit.
-        """
         return toolkit_of(self.kind, self.model_dump(exclude={"kind", "title"}))
 
 
@@ -158,13 +151,7 @@ SeveralLoads = TypeAdapter(Annotated[list[LoadForm], Field(max_length=MOST_LOADS
 
 
 def asked_loads(text: str | None) -> tuple[Load, ...] | None:
-    """The loads of an address, JSON as in a search; None where none are given.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
+    """The loads of an address, JSON as in a search; None where none are given."""
     if text is None:
         return None
     return tuple(form.load() for form in of_address(SeveralLoads, "loads", text))
@@ -186,13 +173,6 @@ class SearchForm(Form):
     program: ProgramForm | None = None
 
     def query(self, toolkit: Toolkit, most_segments: int) -> Query:
-        """What is asked of a toolkit.
-
-        Raises
-        ------
-        InputError
-            For the first value that cannot be.
-        """
         loads = tuple(form.load() for form in self.loads)
         workpiece = self.workpiece.workpiece(most_segments)
         program, height = (None, None) if self.program is None else self.program.passed(workpiece.solid)
@@ -227,13 +207,7 @@ class JobForm(SearchForm):
     foolproof: bool = False
 
     def queries(self, most_segments: int) -> tuple[tuple[str, Query], ...]:
-        """The query, which has no name.
-
-        Raises
-        ------
-        InputError
-            For the first value that cannot be.
-        """
+        """The query, which has no name."""
         query = self.query(self.toolkit.toolkit(), most_segments)
         query = evolve(query, best=self.best)
         return (("", evolve(query, seating=self.seating, opening=self.opening, foolproof=self.foolproof)),)
@@ -245,13 +219,7 @@ class ExploreForm(SearchForm):
     toolkits: list[NamedHeldIn] | None = Field(default=None, min_length=1, max_length=MOST_TOOLKITS)
 
     def queries(self, most_segments: int) -> tuple[tuple[str, Query], ...]:
-        """The queries, one for each toolkit, and what the toolkits are called.
-
-        Raises
-        ------
-        InputError
-            For the first value that cannot be.
-        """
+        """The queries, one for each toolkit, and what the toolkits are called."""
         from workhold.files.toolkit_file import preset, preset_names
 
         if self.toolkits is not None:

@@ -295,10 +295,7 @@ class Body:
     async def __call__(self) -> Message:
         """Returns the next piece; once all is there, what comes after it.
 
-        Raises
-        ------
-        HTTPException
-            413 for too much, 408 when it takes too long.
+        Raises HTTPException 413 for too much, 408 when it takes too long.
         """
         if self.is_whole:
             return await self.receive()
@@ -317,7 +314,6 @@ class Body:
 
 
 def too_large(most: int) -> str:
-    """Says that a request is too large."""
     size = f"{most / 1e6:g} MB" if most >= 100_000 else f"{most} bytes"
     return f"The request is larger than {size}: send a drawing of the part's outline only."
 

@@ -37,13 +37,7 @@ EMPTY = FixtureTable.empty()
 
 
 def found_job(request: Request, name: str) -> ServerJob:
-    """Finds the job of a name.
-
-    Raises
-    ------
-    HTTPException
-        404 when there is none.
-    """
+    """Finds the job of a name; answers 404 when there is none."""
     job = state_of(request).jobs.get(name)
     if job is None:
         raise HTTPException(404, "There is no such search (any more): search again.")
@@ -53,15 +47,8 @@ def found_job(request: Request, name: str) -> ServerJob:
 def result_of_job(job: ServerJob, revision: int | None = None, when_over: bool = False) -> Result:
     """Returns the result of a job.
 
-    Parameters
-    ----------
-    revision : that the caller has seen; None for any.
-    when_over : whether only the whole result will do.
-
-    Raises
-    ------
-    HTTPException
-        409 when there is nothing (yet), or the fixtures have changed.
+    ``revision`` is the one that the caller has seen, None for any; ``when_over`` says whether only the whole
+    result will do. Answers 409 when there is nothing (yet), or the fixtures have changed.
     """
     if job.compares:
         raise HTTPException(409, "A comparison of toolkits has no fixtures: search in one of the toolkits.")
@@ -85,7 +72,6 @@ WhenLeft = Annotated[
 
 
 async def begin(request: Request, form: JobForm | ExploreForm | FamilyForm, when_left: str) -> JSONResponse:
-    """Checks a request and begins its job."""
     state = state_of(request)
     address = address_of(request)
     state.jobs.refuse_more(address)
@@ -305,7 +291,6 @@ async def result_csv(request: Request, name: str) -> Response:
 def download(
     job: ServerJob, text: Callable[[Result], Iterator[str]], ending: str, content_type: str
 ) -> Response:
-    """Sends a file while it is written."""
     result = result_of_job(job, when_over=True)
     headers = {"Content-Disposition": attachment(result.workpiece.name, ending)}
     return StreamingResponse(text(result), media_type=content_type, headers=headers)
@@ -328,10 +313,7 @@ Setups = Annotated[
 def family_of_job(request: Request, name: str) -> FamilyFound:
     """Returns the family that a job has found.
 
-    Raises
-    ------
-    HTTPException
-        409 when it is of something else, or there is nothing (yet).
+    Raises HTTPException 409 when it is of something else, or there is nothing (yet).
     """
     job = found_job(request, name)
     if job.kind != "family":

@@ -102,7 +102,6 @@ class ServerJob:
 
     @property
     def compares(self) -> bool:
-        """Whether the job is a comparison of toolkits."""
         return self.kind == "explore"
 
     @property
@@ -197,12 +196,7 @@ class Jobs:
     def refuse_more(self, address: str) -> None:
         """Refuses a further job.
 
-        Raises
-        ------
-        TooManyError
-            When this address has too many that are not over.
-        BusyError
-            When too many wait.
+        Raises TooManyError when this address has too many that are not over, BusyError when too many wait.
         """
         running = sum(not job.is_over and job.address == address for job in self.by_name.values())
         if running >= self.limits.jobs:
@@ -220,13 +214,7 @@ class Jobs:
         sent_bytes: int = 0,
         stops_when_left: bool = False,
     ) -> ServerJob:
-        """Begins a job; ``sent_bytes`` is the length of its request.
-
-        Raises
-        ------
-        BusyError
-            See :meth:`refuse_more`.
-        """
+        """Begins a job; ``sent_bytes`` is the length of its request."""
         self.refuse_more(address)
         weight = sent_bytes * BYTES_KEPT
         job = ServerJob(token_urlsafe(NAME_BYTES), request, queries, address, kind, weight, stops_when_left)
@@ -251,7 +239,6 @@ class Jobs:
         job.changed()
 
     async def run(self, job: ServerJob) -> None:
-        """Runs a job to its end."""
         payload: Any = job.queries
         if job.kind == "design":
             payload = job.queries[0][1], self.limits.fixtures, bool(job.request.get("every", False))
@@ -294,7 +281,6 @@ class Jobs:
         self.make_room()
 
     def keep(self, job: ServerJob, found: Found) -> None:
-        """Keeps the outcome of a search."""
         result, notes = found.result, list(found.result.notes)
         if found.left_out:
             every, put_in_order = sum(result.found.values()), len(result) + found.left_out
@@ -348,7 +334,6 @@ class Jobs:
             self.pool.cancel(job.task)
 
     def delete(self, name: str) -> None:
-        """Stops a job and forgets it."""
         job = self.by_name.pop(name, None)
         if job is None:
             return

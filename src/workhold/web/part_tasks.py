@@ -98,7 +98,6 @@ def builtin_part(name: str, order: Order) -> dict[str, Any]:
 
 
 def read_part(upload: Upload, order: Order) -> dict[str, Any]:
-    """Reads the part of a file that was sent."""
     from workhold.files.part.load import read_workpiece
 
     with sent_file(upload) as path:
@@ -118,13 +117,7 @@ def survey_part(upload: Upload, order: Order) -> dict[str, Any]:
 
 @contextmanager
 def sent_file(upload: Upload) -> Iterator[Path]:
-    """Writes a file that was sent for the duration of the block; errors are raised without its path.
-
-    Raises
-    ------
-    InputError
-        For what cannot be read.
-    """
+    """Writes a file that was sent for the duration of the block; errors are raised without its path."""
     ending = f".{upload.name.rpartition('.')[2].lower()}"
     with TemporaryDirectory(prefix="workhold-") as folder:
         path = Path(folder) / f"part{ending if ending in ENDINGS else ''}"
@@ -147,10 +140,7 @@ def without_path(sentence: str, path: Path) -> str:
 def uploaded_part(upload: Upload, path: Path, loaded: Loaded) -> dict[str, Any]:
     """Describes a part for the page; where it has no name it gets that of the file that was sent.
 
-    Raises
-    ------
-    InputError
-        For more segments than this server takes.
+    Refuses more segments than this server takes.
     """
     from workhold.web.answers import part_answer
     from workhold.web.request_forms import checked_part
@@ -189,10 +179,7 @@ class ShapeOrder:
 def find_shape(payload: ShapeOrder, order: Order) -> PartShape:
     """Finds the solid that gives the outline of a part, and makes a mesh of it.
 
-    Raises
-    ------
-    InputError
-        For a file that cannot be read, one of another part, and a shape too large to keep.
+    Refuses a file of another part, and a shape too large to keep.
     """
     from workhold.files.step.part_shape import part_shape
 

@@ -183,7 +183,6 @@ class Pool:
     busy: int = field(default=0, init=False)
 
     def open(self) -> None:
-        """Starts the workers."""
         self.slots = [asyncio.create_task(self.keep(slot)) for slot in range(self.size)]
 
     async def close(self) -> None:
@@ -196,13 +195,7 @@ class Pool:
         self.give_up("The server was stopped.")
 
     def refuse_more(self, client: str) -> None:
-        """Refuses a further task of a client.
-
-        Raises
-        ------
-        BusyError
-            When too many tasks wait, of this client or of all.
-        """
+        """Refuses a further task of a client (BusyError) when too many wait, of this client or of all."""
         of_client = sum(task.client == client for task in self.waiting)
         if len(self.waiting) >= self.most_waiting or of_client >= self.most_waiting - self.most_waiting // 4:
             raise BusyError("The server is busy: try again in a moment.")

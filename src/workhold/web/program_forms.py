@@ -129,13 +129,7 @@ class ProgramQuestion(Form):
 
 
 def read_sent_program(form: ProgramForm, thickness: float | None) -> ReadProgram:
-    """Reads a program that was sent; its errors name the files as their user does.
-
-    Raises
-    ------
-    InputError
-        For what cannot be read.
-    """
+    """Reads a program that was sent; its errors name the files as their user does."""
     from workhold.files.program.reader import read_program_with_calls
 
     with written(form) as (path, tools):
@@ -188,11 +182,6 @@ def look_at_program(question: ProgramQuestion, order: Order) -> dict[str, Any]:
 
     Heights are above the part's lower side. The paths are SVG path data in tenths of mm, y downward. Each has
     the place of its tool in their order, its kind, and for cutting moves its level of height from 0.
-
-    Raises
-    ------
-    InputError
-        For what cannot be read.
     """
     from workhold.drawing.path_drawn import SHADES, heights_cut
     from workhold.model.program_figures import tip_box, tool_figures
@@ -241,7 +230,6 @@ def look_at_program(question: ProgramQuestion, order: Order) -> dict[str, Any]:
 
 
 def paths_answer(program: Program) -> Iterator[dict[str, Any]]:
-    """The paths of a program by tool, kind and height."""
     from workhold.drawing.path_drawn import PagePaths, moves_by_look
     from workhold.drawing.scene import View
 

@@ -94,13 +94,6 @@ class Form(BaseModel):
 
 
 def of_address(adapter: TypeAdapter[Asked], name: str, text: str) -> Asked:
-    """A value of an address that is JSON.
-
-    Raises
-    ------
-    InputError
-        For anything that the adapter does not take.
-    """
     try:
         return adapter.validate_json(text)
     except ValidationError as error:
@@ -209,13 +202,7 @@ class WorkpieceForm(Form):
     outlines: Annotated[dict[Name, OwnOutlineForm], Field(max_length=MOST_RANGES)] = Field(default={})
 
     def workpiece(self, most_segments: int) -> Workpiece:
-        """The part.
-
-        Raises
-        ------
-        InputError
-            For loops that cannot be used, and for too many segments.
-        """
+        """The part; refuses loops that cannot be used, and too many segments."""
         solid = None if self.solid is None else SolidOutline(**self.solid.model_dump())
         workpiece = checked_part(self.name, self.loops, most_segments, self.departure, solid)
         if not self.outlines:
@@ -236,10 +223,7 @@ def checked_part(
 ) -> Workpiece:
     """A part of loops in mm, with how far they may be from what was drawn.
 
-    Raises
-    ------
-    InputError
-        For loops that cannot be used, and for more segments than this server takes.
+    Refuses more segments than this server takes.
     """
     refuse_many(sum(map(len, loops)), most_segments)
     with numbers_too_large():
@@ -247,13 +231,6 @@ def checked_part(
 
 
 def refuse_many(count: int, most: int) -> None:
-    """Refuses a part of more segments than a server takes.
-
-    Raises
-    ------
-    InputError
-        With both numbers.
-    """
     if count > most:
         raise InputError(
             f"The part has {count} segments, more than the {most} this server takes: draw its outline with "
@@ -263,13 +240,7 @@ def refuse_many(count: int, most: int) -> None:
 
 @contextmanager
 def numbers_too_large() -> Iterator[None]:
-    """Says of numbers with which arithmetic fails that they are too large or too small.
-
-    Raises
-    ------
-    InputError
-        Instead of errors of arithmetic.
-    """
+    """Says of numbers with which arithmetic fails that they are too large or too small."""
     try:
         yield
     except (ArithmeticError, ValueError) as error:
@@ -286,10 +257,7 @@ SeveralHeights = TypeAdapter(Annotated[dict[Name, Point], Field(max_length=MOST_
 def asked_heights(text: str | None) -> dict[str, tuple[float, float]] | None:
     """The heights of carriers in an address, JSON by role in mm; None where none are given.
 
-    Raises
-    ------
-    InputError
-        For anything else, and for heights of which the lower does not come first.
+    Refuses heights of which the lower does not come first.
     """
     if text is None:
         return None
@@ -319,13 +287,6 @@ class SpatialLoadForm(Form):
     tilt: Point = Field(default=[0.0, 0.0])
 
     def load(self) -> SpatialLoad:
-        """The load.
-
-        Raises
-        ------
-        InputError
-            When it is none.
-        """
         return SpatialLoad(**self.model_dump())
 
 
@@ -372,11 +333,5 @@ class FirstSideForm(Form):
 
 
 def asked_of(form: type[AskedForm], name: str, text: str | None) -> AskedForm | None:
-    """A value of an address that is JSON of a form; None where none is given.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
+    """A value of an address that is JSON of a form; None where none is given."""
     return None if text is None else of_address(TypeAdapter(form), name, text)

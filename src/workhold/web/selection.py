@@ -43,13 +43,7 @@ class Selection:
     unfit: bool = True
 
     def entries(self, result: Result) -> Entries:
-        """Chooses fixtures of a result, in order, each with how many that are like it are left out.
-
-        Raises
-        ------
-        InputError
-            As :meth:`indices`.
-        """
+        """Chooses fixtures of a result, in order, each with how many that are like it are left out."""
         found = self.indices(result.table, result.toolkit)
         chosen, bad = found, unfit(result.table.quality, result.query.tolerance)
         if not (self.unfit or bad.all()):
@@ -99,13 +93,7 @@ class Selection:
 
 
 def angle_range(text: str) -> tuple[float, float]:
-    """Reads a range of angles in degrees such as ``-10..10``.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
+    """Reads a range of angles in degrees such as ``-10..10``."""
     low, dots, high = text.partition("..")
     try:
         ends = float(low), float(high)

@@ -206,10 +206,7 @@ def make_server(
 def bound_socket(host: str, port: int) -> socket.socket:
     """Opens a socket that listens at an address.
 
-    Raises
-    ------
-    InputError
-        When there is no such address, or another program listens there.
+    Refuses an address that there is not, or at which another program listens.
     """
     try:
         family, kind, protocol, _, address = socket.getaddrinfo(
@@ -254,7 +251,6 @@ def is_for_others(host: str) -> bool:
 
 
 def hosts_of(host: str, more: Collection[str]) -> Hosts:
-    """Lists the names of a server that listens at a host."""
     everywhere = is_everywhere(host)
     names = {*Hosts().names, *(name.lower() for name in more)}
     names.add(socket.gethostname().lower() if everywhere else host.lower())

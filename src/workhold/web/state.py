@@ -57,7 +57,6 @@ def static_files() -> dict[str, StaticFile]:
 
 
 def found(folder: Traversable, prefix: str) -> Iterator[tuple[str, StaticFile]]:
-    """Reads the files of a known type in a folder and those below it."""
     for entry in folder.iterdir():
         kind = TYPES.get(entry.name.rpartition(".")[2].lower())
         if entry.is_dir():
@@ -114,22 +113,18 @@ class ServerState:
 
 
 def state_of(request: Request) -> ServerState:
-    """Returns the state of the server that received a request."""
     state: ServerState = request.app.state.server
     return state
 
 
 def address_of(request: Request) -> str:
-    """Returns the address of a request's client."""
     return "" if request.client is None else request.client.host
 
 
 async def at_desk(request: Request, name: str, payload: Any, seconds: float | None = None) -> Any:
     """Has a worker do something quick; see :meth:`workhold.web.pool.Pool.run` for what it raises.
 
-    Parameters
-    ----------
-    seconds : how long it may take, if not as long as what is quick.
+    It may take ``seconds``, if not as long as what is quick.
     """
     state = state_of(request)
     return await state.desks.run(
@@ -140,12 +135,8 @@ async def at_desk(request: Request, name: str, payload: Any, seconds: float | No
 async def at_desk_while_heard(request: Request, name: str, payload: Any) -> Any:
     """Has a worker do something quick, and asks it to stop when the client hangs up.
 
-    The task must end by itself when asked to stop.
-
-    Raises
-    ------
-    StoppedError
-        When the client is gone; nobody receives it.
+    The task must end by itself when asked to stop. Raises StoppedError when the client is gone; nobody
+    receives it.
     """
     state = state_of(request)
     task = PoolTask(name, payload, state.limits.desk_seconds, address_of(request), stops_well=True)

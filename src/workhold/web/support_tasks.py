@@ -67,13 +67,6 @@ def find_supports(payload: SupportsOrder, order: Order) -> dict[str, Any]:
 
 
 def found_supports(asked: SupportsOrder) -> Supports:
-    """Finds the best sets of three supports.
-
-    Raises
-    ------
-    InputError
-        For a thickness that nobody knows, pads too large for the holes, and a jaw force too small.
-    """
     from workhold.supports.asking import asked_request
     from workhold.supports.listing import supports_of
 
@@ -88,10 +81,7 @@ def found_supports(asked: SupportsOrder) -> Supports:
 def chosen_supports(asked: SupportsOrder, number: int) -> ChosenSupports | None:
     """Finds the supports that are asked for, and chooses the set of a number from 1; None where none hold.
 
-    Raises
-    ------
-    InputError
-        When there are fewer, and as :func:`found_supports`.
+    Refuses a number of which there is no set.
     """
     found = found_supports(asked)
     return ChosenSupports.of(found, number) if found.triples else None
@@ -190,7 +180,6 @@ def nearest_of_border(corners: np.ndarray, point: np.ndarray) -> tuple[float, fl
 
 
 def notes_of(found: Supports, unit: str) -> list[str]:
-    """Says why there are no sets, or what their figures do not show."""
     from workhold.supports.words import listing_notes, why_no_set
 
     given, listed = unit_named(unit), found.triples

@@ -82,7 +82,6 @@ def explore(payload: tuple[NamedQuery, ...], order: Order) -> None:
 
 
 def explanation(query: Query, order: Order) -> Explanation:
-    """Explains why there is no fixture."""
     from workhold.search.explaining import explain
 
     return explain(query)
@@ -105,7 +104,6 @@ def check_job(
 
 
 def make_lesson(payload: tuple[WorkpieceForm, int], order: Order) -> dict[str, Any]:
-    """Makes what the page that explains the method shows of a part."""
     from workhold.presenting.lesson import lesson
 
     form, most_segments = payload
@@ -113,7 +111,6 @@ def make_lesson(payload: tuple[WorkpieceForm, int], order: Order) -> dict[str, A
 
 
 def loads(payload: tuple[Fixture, Workpiece, Toolkit, LoadsForm], order: Order) -> list[dict[str, Any]]:
-    """Describes what loads do to a fixture."""
     from workhold.presenting.data import load_case_data
     from workhold.statics.loads import load_cases
 
@@ -124,7 +121,6 @@ def loads(payload: tuple[Fixture, Workpiece, Toolkit, LoadsForm], order: Order) 
 
 
 def warnings(payload: tuple[Result, bool, dict[str, Any]], order: Order) -> dict[str, Any]:
-    """Lists the cautions of the only fixture of a result, and says why it is first if it is."""
     from workhold.drawing.sheet_facts import result_cautions
     from workhold.statics.why_first import why_first
 
@@ -137,7 +133,6 @@ def warnings(payload: tuple[Result, bool, dict[str, Any]], order: Order) -> dict
 
 
 def resist(payload: tuple[Result, LoadsForm], order: Order) -> list[tuple[int, float]]:
-    """Returns ranks and load reactions of the fixtures that resist loads best."""
     import numpy as np
 
     from workhold.model.quality import LOAD_REACTION

@@ -49,7 +49,6 @@ class PageField:
 
 
 def page_fields(row: ToolkitField, table: str | None = None) -> Iterator[PageField]:
-    """Yields the fields of the page for a field of a toolkit."""
     for one in row.labels:
         choosing = "several" if one.several else "one"
         form = choosing if one.choices else PAGE_FORMS.get(row.form, row.form)
@@ -94,7 +93,6 @@ class Described:
         }
 
     def answer(self) -> dict[str, Any]:
-        """Describes the kind for the page."""
         toolkit = toolkit_of(self.name, self.words.start)
         types = {one.name: arrangement_words(one, toolkit) for one in toolkit.arrangements}
         return {
@@ -115,7 +113,6 @@ class Described:
 
 
 def hardware_answer() -> list[dict[str, Any]]:
-    """Describes what every kind of toolkit may have for three dimensions, with the fields of each."""
     return [
         {
             "name": name,
@@ -130,7 +127,6 @@ DESCRIBED = tuple(Described(name, words) for name, words in PAGES.items())
 
 
 def kinds_answer() -> list[dict[str, Any]]:
-    """Describes all kinds for the page."""
     return [one.answer() for one in DESCRIBED]
 
 

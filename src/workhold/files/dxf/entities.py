@@ -109,10 +109,7 @@ def arc(entity: Any) -> RawChain:
 
 
 def positive_radius(entity: Any) -> float:
-    """The radius in drawing units.
-
-    Raises InputError when it is negative or not a number (zero gives a chain of zero length, dropped later).
-    """
+    """The radius in drawing units; refuses a negative one (zero gives a chain of zero length, dropped later)."""
     radius = float(entity.dxf.radius)
     if not radius >= 0:
         raise InputError(f"has the radius {radius:g}: correct it.")
@@ -120,7 +117,6 @@ def positive_radius(entity: Any) -> float:
 
 
 def lwpolyline(entity: Any) -> RawChain:
-    """An LWPOLYLINE with bulges."""
     height = float(entity.dxf.elevation)
     rows = [((float(x), float(y), height), float(bulge)) for x, y, bulge in entity.get_points("xyb")]
     return in_layout(entity, *polyline_points(rows, bool(entity.closed)), numbered=True)
@@ -129,7 +125,7 @@ def lwpolyline(entity: Any) -> RawChain:
 def polyline(entity: Any) -> RawChain:
     """An old-style POLYLINE: flat ones with bulges, 3D ones as lines (refused later unless they lie flat).
 
-    Raises InputError for meshes and for polylines smoothed into splines.
+    Refuses meshes and polylines smoothed into splines.
     """
     if entity.is_poly_face_mesh or entity.is_polygon_mesh:
         raise InputError("is a 3D mesh, which has no outline: draw the part flat, with lines and arcs.")
@@ -157,7 +153,7 @@ def polyline_points(rows: Sequence[tuple[Point3, float]], closed: bool) -> tuple
 def spline(entity: Any) -> RawChain:
     """A SPLINE by its control points, or else through its fit points; its numbers are never in OCS.
 
-    Raises InputError for one whose numbers do not agree.
+    Refuses one whose numbers do not agree.
     """
     control = [tuple(map(float, point)) for point in entity.control_points]
     if not control:
@@ -173,9 +169,8 @@ def through_fit_points(entity: Any) -> RawChain:
     """A SPLINE of fit points alone, as CAD programs draw it.
 
     It is the cubic of continuous curvature through them whose parameter grows as the chords are long. At its
-    ends it has the tangents given, or else no curvature; where it is closed, it is periodic.
-
-    Raises InputError for fewer than two different points, and numbers that are none.
+    ends it has the tangents given, or else no curvature; where it is closed, it is periodic. Refuses fewer
+    than two different points, and numbers that are none.
     """
     every = [(float(x), float(y), float(z)) for x, y, z in entity.fit_points]
     if not all(isfinite(value) and abs(value) <= MOST_LENGTH for point in every for value in point):
@@ -205,7 +200,7 @@ def through_fit_points(entity: Any) -> RawChain:
 def ellipse(entity: Any) -> RawChain:
     """An ELLIPSE or a part of one; its numbers are never in OCS.
 
-    Raises InputError when its axes are not those of an ellipse.
+    Refuses axes that are not those of an ellipse.
     """
     seen_from_below(entity)
     center, major = entity.dxf.center, entity.dxf.major_axis
@@ -221,7 +216,6 @@ def ellipse(entity: Any) -> RawChain:
 
 
 def curve(pieces: Pieces, heights: Sequence[float]) -> RawChain:
-    """A chain of one curve."""
     ends = point_at(pieces, 0.0), point_at(pieces, float(len(pieces)))
     return RawChain([(x, y, heights[0]) for x, y in ends], [0.0], curved={0: pieces}, heights=heights)
 

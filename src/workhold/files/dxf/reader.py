@@ -66,7 +66,6 @@ def read_dxf(
     Parameters
     ----------
     path : the file, which ezdxf opens by itself.
-    content : its bytes.
     unit : overrides the file's unit.
     usual_unit : the unit of a file that does not say.
     layers : layers to read; all visible ones when None.
@@ -126,10 +125,7 @@ def read_document(
 
 
 def refuse_other_formats(content: bytes) -> None:
-    """Refuses what is plainly no DXF, or cut short, before ezdxf tries its best with it.
-
-    Raises InputError, saying what it is.
-    """
+    """Refuses what is plainly no DXF, or cut short, before ezdxf tries its best with it."""
     if content[:4] == b"AC10" or content[:2] == b"MC":
         raise InputError("this is a DWG drawing, not a DXF file: save it as DXF.")
     if content.startswith(BINARY):
@@ -141,10 +137,7 @@ def refuse_other_formats(content: bytes) -> None:
 
 
 def opened(path: Path) -> tuple[Any, list[str]]:
-    """The ezdxf document, with a remark when the file had to be repaired.
-
-    Raises InputError when even the repair fails.
-    """
+    """The ezdxf document, with a remark when the file had to be repaired; refuses one beyond repair."""
     from ezdxf import recover
     from ezdxf.filemanagement import readfile
 
@@ -177,13 +170,7 @@ MOST_TAGS = 15
 
 
 def refuse_crowded(content: bytes, budget: Budget) -> None:
-    """Refuses a file with more in it than a drawing may have, before the library takes long to read it.
-
-    Raises
-    ------
-    InputError
-        With the limit.
-    """
+    """Refuses a file with more in it than a drawing may have, before the library takes long to read it."""
     most = budget.limits.most_elements
     if most is None or len(content) <= FEW_BYTES:
         return

@@ -78,18 +78,11 @@ class DxfWalk:
         }
 
     def visit_all(self, entities: Iterable[Any], nest: BlockNesting) -> None:
-        """Visits entities in drawing order."""
         for entity in entities:
             self.visit(entity, nest)
 
     def visit(self, entity: Any, nest: BlockNesting) -> None:
-        """Collects one entity, or notes why it was left out.
-
-        Raises
-        ------
-        InputError
-            For an entity that is refused, naming it.
-        """
+        """Collects one entity, or notes why it was left out."""
         self.budget.spend()
         kind = entity.dxftype()
         label = f"{kind} {name_of(entity)}{nest.suffix}"
@@ -159,13 +152,7 @@ class DxfWalk:
         self.chains.append(chain)
 
     def check_level(self, raw: RawChain, placement: Placement, label: str) -> None:
-        """Refuses entities that are not level, or lie at another height than those before.
-
-        Raises
-        ------
-        InputError
-            Naming both heights.
-        """
+        """Refuses entities that are not level, or lie at another height than those before."""
         for z in (*(z for _, _, z in raw.points), *raw.heights):
             height = placement.height_scale * z + placement.height
             if self.level is None:
@@ -180,10 +167,7 @@ class DxfWalk:
     def visit_insert(self, insert: Any, nest: BlockNesting, layer: str, label: str) -> None:
         """Visits the entities of an inserted block, once for every place of an array.
 
-        Raises
-        ------
-        InputError
-            For tilted or crushed blocks, and blocks that contain themselves.
+        Refuses tilted or crushed blocks, and blocks that contain themselves.
         """
         key = layer.casefold()
         name = str(insert.dxf.name)
@@ -237,13 +221,7 @@ class DxfWalk:
         return size
 
     def refuse_missing_layers(self) -> None:
-        """Refuses chosen layers on which there is no outline entity.
-
-        Raises
-        ------
-        InputError
-            Listing the layers that have some.
-        """
+        """Refuses chosen layers on which there is no outline entity."""
         missing = [name for key, name in (self.wanted or {}).items() if key not in self.names]
         if missing:
             have = listed(sorted(self.names.values())) or "none"
@@ -317,10 +295,7 @@ def vertex_count(entity: Any) -> int:
 
 
 def said_of(label: str, function: Callable[[Any], T], entity: Any) -> T:
-    """Apply a function to an entity; its complaints begin with the entity's label.
-
-    Raises InputError as the function does.
-    """
+    """Apply a function to an entity; its complaints begin with the entity's label."""
     try:
         return function(entity)
     except InputError as error:
@@ -334,7 +309,6 @@ def numbered(label: str, k: int) -> str:
 
 
 def block_placement(insert: Any) -> Placement:
-    """The placement of a block by a level INSERT."""
     matrix = insert.matrix44()
     ax, ay, _ = matrix.transform_direction((1, 0, 0))
     cx, cy, _ = matrix.transform_direction((0, 1, 0))

@@ -134,7 +134,6 @@ def peg_layer(carrier: Carrier) -> str:
 
 
 def setting_layer(mover: Carrier) -> str:
-    """The layer of the length to set on what moves."""
     return "OPENING" if mover.has_lattice else f"{layer_of(mover)}_SETTING"
 
 
@@ -157,7 +156,6 @@ def layers_of(toolkit: Toolkit) -> dict[str, int]:
 
 
 def add_part(space: Modelspace, part: Workpiece) -> None:
-    """Adds the loops of the part in its pose."""
     number = 0
     for loop in part.loops:
         face = next(face for face in part.faces if number in face.segments)
@@ -169,7 +167,6 @@ def add_part(space: Modelspace, part: Workpiece) -> None:
 
 
 def add_pegs(space: Modelspace, seen: Shown, clearance: float) -> None:
-    """Adds the pegs, the names of their holes, and the zones where the cutter is not to go."""
     for each in seen.carriers:
         for peg in each.pegs:
             if each.carrier.peg_radius > 0:
@@ -186,7 +183,6 @@ def add_pegs(space: Modelspace, seen: Shown, clearance: float) -> None:
 
 
 def add_clamps(space: Modelspace, seen: Shown, clearance: float) -> None:
-    """Adds the clamps: each tip, its body from the hole, what to keep out of, and an arrow along its push."""
     for clamp in seen.clamps:
         layer = {"layer": layer_of(clamp.carrier)}
         radius, tip = clamp.carrier.peg_radius, (clamp.tip.x, clamp.tip.y)
@@ -216,13 +212,11 @@ def add_outline(space: Modelspace, outline: Sequence[Segment], layer: str) -> No
 
 
 def add_text(space: Modelspace, words: str, at: Point, seen: Shown) -> None:
-    """Adds a line of text about a point."""
     text = space.add_text(words, height=TEXT_HEIGHT * seen.pitch, dxfattribs={"layer": "TEXT"})
     text.set_placement(at, align=TextEntityAlignment.MIDDLE_CENTER)
 
 
 def add_carriers(space: Modelspace, seen: Shown) -> None:
-    """Adds the plates with their holes, column letters below them and row numbers beside them."""
     for each in seen.carriers:
         carrier, plate = each.carrier, each.plate
         space.add_lwpolyline(plate.corners, close=True, dxfattribs={"layer": layer_of(carrier)})

@@ -74,7 +74,6 @@ class Placement:
 
     @property
     def keeps_circles(self) -> bool:
-        """Whether circles stay circles."""
         first, second = hypot(self.a, self.b), hypot(self.c, self.d)
         slack = CIRCULAR * max(first, second)
         return abs(first - second) <= slack and abs(self.a * self.c + self.b * self.d) <= slack * max(
@@ -122,7 +121,6 @@ class Chain:
         return [segment_from_bulge(start, end, bulge) for (start, end), bulge in steps if start != end]
 
     def reversed(self) -> Chain:
-        """Returns the chain run the other way."""
         return Chain(
             self.points[::-1], tuple(-b if b else 0.0 for b in reversed(self.bulges)), self.labels[::-1]
         )
@@ -219,10 +217,7 @@ def listed(items: Sequence[str]) -> str:
 def cleaned(chains: Iterable[Chain]) -> Drawing:
     """Drop entities and polyline segments of zero length (below 1e-7 mm), with remarks.
 
-    Raises
-    ------
-    InputError
-        For coordinates or bulges that are not finite, or so large that the unit must be wrong.
+    Refuses coordinates or bulges that are not finite, or so large that the unit must be wrong.
     """
     kept: list[Chain] = []
     empty: list[str] = []
@@ -252,10 +247,7 @@ def cleaned(chains: Iterable[Chain]) -> Drawing:
 
 
 def refuse_numbers(label: str, x: float = 0.0, y: float = 0.0, bulge: float = 0.0) -> None:
-    """Refuses a place in mm or a bulge of a labelled segment that is not finite or absurdly large.
-
-    Raises InputError, naming the segment.
-    """
+    """Refuses a place in mm or a bulge of a labelled segment that is not finite or absurdly large."""
     if not (isfinite(x) and isfinite(y) and isfinite(bulge)):
         raise InputError(
             f"{label} has a coordinate, radius or bulge that is not a finite number: correct it."
@@ -293,10 +285,8 @@ def without_segment(label: str) -> str:
 
 
 def at(point: Point) -> str:
-    """A point in words."""
     return f"({point[0]:.6g}, {point[1]:.6g})"
 
 
 def counted(count: int, one: str, many: str) -> str:
-    """A number and its noun."""
     return f"{count} {one if count == 1 else many}"

@@ -44,13 +44,7 @@ MOST_PIECES = 20_000
 
 
 def checked_fit(fit: float | None) -> float | None:
-    """A fit that can be used.
-
-    Raises
-    ------
-    InputError
-        When it is no length, or too small a one.
-    """
+    """A fit that can be used; refuses what is no length, or too small a one."""
     if fit is not None and not (isfinite(fit) and fit >= LEAST_FIT):
         raise InputError(
             f"The fit {fit:g} is not usable: give a length of {LEAST_FIT:g} mm or more, such as 0.01."
@@ -80,17 +74,9 @@ class CurveReader:
     ) -> Chain | None:
         """The chain of placed segments; None where nothing is left of it.
 
-        Parameters
-        ----------
-        points, bulges, labels : of N segments, in the coordinates they are drawn in.
-        curved : the segments that are curves, by their numbers, in these coordinates; their bulges mean
-            nothing.
-        placement : the map to mm; arcs that it makes elliptical are curves.
-
-        Raises
-        ------
-        InputError
-            For more curves than a drawing has.
+        Points, bulges and labels are of N segments, in the coordinates they are drawn in. ``curved`` has
+        those that are curves, by their numbers; their bulges mean nothing. The placement is the map to mm;
+        arcs that it makes elliptical are curves. Refuses more curves than a drawing has.
         """
         bent = dict(curved)
         if not placement.keeps_circles:
@@ -152,7 +138,6 @@ class CurveReader:
 
 
 def readings_of(labels: Iterable[str], found: Mapping[str, CurveReading]) -> dict[str, CurveReading]:
-    """How the curves among some labelled segments were read."""
     return {label: found[label] for label in labels if label in found}
 
 
@@ -165,16 +150,8 @@ def refuse_true_curves(
 ) -> None:
     """Refuses an outline with curves that are no lines or arcs, unless a fit is given.
 
-    Parameters
-    ----------
-    labels : of the outline's segments.
-    layered : whether the file has layers to choose.
-    budget : what reading the file may still take; None is no limit.
-
-    Raises
-    ------
-    InputError
-        Naming the first curves, and a fit that would do.
+    Names the first curves, and a fit that would do. ``layered`` says whether the file has layers to choose.
+    ``budget`` is what reading the file may still take; None is no limit.
     """
     true = {label: one for label, one in readings_of(labels, found).items() if not one.is_disguise}
     if fit is not None or not true:

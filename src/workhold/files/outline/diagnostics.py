@@ -56,12 +56,9 @@ def unit_asked(
 ) -> UnitAskedError:
     """The question for the unit of a drawing that lacks it, with what it would be in each.
 
-    Parameters
-    ----------
-    lacking : what is not known, up to the colon.
-    chains : what is drawn, a unit of the drawing for a mm; nothing where that cannot be read.
-    pixels : how many pixels one unit of the drawing is; None where drawings have none.
-    in_pixels : whether the drawing says that it is in pixels.
+    ``lacking`` is what is not known, up to the colon. Chains are what is drawn, a unit of the drawing for a
+    mm; nothing where that cannot be read. ``pixels`` is how many pixels one unit of the drawing is, None
+    where drawings have none; ``in_pixels`` says whether the drawing says that it is in pixels.
     """
     size = size_of(chains) if all(map(has_sound_numbers, chains)) else None
     shown = of_pixels = ""
@@ -96,10 +93,7 @@ ENDS_NAMED = 4
 def refuse_nothing_closed(strays: Sequence[Stray], remarks: Sequence[str]) -> NoReturn:
     """Raise the error for a drawing without any closed outline.
 
-    Raises
-    ------
-    InputError
-        Naming open ends and how far each is from the nearest other one.
+    It names open ends and how far each is from the nearest other one.
     """
     if not strays:
         hint = f" ({' '.join(remarks)})" if remarks else ""
@@ -108,13 +102,7 @@ def refuse_nothing_closed(strays: Sequence[Stray], remarks: Sequence[str]) -> No
 
 
 def refuse_open_outline(part: DrawnPart, strays: Sequence[Stray]) -> None:
-    """Refuses to take a hole for the part when the outline around it is nearly closed, but not quite.
-
-    Raises
-    ------
-    InputError
-        Naming the open ends.
-    """
+    """Refuses to take a hole for the part when the outline around it is nearly closed, but not quite."""
     for stray in strays:
         box = box_around(stray.chain.segments)
         gap, size = dist(stray.chain.points[0], stray.chain.points[-1]), dist(box[:2], box[2:])
@@ -205,11 +193,7 @@ MOST_LAYERS = 12
 def with_layers_named(error: InputError, drawing: Drawing, usable: Callable[[Drawing], bool]) -> InputError:
     """What is wrong with an outline, the layers that are named in it, and a choice of layers that is usable.
 
-    Parameters
-    ----------
-    error : what is wrong.
-    drawing : with its layers.
-    usable : whether a part can be read of a drawing.
+    ``usable`` says whether a part can be read of a drawing.
     """
     said = str(error)
     # The name of a segment may begin like that of another one.

@@ -37,24 +37,10 @@ CROWD = 64
 
 
 def close_pairs(points: NDArray[np.float64], tolerance: float) -> NDArray[np.int64]:
-    """Pairs of points at most a tolerance apart.
+    """Pairs (P, 2) of points (N, 2) at most a tolerance apart, in mm.
 
     Points that are exactly equal are paired in a row, first to second, second to third; distinct points in
-    all pairs.
-
-    Parameters
-    ----------
-    points : (N, 2) array in mm.
-    tolerance : in mm, positive.
-
-    Returns
-    -------
-    (P, 2) array of indices.
-
-    Raises
-    ------
-    InputError
-        When so many points crowd within the tolerance that it cannot be meant.
+    all pairs. Refuses so many points within the tolerance that it cannot be meant.
     """
     if len(points) < 2:
         return np.empty((0, 2), dtype=np.int64)
@@ -187,18 +173,10 @@ class Joined:
 
 
 def join(chains: Sequence[Chain], tolerance: float, budget: Budget | None = None) -> Joined:
-    """Joins chains end to end.
+    """Joins chains in mm, without segments of zero length, end to end across gaps up to a tolerance.
 
-    Parameters
-    ----------
-    chains : open and closed chains in mm, without segments of zero length.
-    tolerance : largest gap to close, in mm.
-    budget : what reading the file may still take; None is no limit.
-
-    Raises
-    ------
-    InputError
-        Where so many ends crowd within the tolerance that it cannot be meant, and where time is up.
+    ``budget`` is what reading the file may still take; None is no limit. Refuses so many ends within the
+    tolerance that it cannot be meant.
     """
     budget = budget or Budget(UNLIMITED)
     open_chains = [c for c in chains if not c.closed]
@@ -250,7 +228,6 @@ def hanging_together(node: NDArray[np.int64], partner: Sequence[int], ends: Sequ
 
 
 def closed_loop(chain: Chain) -> Loop:
-    """The loop of a closed chain."""
     rows = [(x, y, bulge) for (x, y), bulge in zip(chain.points[:-1], chain.bulges, strict=True)]
     return Loop(np.array(rows, dtype=np.float64), chain.labels)
 
@@ -348,8 +325,7 @@ def close_gaps(
 ) -> list[tuple[Junction, Sequence[int]]]:
     """Joins open ends across gaps, nearest first, writing into ``partner``.
 
-    Returns the junctions where a third end lies within the tolerance of a gap's ends. Raises InputError where
-    very many do.
+    Returns the junctions where a third end lies within the tolerance of a gap's ends; refuses very many.
     """
     if not loose or tolerance <= 0:
         return []
@@ -384,12 +360,10 @@ def length(chain: Chain) -> float:
 
 
 def end_point(chains: Sequence[Chain], end: int) -> Point:
-    """The point of an end."""
     return chains[end // 2].points[-(end % 2)]
 
 
 def junction(chains: Sequence[Chain], ends: Sequence[int], within: str = "") -> Junction:
-    """Three or more ends at one point."""
     names = tuple(chains[end // 2].labels[-(end % 2)] for end in ends)
     return Junction(end_point(chains, ends[0]), names, within)
 

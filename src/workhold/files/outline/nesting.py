@@ -30,7 +30,7 @@ from workhold.geometry.segment import Segment, box_around, segment_rows
 from workhold.geometry.subdivision import subdivide
 from workhold.kernels.base.distance import is_inside, outline_distances
 
-__all__ = ["DrawnPart", "as_one", "nest", "refuse_loops_across"]
+__all__ = ["DrawnPart", "as_one", "nest", "overlap", "refuse_loops_across"]
 
 
 # mm. How far beside a line it is asked whether both of two outlines lie there.
@@ -56,7 +56,6 @@ class DrawnPart:
 
     @property
     def segment_count(self) -> int:
-        """Segments of all its loops together."""
         return sum(len(loop.labels) for loop in self.loops)
 
     def __str__(self) -> str:
@@ -79,7 +78,6 @@ class MeasuredLoop:
 
     @classmethod
     def of(cls, loop: Loop) -> MeasuredLoop:
-        """Measures a loop."""
         segments = loop_segments(loop.vertices)
         area = signed_area(segments)
         if area < 0:
@@ -153,11 +151,6 @@ def refuse_loops_across(part: DrawnPart, others: Sequence[DrawnPart], budget: Bu
     """Refuses a part that loops of other parts cross or touch: holes that were drawn half outside.
 
     Another outline may lie along its own, on the other side: neighbours of a nest that share a cut.
-
-    Raises
-    ------
-    InputError
-        Naming both segments and the point; also where time is up.
     """
     budget = budget or Budget(UNLIMITED)
     comparisons = Comparisons("the part")
@@ -205,10 +198,7 @@ def overlap(a: Sequence[float], b: Sequence[float]) -> bool:
 
 
 def chosen_part(parts: Sequence[DrawnPart], number: int | str | None) -> DrawnPart:
-    """The part of a number, or the largest.
-
-    Raises InputError when there is no part of that number, and for a name.
-    """
+    """The part of a number, or the largest; refuses a number of no part, and a name."""
     if number is None:
         return parts[0]
     if isinstance(number, str):

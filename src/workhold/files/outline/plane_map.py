@@ -78,16 +78,9 @@ class Cluster:
 
 
 def clusters_of(chains: Sequence[Chain], tolerance: float) -> list[Cluster]:
-    """The lines and arcs of some chains, cut where they meet, by what hangs together.
+    """The lines and arcs of some chains, cut where they meet, by what hangs together; refuses too many.
 
-    Parameters
-    ----------
-    tolerance : ends this near to others, or to a line or an arc, lie on it; in mm.
-
-    Raises
-    ------
-    InputError
-        Where there is too much of it.
+    Ends that are within the tolerance in mm of others, or of a line or an arc, lie on it.
     """
     segments, labels, numbers = list[Segment](), list[str](), list[int]()
     for number, chain in enumerate(chains):
@@ -190,7 +183,6 @@ def nearest_other(places: NDArray[np.float64], segment: Segment, point: Point) -
 
 
 def owners_of(carrier: CutCarrier, position: float) -> tuple[int, ...]:
-    """Numbers of the segments that cover a position of a carrier."""
     turns = (0.0, -2 * pi, 2 * pi) if isinstance(carrier.segment, Arc) else (0.0,)
     return tuple(
         owner
@@ -341,7 +333,6 @@ def cluster(
     labels: Sequence[str],
     numbers: Sequence[int],
 ) -> Cluster:
-    """The cluster of some edges."""
     own = set(members)
     place = [tuple(row) for row in points.tolist()]
     faces, inner = [], defaultdict[int, int](int)
@@ -379,7 +370,6 @@ def cluster(
 def loop_of(
     place: Sequence[Point], edges: Sequence[Edge], walk: Sequence[int], labels: Sequence[str]
 ) -> Loop:
-    """The loop of a walk."""
     rows, names = [], []
     for half in walk:
         edge = edges[half // 2]

@@ -22,7 +22,7 @@ from workhold.files.budget import Budget, OverBudgetError
 from workhold.files.outline.chain import Chain, Drawing, at, counted, listed, without_segment
 from workhold.files.outline.diagnostics import surrounds
 from workhold.files.outline.joining import Joined, Junction, Loop, Stray, join
-from workhold.files.outline.nesting import DrawnPart, MeasuredLoop, chosen_part, nest
+from workhold.files.outline.nesting import DrawnPart, MeasuredLoop, chosen_part, nest, overlap
 from workhold.files.outline.plane_map import Cluster, clusters_of
 from workhold.files.questions import PART_NUMBER
 from workhold.geometry.segment import Arc, Line, Segment, box_around
@@ -81,19 +81,11 @@ class Outlines:
 
 
 def outlines_of(chains: Sequence[Chain], tolerance: float, drawing: Drawing, budget: Budget) -> Outlines:
-    """The outlines that chains make.
+    """The outlines that chains make, in mm and without segments of zero length.
 
-    Parameters
-    ----------
-    chains : in mm, without segments of zero length.
-    tolerance : largest gap to close, in mm.
-    drawing : that they are of, for the layers and the looks of lines.
-    budget : what reading the file may still take.
-
-    Raises
-    ------
-    InputError
-        Where the tolerance cannot be meant, and where time is up.
+    Gaps up to the tolerance in mm are closed. The drawing is the one that they are of, for the layers and the
+    looks of lines, and ``budget`` what reading the file may still take. Refuses a tolerance that cannot be
+    meant.
     """
     joined = join(chains, tolerance, budget)
     remarks = list(joined.remarks)
@@ -105,7 +97,6 @@ def outlines_of(chains: Sequence[Chain], tolerance: float, drawing: Drawing, bud
 
 
 def with_doubled_lines_once(joined: Joined, tolerance: float, remarks: list[str]) -> Joined:
-    """Joins what did not close because lines or arcs were drawn partly on each other, with remarks."""
     chains = [stray.chain for stray in joined.strays]
     if not lie_on_each_other([segment for chain in chains for segment in chain.segments], tolerance):
         return joined
@@ -131,7 +122,7 @@ def untangled(
     junctions = JunctionsAt.of(joined.junctions, drawing.layers)
     tangled = list(joined.tangled)
     around = box_around([segment for chain in tangled for segment in chain.segments])
-    near = [loop for loop in joined.loops if meets(box_of(loop), around)]
+    near = [loop for loop in joined.loops if overlap(box_of(loop), around)]
     extra = [*(stray.chain for stray in joined.strays), *map(chain_of, near)]
     clusters = [
         one
@@ -258,7 +249,6 @@ class JunctionsAt:
     def spot(
         self, labels: Iterable[str], box: tuple[float, float, float, float], bounds_something: bool
     ) -> list[BadSpot]:
-        """The bad spot of lines that hang together, by the first junction among them."""
         number = min((self.first[label] for label in labels if label in self.first), default=None)
         if number is None:
             return []
@@ -278,11 +268,8 @@ def spots_once(spots: Sequence[BadSpot]) -> list[BadSpot]:
 def chosen_outline(outlines: Outlines, number: int | str | None) -> DrawnPart:
     """The part of a number, or the largest that can be told.
 
-    Raises
-    ------
-    InputError
-        Where there is none, where a bad spot lies in it, and where something larger that cannot be told may
-        be meant.
+    Refuses where there is none, where a bad spot lies in it, and where something larger that cannot be told
+    may be meant.
     """
     parts, spots = outlines.parts, outlines.spots
     if number is not None or not spots:
@@ -308,7 +295,7 @@ def chosen_outline(outlines: Outlines, number: int | str | None) -> DrawnPart:
 
 def is_spoiled(part: DrawnPart, spot: BadSpot) -> bool:
     """Whether a bad spot lies in the material of a part, where it may be the border of a hole."""
-    if not spot.bounds_something or not meets(part.bounds, spot.box):
+    if not spot.bounds_something or not overlap(part.bounds, spot.box):
         return False
     x, y = spot.junction.point
     outer, *holes = (MeasuredLoop.of(loop) for loop in part.loops)
@@ -329,7 +316,6 @@ def spot_remarks(outlines: Outlines) -> list[str]:
 
 
 def shared_remarks(one: Cluster) -> list[str]:
-    """What to say of outlines that share lines."""
     if len(one.faces) < 2:
         return []
     places = listed([f"{label} from {at(start)} to {at(end)}" for label, start, end in one.shared])
@@ -340,7 +326,6 @@ def shared_remarks(one: Cluster) -> list[str]:
 
 
 def doubled_places(one: Cluster) -> list[str]:
-    """Where lines lie on each other."""
     return [
         f"{without_segment(label)} and {without_segment(other)} from {at(start)} to {at(end)}"
         for label, other, start, end in one.doubled
@@ -348,24 +333,16 @@ def doubled_places(one: Cluster) -> list[str]:
 
 
 def stray_of(chain: Chain) -> Stray:
-    """An open piece."""
     return Stray(chain, without_segment(chain.labels[0]), without_segment(chain.labels[-1]))
 
 
 def chain_of(loop: Loop) -> Chain:
-    """A loop as a closed chain."""
     points = [(float(x), float(y)) for x, y in loop.vertices[:, :2]]
     return Chain((*points, points[0]), tuple(loop.vertices[:, 2].tolist()), loop.labels)
 
 
 def box_of(loop: Loop) -> tuple[float, float, float, float]:
-    """The bounding box of a loop."""
     return box_around(chain_of(loop).segments)
-
-
-def meets(a: Sequence[float], b: Sequence[float]) -> bool:
-    """Whether two bounding boxes meet."""
-    return a[0] <= b[2] and b[0] <= a[2] and a[1] <= b[3] and b[1] <= a[3]
 
 
 # Radians and mm: lines and circles nearer than this are looked at as one.
@@ -390,7 +367,6 @@ def lie_on_each_other(segments: Sequence[Segment], tolerance: float) -> bool:
 
 
 def lines_overlap(lines: Sequence[Line], tolerance: float) -> bool:
-    """Whether two of some lines run along each other."""
     rows = np.array([(*one.start, *one.end) for one in lines])
     rows = rows - np.tile(rows.reshape(-1, 2).mean(axis=0), 2)
     angle = np.arctan2(rows[:, 3] - rows[:, 1], rows[:, 2] - rows[:, 0]) % pi

@@ -41,17 +41,8 @@ __all__ = ["ObjectPart", "drawing_of_object", "read_json"]
 def read_json(path: Path, content: bytes, options: Mapping[str, Any], own: bool) -> Loaded:
     """Reads a workpiece, or the workpiece of a result file.
 
-    Parameters
-    ----------
-    path, content : of the JSON file.
-    options : see :func:`workhold.files.part.load.read_workpiece`.
-    own : whether it is a file of workhold's own, whose shape needs no check.
-
-    Raises
-    ------
-    InputError
-        For content that is not JSON, or not of this shape, naming the place. Also for choices that do not
-        apply to JSON.
+    For the options see :func:`workhold.files.part.load.read_workpiece`. The shape of a file of workhold's
+    ``own`` needs no check. Refuses choices that do not apply to JSON.
     """
     refuse_layers(options["layers"])
     fit = options["fit"]
@@ -154,12 +145,7 @@ def drawing_of_object(
     """What an object of another library holds.
 
     The arguments are those of :func:`workhold.load`; ``view`` is how a solid is looked at. A geometry of
-    shapely has no unit and is in mm unless one is given.
-
-    Raises
-    ------
-    InputError
-        For an object that is none of these, and choices that do not apply to it.
+    shapely has no unit and is in mm unless one is given. Refuses choices that do not apply to the object.
     """
     if hasattr(part, "__geo_interface__") and hasattr(part, "geom_type"):
         refuse_axis(view)

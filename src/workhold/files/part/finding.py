@@ -68,13 +68,7 @@ def builtin_path(name: str) -> Path | None:
 
 
 def found(part: str | PathLike[str]) -> Path:
-    """The file of a part given by path or built-in name.
-
-    Raises
-    ------
-    InputError
-        When there is neither, listing built-in names that are close.
-    """
+    """The file of a part given by path or built-in name; the refusal lists built-in names that are close."""
     path = Path(part)
     try:
         if path.exists() or path.is_symlink():
@@ -123,13 +117,7 @@ def read_bytes(path: Path) -> bytes:
 
 
 def kind_of(path: Path, content: bytes) -> str:
-    """ "json", "dxf", "svg" or "step", by the file's ending or else by its first bytes.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
+    """ "json", "dxf", "svg" or "step", by the file's ending or else by its first bytes."""
     ending = path.suffix.lower().lstrip(".")
     if ending in ("json", "dxf", "svg", "step"):
         return ending

@@ -73,13 +73,7 @@ class Loaded:
 
 
 def from_heights(name: str, drawing: HeightDrawing) -> Loaded:
-    """A workpiece from the outline of a solid at the height of the pegs.
-
-    Raises
-    ------
-    InputError
-        When the outline cannot be used.
-    """
+    """A workpiece from the outline of a solid at the height of the pegs."""
     refuse_large(sum(len(loop) for loop in drawing.loops))
     loops = [Loop(loop, ("",) * len(loop)) for loop in drawing.loops]
     workpiece = built(name, loops, with_labels=False, solid=drawing.solid)
@@ -113,12 +107,8 @@ def from_drawing(
 ) -> Loaded:
     """A workpiece from a drawing's chains; ``layered`` says whether its layers can be chosen.
 
-    What reading the file may still take is left in ``budget``; None is no limit.
-
-    Raises
-    ------
-    InputError
-        When no usable closed outline remains, or one with curves that nobody has allowed to be replaced.
+    What reading the file may still take is left in ``budget``; None is no limit. Refuses a drawing without a
+    usable closed outline, or with curves that nobody has allowed to be replaced.
     """
     budget = budget or Budget(UNLIMITED)
     try:
@@ -139,7 +129,6 @@ def is_usable(
     budget: Budget,
     drawing: Drawing,
 ) -> bool:
-    """Whether a part can be read of a drawing."""
     try:
         outline_of(path, drawing, part_number, tolerance, fit, True, budget)
     except InputError:
@@ -193,13 +182,7 @@ def built(
     departure: float = 0.0,
     solid: SolidOutline | None = None,
 ) -> Workpiece:
-    """Builds the workpiece; its complaints lose the part's name, since the file's name stands before them.
-
-    Raises
-    ------
-    InputError
-        For loops that cannot be used.
-    """
+    """Builds the workpiece; its complaints lose the part's name, since the file's name stands before them."""
     labels = [loop.labels for loop in loops] if with_labels else None
     try:
         return Workpiece.from_loops(name, [loop.vertices for loop in loops], labels, departure, solid)
@@ -217,7 +200,6 @@ def refuse_large(segments: int) -> None:
 
 
 def part_remarks(parts: Sequence[DrawnPart], chosen: DrawnPart, asked: int | str | None) -> list[str]:
-    """What to say about several parts in one file."""
     if len(parts) == 1:
         return []
     more = f"; and {len(parts) - PART_LIST} smaller ones" if len(parts) > PART_LIST else ""
@@ -262,10 +244,7 @@ def solids_in(path: str | PathLike[str]) -> tuple[FileSolid, ...]:
 def with_solid_named(loaded: Loaded, file: str, chosen: int | str | None) -> Loaded:
     """A part named after its solid too, where the file holds several with names: ``lug of machine``.
 
-    Parameters
-    ----------
-    file : name of the file.
-    chosen : number or name of the solid that was read; None is the largest.
+    ``chosen`` is the number or the name of the solid that was read; None is the largest.
     """
     name = "" if len(loaded.solids) < 2 else name_of_chosen(loaded.solids, chosen)
     if not name or name == file:

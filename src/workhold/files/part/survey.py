@@ -118,7 +118,6 @@ def drawn_layers(
 def layers_of(
     document: Any, code: int | str, unit: str | None, usual_unit: str | None, budget: Budget
 ) -> tuple[tuple[DrawnLayer, ...], bool]:
-    """The layers of a document, see :func:`drawn_layers`."""
     known = scale_of(code, unit, usual_unit)
     scale = 1.0 if known is None else known[0]
     try:
@@ -201,7 +200,6 @@ def survey(path: Path, *, called: Mapping[str, str] | None = None, **options: An
 
     Parameters
     ----------
-    path : of the file.
     called : as in :func:`workhold.files.part.load.read_workpiece`.
     options : the other arguments of that function.
 
@@ -230,15 +228,8 @@ def survey(path: Path, *, called: Mapping[str, str] | None = None, **options: An
 def seen(told: Survey, path: Path, content: bytes, unit: str | None, options: Mapping[str, Any]) -> Survey:
     """A survey with what is drawn in the file, for which it is read again.
 
-    Parameters
-    ----------
-    unit : in which it is read, where its own is asked.
-    options : as in :func:`survey`.
-
-    Raises
-    ------
-    OverBudgetError
-        Where that takes too much.
+    It is read in ``unit`` where its own is asked; options are those of :func:`survey`. Raises OverBudgetError
+    where that takes too much.
     """
     kind = ""
     with suppress(InputError):
@@ -276,9 +267,9 @@ def seen(told: Survey, path: Path, content: bytes, unit: str | None, options: Ma
 
 @contextmanager
 def going_on() -> Iterator[None]:
-    """Passes over what is refused, but not over what takes too much: that is not tried once more.
+    """Passes over what is refused, but not over what takes too much.
 
-    Raises OverBudgetError then.
+    An OverBudgetError is raised: that is not tried once more.
     """
     try:
         yield

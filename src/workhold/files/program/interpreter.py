@@ -103,7 +103,6 @@ class Interpreter:
 
     @property
     def modes(self) -> Modes:
-        """What is in force."""
         return self.path.modes
 
     def read(self, block: ProgramBlock) -> None:
@@ -159,13 +158,7 @@ class Interpreter:
             )
 
     def add_code(self, codes: dict[str, str], code: str) -> None:
-        """Adds a code to those of the block by its group.
-
-        Raises
-        ------
-        InputError
-            For one that is not read, and two of one group.
-        """
+        """Adds a code to those of the block by its group; refuses one that is not read, and two of one group."""
         group = GROUPS.get(code)
         if group is None:
             refuse_code(code)
@@ -212,13 +205,10 @@ class Interpreter:
                 values[letter] *= LAST_DIGIT[unit.name]
 
     def set_up(self, codes: dict[str, str], functions: list[str], values: dict[str, float]) -> set[str]:
-        """Takes what stays in force: feed and speed, the tool, its length, unit, plane, zero and how places are
-        written. Returns the letters that have a meaning.
+        """Takes what stays in force, and returns the letters that have a meaning.
 
-        Raises
-        ------
-        InputError
-            For functions that are not read, and a change to no tool.
+        That is feed and speed, the tool, its length, unit, plane, zero and how places are written. Refuses
+        functions that are not read, and a change to no tool.
         """
         modes, used = self.modes, {"N", "F", "S", "T"}
         for function in functions:
@@ -250,17 +240,9 @@ class Interpreter:
         return used
 
     def set_codes(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
-        """Puts the codes of a block in force that stay so, and passes over those that say nothing of the path.
+        """Puts the codes of a block in force that stay so; passes over those that say nothing of the path.
 
-        Returns
-        -------
-        set
-            The letters that belong to them.
-
-        Raises
-        ------
-        InputError
-            For a spline, and a zero with a number that is none.
+        Returns the letters that belong to them. Refuses a spline, and a zero with a number that is none.
         """
         modes, used = self.modes, set()
         for code in codes.values():
@@ -302,12 +284,9 @@ class Interpreter:
             self.calls.append((self.path.line, modes.called))
 
     def change_length(self, code: str, number: float | None) -> None:
-        """Puts a tool's length in force, or takes it away; its tip is at another height then.
+        """Puts a tool's length in force (G43), or takes it away (G49); its tip is at another height then.
 
-        Parameters
-        ----------
-        code : G43 or G49.
-        number : of the length, H; 0 is none.
+        The number of the length is H; 0 is none.
         """
         modes = self.modes
         if code == "49" or number == 0:
@@ -323,13 +302,7 @@ class Interpreter:
             modes.length = length
 
     def move(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
-        """Makes the move of a block, if it has one, and returns the letters that have a meaning.
-
-        Raises
-        ------
-        InputError
-            For a move that is not known, or not read.
-        """
+        """Makes the move of a block, if it has one, and returns the letters that have a meaning."""
         used: set[str] = set()
         once = codes.get("once")
         if once == "4":
@@ -367,10 +340,7 @@ class Interpreter:
     def change_motion(self, codes: dict[str, str]) -> None:
         """Puts the motion of a block in force, or its cycle, which begins anew after any other motion.
 
-        Raises
-        ------
-        InputError
-            For both.
+        Refuses both together.
         """
         modes, motion, cycle = self.modes, codes.get("motion"), codes.get("cycle")
         if motion is not None and cycle not in (None, CANCEL):
@@ -385,10 +355,7 @@ class Interpreter:
     def move_once(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
         """Takes a move to a place of the machine's own, after which nobody knows where the axes are.
 
-        Raises
-        ------
-        InputError
-            For G53 with anything but G0, and a place that is passed and not known.
+        Refuses G53 with anything but G0, and a place that is passed and not known.
         """
         once, axes = codes["once"], values.keys() & {"X", "Y", "Z"}
         self.change_motion(codes)
@@ -420,12 +387,7 @@ class Interpreter:
         """Takes a word that could set another zero, where it sets none.
 
         G52 with 0 is none, and so is taking back what was never set. G92 before anything else says where the
-        tip stands.
-
-        Raises
-        ------
-        InputError
-            For every other zero, and one beside a place.
+        tip stands. Refuses every other zero, and one beside a place.
         """
         modes, axes, code = self.modes, values.keys() & {"X", "Y", "Z"}, codes["once"]
         self.change_motion(codes)
@@ -450,10 +412,7 @@ class Interpreter:
     def move_along_arc(self, clockwise: bool, values: dict[str, float]) -> set[str]:
         """Moves along an arc or a helix about z.
 
-        Raises
-        ------
-        InputError
-            For an arc that is not known, or stands in another plane.
+        Refuses an arc that is not known, or stands in another plane.
         """
         modes = self.modes
         if modes.plane != "17":
@@ -476,13 +435,7 @@ class Interpreter:
         return {"X", "Y", "Z", "I", "J", "K", "R", "P"}
 
     def centre_of(self, values: dict[str, float]) -> tuple[float, float]:
-        """Where I and J say that an arc's centre is.
-
-        Raises
-        ------
-        InputError
-            For an arc without them.
-        """
+        """Where I and J say that an arc's centre is; refuses an arc without them."""
         given = values.keys() & {"I", "J"}
         if not given or (self.modes.centre == "90.1" and len(given) < 2):
             raise InputError(
@@ -498,13 +451,7 @@ class Interpreter:
         return from_x + x, from_y + y
 
     def turns_of(self, values: dict[str, float]) -> int:
-        """How many turns an arc makes at most, P.
-
-        Raises
-        ------
-        InputError
-            For a number that is none.
-        """
+        """How many turns an arc makes at most, P; refuses a number that is none."""
         turns = values.get("P", 1.0)
         if turns != int(turns) or not 1 <= turns <= MOST_TURNS:
             raise InputError(

@@ -105,16 +105,9 @@ class PathWriter:
         return found
 
     def target(self, values: dict[str, float], rapid: bool = False) -> Reached:
-        """Where the axis words of a block lead.
+        """Where the axis words of a block lead; refuses an increment from a place that is not known.
 
-        Parameters
-        ----------
-        rapid : whether the move may be left out as long as nobody knows where it begins.
-
-        Raises
-        ------
-        InputError
-            For an increment from a place that is not known.
+        ``rapid`` says whether the move may be left out as long as nobody knows where it begins.
         """
         place = list(self.modes.place)
         if self.offset_used is not None and values:
@@ -225,9 +218,7 @@ class PathWriter:
 def refuse_unknown(path: PathWriter, place: Reached, what: str = "the tool cuts at a place") -> NoReturn:
     """Refuses a cut at a place of which something is not known, with why it is not, and what helps.
 
-    Parameters
-    ----------
-    what : is done where.
+    ``what`` says what is done there.
     """
     unknown: dict[str, list[int]] = {}
     for axis in (axis for axis, value in enumerate(place) if value is None):
@@ -286,10 +277,7 @@ class PlaneArc:
 def arc_about(center: Point, start: Place, end: Place, clockwise: bool, turns: int) -> PlaneArc:
     """An arc about a centre; where its ends are one place, it is a full circle.
 
-    Raises
-    ------
-    InputError
-        For ends that are not equally far from the centre.
+    Refuses ends that are not equally far from the centre.
     """
     (x, y), (to_x, to_y) = (
         (start[0] - center[0], start[1] - center[1]),
@@ -313,10 +301,7 @@ def arc_about(center: Point, start: Place, end: Place, clockwise: bool, turns: i
 def arc_of_radius(radius: float, start: Place, end: Place, clockwise: bool) -> PlaneArc:
     """An arc of a radius; of more than half a turn where the radius is negative.
 
-    Raises
-    ------
-    InputError
-        For one place as both ends, and ends too far apart.
+    Refuses one place as both ends, and ends too far apart.
     """
     x, y = end[0] - start[0], end[1] - start[1]
     chord, size = hypot(x, y), abs(radius)
@@ -341,15 +326,8 @@ def arc_of_radius(radius: float, start: Place, end: Place, clockwise: bool) -> P
 def drill(path: PathWriter, values: dict[str, float]) -> set[str]:
     """Drills a hole, or a row of them in increments: over it, down to R, to Z at the feed, and up again.
 
-    Returns
-    -------
-    set
-        The letters that have a meaning.
-
-    Raises
-    ------
-    InputError
-        For a cycle that lacks something, or that controls read in different ways.
+    Returns the letters that have a meaning. Refuses a cycle that lacks something, or that controls read in
+    different ways.
     """
     modes = path.modes
     bottom, plane = depths(path, values)

@@ -318,7 +318,6 @@ def of_python(number: int, value: Any, unit: Unit) -> Tool:
 
 
 def lacking(used: Sequence[int], missing: Sequence[int]) -> str:
-    """What is missing of tools, with the form in which to give them."""
     names = [f"T{number}" for number in missing]
     if used == [0]:
         called = "the program moves without calling a tool, and what is in the spindle (T0)"
@@ -415,7 +414,6 @@ def notes_on(control: Interpreter, listing: ProgramText) -> list[str]:
 
 
 def whole_notes(control: Interpreter) -> list[str]:
-    """How lengths without a decimal point are read, where there are any."""
     unit = control.modes.unit
     if not control.whole or unit is None:
         return []

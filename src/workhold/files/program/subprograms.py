@@ -48,18 +48,13 @@ class Running:
     program: int | None
 
     def refuse_endless(self) -> InputError:
-        """The error for a subprogram that does not end."""
         return InputError(f"{self.call} a subprogram without an end: write M99 behind its last block.")
 
 
 def with_calls(listing: ProgramText) -> ProgramText:
     """The text with its subprograms written out where they are called; one without calls as it is.
 
-    Raises
-    ------
-    InputError
-        Beginning with the line, for a call of what is not in the file, a subprogram without an end, and an M99
-        that ends none.
+    Refuses a call of what is not in the file, a subprogram without an end, and an M99 that ends none.
     """
     if not any(block.functions & {*CALLS, RETURN} for block in listing.blocks):
         return listing
@@ -121,10 +116,7 @@ def run_blocks(blocks: Sequence[ProgramBlock], optional: set[int]) -> Iterator[P
 def begin_call(blocks: Sequence[ProgramBlock], starts: Starts, block: ProgramBlock, back: int) -> Running:
     """The subprogram that a block calls.
 
-    Raises
-    ------
-    InputError
-        For one that is not in the file, or there twice, and words that the block cannot have.
+    Refuses one that is not in the file, or there twice, and words that the block cannot have.
     """
     given = {letter: float(text) for letter, text in block.words if letter in OF_CALLS}
     code = min(block.functions & CALLS.keys())

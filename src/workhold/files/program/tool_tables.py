@@ -117,19 +117,10 @@ def tool_of_fields(number: int, fields: Mapping[str, Any], place: str, unit: Uni
 
 
 def cutting_of(fields: Mapping[str, Any], unit: Unit) -> CuttingData:
-    """How a tool cuts, from its fields.
+    """How a tool cuts, from its fields; lengths are in the unit given.
 
     A table that was written for another program may say of flutes and of a point what cannot be used here.
     That is refused only where it is the force that is asked for.
-
-    Parameters
-    ----------
-    unit : of lengths.
-
-    Raises
-    ------
-    InputError
-        For what cannot be.
     """
     given = {key: fields[key] for key in CUTTING if fields.get(key) is not None}
     if fields.get("flutes") is not None:
@@ -143,7 +134,6 @@ def cutting_of(fields: Mapping[str, Any], unit: Unit) -> CuttingData:
 
 
 def is_usable(key: str, value: Any) -> bool:
-    """Whether a field of how a tool cuts is one."""
     try:
         CuttingData(**{key: value})
     except InputError:

@@ -186,25 +186,13 @@ def code_of(text: str) -> str:
 
 
 def refuse_code(code: str) -> NoReturn:
-    """Refuses a code of letter G.
-
-    Raises
-    ------
-    InputError
-        With its reason; for every code.
-    """
+    """Refuses a code of letter G with its reason, whatever it is."""
     reason = REASONS.get(code, "is not known: take it out, or write the moves that it makes")
     raise InputError(f"G{code} {reason}.")
 
 
 def refuse_function(code: str) -> None:
-    """Refuses a code of letter M that does more than switch something.
-
-    Raises
-    ------
-    InputError
-        With its reason.
-    """
+    """Refuses a code of letter M that does more than switch something."""
     if code in FUNCTION_REASONS:
         raise InputError(f"M{code} {FUNCTION_REASONS[code]}.")
 
@@ -212,10 +200,8 @@ def refuse_function(code: str) -> None:
 def is_spline(code: str, letters: Set[str], turns: float) -> bool:
     """Whether G5 or G5.1 is a curve of its own, and not a word of how a control looks ahead.
 
-    Parameters
-    ----------
-    letters : of its block.
-    turns : P, which calls a stored path from 10001 on; 0 where there is none.
+    The letters are those of its block. ``turns`` is P, which calls a stored path from 10001 on; 0 where there
+    is none.
     """
     return code in ("5", "5.1") and (bool(letters & set("XYZIJL")) or turns > 10_000)
 
@@ -316,11 +302,6 @@ def program_text(text: str) -> ProgramText:
     """Reads a program's text into blocks, until M2, M30 or a second percent sign ends it.
 
     Where a subprogram is called, it may stand behind M30, up to the percent sign.
-
-    Raises
-    ------
-    InputError
-        Beginning with the number of the line that is none.
     """
     found = ProgramText([], [], [], [], [])
     began = ended = is_closed = calls = False
@@ -407,9 +388,7 @@ def without_comments(line: int, content: str, comments: list[tuple[int, str]]) -
 def refusal(code: str, written: str) -> str:
     """Why a line is not a block, and what helps.
 
-    Parameters
-    ----------
-    code, written : the line in capitals, and as it stands in the file.
+    ``code`` is the line in capitals, ``written`` as it stands in the file.
     """
     if code.lstrip().startswith("$"):
         return (
@@ -442,6 +421,5 @@ def refusal(code: str, written: str) -> str:
 
 
 def excerpt(text: str) -> str:
-    """The beginning of a text as a message shows it."""
     shown = plain(text.strip())
     return shown if len(shown) <= SHOWN else shown[: SHOWN - 3] + "..."

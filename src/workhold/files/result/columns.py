@@ -59,13 +59,7 @@ class ColumnsSink:
         return self.path.resolve().parent
 
     def receive(self, result: Result, listed: int, tables: Iterable[FixtureTable]) -> None:
-        """Writes a result and its fixtures, so many unless somebody asks to stop.
-
-        Raises
-        ------
-        InputError
-            When the file cannot be written.
-        """
+        """Writes a result and its fixtures, so many unless somebody asks to stop."""
         counts = Counter[str]()
         bends = result.query.knows_heights
         figures = len(FIGURES) if bends else BEFORE_PINS
@@ -90,13 +84,7 @@ class ColumnsSink:
 
 
 def write_columns(result: Result, path: str | Path) -> None:
-    """Writes a result file in columns; an earlier file of that name is replaced only when all went well.
-
-    Raises
-    ------
-    InputError
-        When the file cannot be written.
-    """
+    """Writes a result file in columns; an earlier file of that name is replaced only when all went well."""
     ColumnsSink(Path(path)).receive(result, len(result), [result.table])
 
 
@@ -152,13 +140,6 @@ class MappedTable(FixtureTable):
     path: Path = field(kw_only=True)
 
     def take(self, order: NDArray[Any] | slice) -> FixtureTable:
-        """The fixtures of an index array or slice, in its order.
-
-        Raises
-        ------
-        InputError
-            When one of them cannot be used.
-        """
         table = super().take(order)
         places = range(len(self))[order] if isinstance(order, slice) else np.arange(len(self))[order]
         refuse_faulty(table, self.query, self.path, places)
@@ -166,13 +147,7 @@ class MappedTable(FixtureTable):
 
 
 def read_columns(path: Path) -> Result:
-    """The result of a file in columns, of which only the head and the fixtures' types are read yet.
-
-    Raises
-    ------
-    InputError
-        See :func:`read_result`.
-    """
+    """The result of a file in columns, of which only the head and the fixtures' types are read yet."""
     text, columns = mapped_archive(path, columns_said, HEAD)
     try:
         data = head_value(text)

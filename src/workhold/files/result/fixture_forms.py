@@ -144,10 +144,7 @@ def checked_seating(data: Any, pose: Pose, path: Path, number: int) -> Seating:
 def with_seating(result: Result, seating: Sequence[Seating], path: Path) -> Result:
     """A result with the seating of its first fixtures.
 
-    Raises
-    ------
-    InputError
-        Where it is given without being asked for, or for more fixtures than it was asked for.
+    Refuses seating that was not asked for, or of more fixtures than it was asked for.
     """
     query = result.query
     if len(seating) > (query.seating or 0) or len(seating) > len(result):

@@ -214,7 +214,6 @@ class WrittenBlock:
 
     @property
     def contacts(self) -> range:
-        """The numbers of the contacts."""
         return range(self.toolkit.peg_count)
 
     @property
@@ -225,7 +224,6 @@ class WrittenBlock:
 
     @property
     def pose(self) -> list[list[Any]]:
-        """The columns of the poses."""
         return [array.tolist() for array in (self.theta, *self.table.position.T)]
 
     @property
@@ -284,7 +282,6 @@ TRAVEL_COLUMNS = {1: ("jaw_separation",), 2: ("travel_1", "travel_2")}
 
 
 def column_names(result: Result) -> list[str]:
-    """The names of the columns."""
     toolkit = result.toolkit
     pegs = [f"peg{peg}_{name}" for peg in range(1, toolkit.peg_count + 1) for name in PEG_COLUMNS]
     moved = TRAVEL_COLUMNS[toolkit.travels]

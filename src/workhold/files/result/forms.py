@@ -133,7 +133,6 @@ TYPES: Mapping[Form, Any] = {
 
 
 def key_of(row: ToolkitField) -> tuple[Any, Any]:
-    """Type and default of a field in a result file."""
     return optional(TYPES[row.form], row)
 
 
@@ -157,13 +156,6 @@ class RestrictionsPart(FormPart):
     angles: list[Pair] = []
 
     def restrictions(self) -> Restrictions:
-        """The restrictions.
-
-        Raises
-        ------
-        InputError
-            When a zone is none.
-        """
         return Restrictions(self.avoid, map(zone_of, self.zones), self.angles)
 
 
@@ -177,7 +169,6 @@ class FitPart(FormPart):
     standard: str = Field(default="", max_length=LONGEST_STANDARD)
 
     def fit(self) -> Fit:
-        """The fit."""
         (low, high), hole = self.pin, self.hole
         return Fit((low, high), (hole[0], hole[1]), self.position, self.position_assumed, self.standard)
 
@@ -191,13 +182,6 @@ class TolerancePart(FormPart):
     departure: float = 0.0
 
     def tolerance(self) -> Tolerance:
-        """The tolerance.
-
-        Raises
-        ------
-        InputError
-            When it is none.
-        """
         return Tolerance(self.peg, self.face, None if self.fit is None else self.fit.fit(), self.departure)
 
 
@@ -211,13 +195,6 @@ class LoadPart(FormPart):
     moment: float = 0.0
 
     def load(self) -> Load:
-        """The load.
-
-        Raises
-        ------
-        InputError
-            When it is none.
-        """
         return Load(self.points, self.force, self.directions, self.moment, self.name)
 
 
@@ -236,7 +213,6 @@ class UndecidedPart(FormPart):
     reason: str = Field(min_length=1)
 
     def undecided(self) -> Undecided:
-        """The entry as the model has it."""
         faces, columns, rows = (tuple(v) for v in (self.segments, self.columns, self.rows))
         return Undecided(self.type, faces, columns, rows, self.theta_deg, self.reason, self.reach_deg)
 
@@ -252,7 +228,6 @@ class ProofPart(FormPart):
     undecided: list[UndecidedPart]
 
     def proof(self) -> Proof:
-        """The account as the model has it."""
         counts = (self.cells, self.candidates, self.discarded_by_bound, self.verified, self.escalated)
         return Proof(*counts, tuple(item.undecided() for item in self.undecided))
 
@@ -297,13 +272,7 @@ class Head(FormPart):
     )
 
     def asked_toolkit(self) -> Toolkit:
-        """The toolkit.
-
-        Raises
-        ------
-        InputError
-            When there is no such toolkit, none at all, or two.
-        """
+        """The toolkit; refuses a head that has none at all, or two."""
         if self.vise is not None and self.toolkit is not None:
             raise InputError("it has the keys vise and toolkit, of which only one can be.")
         if self.vise is not None:
@@ -313,13 +282,6 @@ class Head(FormPart):
         return toolkit_of(self.toolkit.kind, self.toolkit.model_dump(exclude={"kind"}))
 
     def query(self) -> Query:
-        """What was asked.
-
-        Raises
-        ------
-        InputError
-            When a part of it cannot be.
-        """
         toolkit = self.asked_toolkit()
         workpiece = Workpiece.from_loops(
             self.workpiece.name,
@@ -351,13 +313,7 @@ class Head(FormPart):
         )
 
     def asked_program(self) -> Program | None:
-        """The program that fixtures are to let pass.
-
-        Raises
-        ------
-        InputError
-            When it lacks something, or holds what cannot be.
-        """
+        """The program that fixtures are to let pass; refuses one that lacks something or cannot be."""
         if self.program is None:
             return None
         try:

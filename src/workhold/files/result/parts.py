@@ -78,10 +78,8 @@ LONGEST_FIRST_LINE = 250
 def columns_of(travels: int, has_program: bool = False, figures: int = BEFORE_PINS) -> Columns:
     """What each column holds (docs/columns.md), by how many things move in a fixture.
 
-    Parameters
-    ----------
-    has_program : whether the program clearance stands behind the figures of quality.
-    figures : how many figures of quality there are without it.
+    ``has_program`` says whether the program clearance stands behind the figures of quality, of which there
+    are ``figures`` without it.
     """
     pegs, several = 3 + travels, (travels,) if travels > 1 else ()
     return {
@@ -125,24 +123,12 @@ def piece_or_entries(entries: dict[str, Any]) -> Any:
 
 
 def head_value(text: str) -> Any:
-    """The content of a head's JSON, its swept pieces packed.
-
-    Raises
-    ------
-    InputError
-        As :func:`workhold.files.text.json_value`.
-    """
+    """The content of a head's JSON, its swept pieces packed."""
     return json_value(text, piece_or_entries)
 
 
 def refuse_unknown_types(arrangement: NDArray[np.integer[Any]], toolkit: Toolkit, path: Path) -> None:
-    """Refuses indices (N,) of arrangements that a toolkit does not have.
-
-    Raises
-    ------
-    InputError
-        Naming the first fixture.
-    """
+    """Refuses indices (N,) of arrangements that a toolkit does not have."""
     names = [one.title for one in toolkit.arrangements]
     if arrangement.min(initial=0) < 0 or arrangement.max(initial=0) >= len(names):
         number = int(np.argmax((arrangement < 0) | (arrangement >= len(names)))) + 1
@@ -152,14 +138,7 @@ def refuse_unknown_types(arrangement: NDArray[np.integer[Any]], toolkit: Toolkit
 def refuse_rows(faulty: NDArray[np.bool_], reason: str, path: Path, places: Sequence[int]) -> None:
     """Refuses fixtures (N,), or (N, P) by their pegs, of which one is faulty.
 
-    Parameters
-    ----------
-    places : where in the file they stand, from 0.
-
-    Raises
-    ------
-    InputError
-        Naming the first of them.
+    ``places`` are where in the file they stand, from 0.
     """
     if faulty.any():
         first = int(np.argwhere(faulty)[0, 0])
@@ -169,14 +148,7 @@ def refuse_rows(faulty: NDArray[np.bool_], reason: str, path: Path, places: Sequ
 def refuse_faulty(table: FixtureTable, query: Query, path: Path, places: Sequence[int]) -> None:
     """Refuses fixtures of known types that contradict the toolkit, the workpiece or themselves.
 
-    Parameters
-    ----------
-    places : where in the file they stand, from 0.
-
-    Raises
-    ------
-    InputError
-        Naming the first of them.
+    ``places`` are where in the file they stand, from 0.
     """
     if len(table) == 0:
         return
@@ -204,13 +176,6 @@ def refuse_faulty(table: FixtureTable, query: Query, path: Path, places: Sequenc
 
 
 def checked_head(data: Any, path: Path) -> Head:
-    """Checks the head's keys.
-
-    Raises
-    ------
-    InputError
-        Naming the first key that is missing or cannot be used.
-    """
     try:
         return Head.model_validate(data)
     except ValidationError as error:
@@ -221,13 +186,7 @@ def checked_head(data: Any, path: Path) -> Head:
 
 
 def checked_query(head: Head, path: Path) -> Query:
-    """What was asked.
-
-    Raises
-    ------
-    InputError
-        When a part of it cannot be, or the counts are of other types.
-    """
+    """What was asked; refuses what cannot be, and counts of other types."""
     try:
         query = head.query()
     except InputError as error:
@@ -244,10 +203,7 @@ def checked_query(head: Head, path: Path) -> Query:
 def result_with(table: FixtureTable, head: Head, query: Query, path: Path) -> Result:
     """The result of a head and a table.
 
-    Raises
-    ------
-    InputError
-        When the counts are not those of the table, or the account of the search does not add up.
+    Refuses counts that are not those of the table, and an account of the search that does not add up.
     """
     for name, listed in query.toolkit.arrangements_counted(table.arrangement).items():
         if head.counts[name] != listed:
@@ -271,11 +227,8 @@ def result_with(table: FixtureTable, head: Head, query: Query, path: Path) -> Re
 def checked_proof(part: ProofPart, query: Query, path: Path) -> Proof:
     """The account of the search.
 
-    Raises
-    ------
-    InputError
-        When its counts do not add up, or an undecided candidate names an unknown type or a segment that is no
-        face.
+    Refuses counts that do not add up, and an undecided candidate that names an unknown type or a segment that
+    is no face.
     """
     accounted = part.discarded_by_bound + part.verified + len(part.undecided)
     if accounted != part.candidates:
@@ -345,12 +298,8 @@ def read_parts(path: Path, take: Take[Taken]) -> tuple[Head, Taken]:
 def read_lines(path: Path, take: Take[Taken]) -> tuple[Any, Taken]:
     """Head and fixtures of a file with one fixture per line.
 
-    Raises
-    ------
-    OtherLayoutError
-        When the lines are not of that form.
-    InputError
-        When a line or what stands around the fixtures is longer than any may be.
+    Raises OtherLayoutError when the lines are not of that form. Refuses a line, or what stands around the
+    fixtures, that is longer than any may be.
     """
     with path.open("rb") as stream:
         before = stream.read(start_of_fixtures(stream))
@@ -414,7 +363,6 @@ def fixture_lines(stream: BinaryIO, after: list[bytes], path: Path) -> Iterator[
 
 
 def read_whole(path: Path, take: Take[Taken]) -> tuple[Any, Taken]:
-    """Head and fixtures of a file of any layout."""
     try:
         text = read_limited(path, LIMITS["result"]).decode("utf-8-sig")
     except InputError as error:

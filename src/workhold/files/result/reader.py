@@ -97,13 +97,6 @@ def read_result(path: str | Path) -> Result:
 
 
 def collected(fixtures: Iterable[Any], path: Path) -> Columns:
-    """Puts fixtures into arrays, block by block.
-
-    Raises
-    ------
-    InputError
-        Naming the first fixture with a missing key or a value of the wrong kind.
-    """
     blocks: list[list[NDArray[Any]]] = [[] for _ in range(6)]
     iterator = iter(fixtures)
     number, pegs, seating = 1, 0, list[Seating]()
@@ -231,13 +224,7 @@ def indices(words: NDArray[np.str_], names: Sequence[str]) -> NDArray[np.int8]:
 
 
 def checked_table(columns: Columns, query: Query, path: Path) -> FixtureTable:
-    """The table of the fixtures, pegs in the order of their arrangements.
-
-    Raises
-    ------
-    InputError
-        Naming the first fixture that contradicts the vise, the workpiece or itself.
-    """
+    """The table of the fixtures, pegs in the order of their arrangements."""
     toolkit = query.toolkit
     if len(columns.types) == 0:
         return FixtureTable.empty(toolkit)

@@ -60,13 +60,7 @@ AT_ONCE = 2000
 
 
 def write_result(result: Result, path: str | Path) -> None:
-    """Writes a result file (MODEL, "Result file"), whole or not at all.
-
-    Raises
-    ------
-    InputError
-        When the file cannot be written.
-    """
+    """Writes a result file (MODEL, "Result file"), whole or not at all."""
     with text_file(path) as stream:
         stream.writelines(result_text(result))
 
@@ -89,7 +83,6 @@ def result_text(result: Result) -> Iterator[str]:
 
 
 def with_entry(line: str, key: str, value: dict[str, Any]) -> str:
-    """The line of a fixture with one more key."""
     return f'{line[:-1]}, "{key}": {json.dumps(value)}}}'
 
 
@@ -120,7 +113,6 @@ def with_clearances(lines: list[str], result: Result, rows: slice) -> list[str]:
 
 
 def with_forces(lines: list[str], table: FixtureTable, result: Result, program: Program) -> list[str]:
-    """The lines of some fixtures, each with the forces that the program's tools ask for."""
     from workhold.statics.program_forces import cutting_needs
 
     jaw_force = result.query.jaw_force
@@ -279,7 +271,6 @@ def toolkit_fields(toolkit: Toolkit) -> dict[str, Any]:
 
 
 def written(value: Any) -> Any:
-    """A value of a field as it is written."""
     if isinstance(value, tuple):
         return [written(one) for one in value]
     if isinstance(value, Flat):
@@ -295,7 +286,6 @@ def load_entry(load: Load) -> dict[str, Any]:
 
 
 def proof_entry(proof: Proof) -> dict[str, Any]:
-    """The account of the search as it is written."""
     return {
         "cells": int(proof.cells),
         "candidates": int(proof.candidates),

@@ -90,7 +90,6 @@ class WallEdge:
 
     @classmethod
     def of(cls, edge: EdgeCurve, segment: Segment) -> WallEdge:
-        """An edge over its segment."""
         last = len(edge.points) - 1
         if last == 1:
             rise = abs(float(edge.points[1, 2] - edge.points[0, 2]))
@@ -126,9 +125,7 @@ def along(segment: Segment, points: NDArray[np.float64]) -> NDArray[np.float64]:
 def branches_of(places: NDArray[np.float64], cuts: frozenset[int] | tuple[()]) -> Iterator[tuple[int, int]]:
     """The numbers (first, last) of the points of each branch of an edge.
 
-    Parameters
-    ----------
-    cuts : numbers of points at which a branch ends in any case.
+    At the points that ``cuts`` numbers a branch ends in any case.
     """
     steps = np.diff(places)
     first, way = 0, 0.0
@@ -238,15 +235,10 @@ class Conic:
         return cls((place.X(), place.Y(), place.Z()), along, across)
 
     def height_at(self, carrier: Segment, place: float, first: float, last: float) -> float | None:
-        """The z in mm at which it passes a place on a carrier, between two parameters less than half a turn apart.
+        """The z in mm at which it passes a place on a carrier, between two parameters.
 
-        Parameters
-        ----------
-        place : in mm on a line, in radians on a circle.
-
-        Returns
-        -------
-        None where there is none between them.
+        They are less than half a turn apart. The place is in mm on a line and in radians on a circle. None
+        where it is not passed between them.
         """
         if isinstance(carrier, Line):
             (px, py), (nx, ny), off = carrier.middle, carrier.tangent, place
@@ -295,7 +287,6 @@ class Branch:
 
     @classmethod
     def over(cls, carrier: Segment, wall_edge: WallEdge) -> Iterator[Branch]:
-        """The branches of an edge over a carrier that holds it."""
         edge = wall_edge.edge
         places = along(carrier, edge.points)
         for first, last in wall_edge.branches:
@@ -443,7 +434,6 @@ class Run:
     upper: End
 
     def at(self, position: float) -> Band:
-        """Its heights at a position."""
         return self.lower.at(position), self.upper.at(position)
 
     def common(self, low: float, high: float) -> Band:
@@ -613,7 +603,6 @@ class Walls:
                 yield from ((one.segment, one.segment.start), (one.segment, one.segment.end))
 
     def over(self, carrier: CutCarrier) -> list[Wall]:
-        """The walls that stand on a carrier."""
         if id(carrier) not in self.found:
             branches: defaultdict[int, list[Branch]] = defaultdict(list)
             for k in self.near(carrier.segment).tolist():

@@ -119,13 +119,7 @@ class HeightDrawing:
 def read_by_height_apart(
     content: bytes, view: HeightView, or_silhouette: bool = False
 ) -> HeightDrawing | Drawing:
-    """Runs :func:`read_by_height` in a process of its own: damaged files crash or hang the library.
-
-    Raises
-    ------
-    InputError
-        As :func:`read_by_height`, and for a file that the process does not survive.
-    """
+    """Runs :func:`read_by_height` in a process of its own: damaged files crash or hang the library."""
     options = {"view": asdict(view), "or_silhouette": or_silhouette}
     by_height, answered = run_apart(__name__, content, options, "the STEP file")
     return height_drawing_of(answered) if by_height else drawing_of(answered)
@@ -148,7 +142,7 @@ def height_drawing_of(answered: Any) -> HeightDrawing:
 def plain(content: bytes, view: dict[str, Any], or_silhouette: bool) -> Any:
     """What :func:`read_by_height` reads as plain data, and before it whether that is an outline by height.
 
-    Raises InputError as it does, and where the library or the arithmetic after it fails over the file.
+    Refuses a file over which the library or the arithmetic after it fails, too.
     """
     found = guarded(lambda: read_by_height(content, HeightView(**view), or_silhouette), ValueError)
     return (False, plain_drawing(found)) if isinstance(found, Drawing) else (True, plain_heights(found))
@@ -159,8 +153,6 @@ def usual_drawing(solids: tuple[Solid, ...], view: HeightView) -> HeightDrawing 
 
     The silhouette offers lines and arcs in the place of other curves. It has no heights, and faces that lean
     may be touched.
-
-    Raises InputError as :func:`workhold.files.step.reader.read_step`.
     """
     chosen = chosen_solid(solids, view.part_number)
     solid = guarded(lambda: turned_up(chosen, view))
@@ -205,14 +197,8 @@ def plain_heights(drawing: HeightDrawing) -> Any:
 def read_by_height(content: bytes, view: HeightView, or_silhouette: bool = False) -> HeightDrawing | Drawing:
     """The outline of a solid in a STEP file at the height of the pegs.
 
-    Parameters
-    ----------
-    or_silhouette : where nobody says how high the pegs are, see :func:`usual_drawing`.
-
-    Raises
-    ------
-    InputError
-        For files that cannot be read, and outlines that are not made of lines and arcs.
+    Where nobody says how high the pegs are, ``or_silhouette`` is for :func:`usual_drawing`. Refuses outlines
+    that are not made of lines and arcs.
     """
     solids = read_solids(content)
     found = usual_drawing(solids, view) if or_silhouette else height_drawing(solids, view)
@@ -223,10 +209,7 @@ def read_by_height(content: bytes, view: HeightView, or_silhouette: bool = False
 def shapes_by_height(shapes: Sequence[Any], view: HeightView) -> HeightDrawing:
     """The outline of one of some shapes of Open CASCADE at the height of the pegs.
 
-    Raises
-    ------
-    InputError
-        For shapes without a solid, and as :func:`read_by_height`.
+    Refuses shapes without a solid.
     """
     solids = solids_of_shapes(shapes)
     if not solids:
@@ -235,22 +218,12 @@ def shapes_by_height(shapes: Sequence[Any], view: HeightView) -> HeightDrawing:
 
 
 def shapes_usual(shapes: Sequence[Any], view: HeightView) -> HeightDrawing | Drawing | None:
-    """What :func:`usual_drawing` makes of some shapes of Open CASCADE; None for shapes without a solid.
-
-    Raises
-    ------
-    InputError
-        As :func:`usual_drawing`.
-    """
+    """What :func:`usual_drawing` makes of some shapes of Open CASCADE; None for shapes without a solid."""
     solids = solids_of_shapes(shapes)
     return usual_drawing(solids, view) if solids else None
 
 
 def height_drawing(solids: tuple[Solid, ...], view: HeightView) -> HeightDrawing:
-    """The outline of one of some solids at the height of the pegs, with remarks on the others.
-
-    Raises InputError as :func:`read_by_height`.
-    """
     chosen = chosen_solid(solids, view.part_number)
     drawing = drawn(chosen.shape, turned_up(chosen, view), view)
     return evolve(drawing, remarks=(*solid_remarks(solids, chosen, view.part_number), *drawing.remarks))
@@ -273,16 +246,9 @@ def drawn(
 ) -> HeightDrawing:
     """The outline of a solid, with remarks on what may be touched and on a height that offers more.
 
-    Parameters
-    ----------
-    shape : the solid as the file has it.
-    is_advised : whether a refusal names a height that helps, for which many are looked at.
-    has_table : whether what other heights offer is listed, for which many are looked at.
-
-    Raises
-    ------
-    InputError
-        As :func:`read_by_height`.
+    The shape is the solid as the file has it. ``is_advised`` says whether a refusal names a height that
+    helps, and ``has_table`` whether what other heights offer is listed; many heights are looked at for
+    either.
     """
     axis, room, least = axis_named(view.axis), view.head_room, view.least_band
     plain_prism = view.peg_height is None and is_prism(solid)
@@ -315,7 +281,6 @@ def drawn(
 
 
 def advised(refusal: InputError, solid: StandingSolid, view: HeightView) -> InputError:
-    """A refusal with what to give instead."""
     instead = advice(solid, view.head_room, view.least_band)
     return InputError(f"{str(refusal).removesuffix('.')}; {instead}.")
 

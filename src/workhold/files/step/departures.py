@@ -99,13 +99,7 @@ def oriented_rows(part: DrawnPart) -> NDArray[np.float64]:
 
 
 def refuse_overhang(outline: Outline, faces: Sequence[SolidFace], solid: Any, axis: str) -> None:
-    """Refuses a silhouette that some face reaches out of: its true border is not made of lines and circles.
-
-    Raises
-    ------
-    InputError
-        Naming the face that reaches farthest out, and the remedy.
-    """
+    """Refuses a silhouette that some face reaches out of: its true border is not made of lines and circles."""
     worst = int(np.argmax(outline.overhangs))
     if outline.overhangs[worst] <= OVERHANG + outline.departure:
         return
@@ -175,7 +169,6 @@ def departures(outline: Outline, faces: Sequence[SolidFace]) -> list[str]:
 
 
 def heights(outline: Outline, face: SolidFace) -> str:
-    """The heights a face reaches over, in words."""
     return f"heights {span(outline, face.low, face.high)}"
 
 

@@ -190,12 +190,11 @@ def wall_carrier(face: SolidFace) -> Segment | None:
 def on_wall(edge: EdgeCurve, carrier: Segment | None) -> EdgeCurve:
     """An edge of a wall put on the wall, where it is off by no more than a disguise.
 
-    Where a leaning face meets a wall, programs write a spline near both, off by 0.001 mm and less. And the circle
-    that fits a short arc best is not the wall's within rounding: edges of one wall would lie on circles of their own.
+    Where a leaning face meets a wall, programs write a spline near both, off by 0.001 mm and less. And the
+    circle that fits a short arc best is not the wall's within rounding: edges of one wall would lie on
+    circles of their own.
 
-    Parameters
-    ----------
-    carrier : see :func:`wall_carrier`; None for an edge of no wall.
+    The carrier is that of :func:`wall_carrier`; None for an edge of no wall.
     """
     if carrier is None or (edge.segment is None and not edge.is_other):
         return edge
@@ -226,12 +225,7 @@ def on_wall(edge: EdgeCurve, carrier: Segment | None) -> EdgeCurve:
 
 
 def is_one(segment: Segment | None, carrier: Segment, off: float) -> bool:
-    """Whether the line or the circle of an edge is that of its wall within rounding.
-
-    Parameters
-    ----------
-    off : how far the edge is from the wall, in mm.
-    """
+    """Whether an edge, ``off`` mm from its wall, has the wall's line or circle within rounding."""
     if isinstance(segment, Arc) and isinstance(carrier, Arc):
         away = max(dist(segment.center, carrier.center), abs(segment.radius - carrier.radius))
         return away <= ONE_HEIGHT
@@ -274,12 +268,10 @@ def curve_of(face: int, curve: Any) -> EdgeCurve:
 
 
 def height(point: Point3) -> float:
-    """The z of a point."""
     return point[2]
 
 
 def position_along(segment: Segment) -> Callable[[Point3], float]:
-    """The parameter of points along a segment's carrier."""
     return lambda point: segment.parameter((point[0], point[1]))
 
 
@@ -312,7 +304,6 @@ def curve_point(curve: Any, parameter: float) -> Point3:
 
 
 def point3(row: NDArray[np.float64]) -> Point3:
-    """A row of three numbers as a point."""
     return float(row[0]), float(row[1]), float(row[2])
 
 
@@ -363,9 +354,7 @@ def flattened(points: NDArray[np.float64]) -> Segment | None:
 def crossing(value: Function, low: Known, high: Known) -> float:
     """The place at which a value that is below 0 at one end and not at the other passes 0.
 
-    Parameters
-    ----------
-    low, high : both ends, the one with the value below 0 first; it may be the greater one.
+    The end with the value below 0 comes first; it may be the greater one.
     """
     a, b = low[0], high[0]
     first, last = narrowed(value, low, high)
@@ -377,10 +366,8 @@ def bisected(
 ) -> tuple[float, float]:
     """The ends of the last interval of a bisection for the place from which on something holds.
 
-    Parameters
-    ----------
-    low, high : it does not hold at low, and does at high.
-    known : two places between them: it does not hold up to the first, and does from the second on.
+    It does not hold at ``low``, and does at ``high``. ``known`` are two places between them: it does not hold
+    up to the first, and does from the second on.
     """
     turn = 1.0 if high >= low else -1.0
     before, after = turn * known[0], turn * known[1]

@@ -66,7 +66,6 @@ class Enclosure:
     boxes: Array | None = field(init=False, default=None)
 
     def add(self, other: Enclosure) -> None:
-        """Adds what bounds something else."""
         self.segments += other.segments
         self.polygons += other.polygons
         self.boxes = None
@@ -98,7 +97,6 @@ class Enclosure:
         return [*self.segments, *sides]
 
     def holds(self, point: Point) -> bool:
-        """Whether a point lies in one of the polygons."""
         if not self.polygons:
             return False
         if self.boxes is None:
@@ -118,9 +116,7 @@ def is_within(point: Point, polygon: Array) -> bool:
 def few_corners(hull: Array, start: Point, end: Point, safe: float = SAFE) -> Array:
     """A convex polygon (N, 2) around a hull with one corner, where that is near, on each side of a chord.
 
-    Parameters
-    ----------
-    safe : half of how far in mm the corner may be from the chord.
+    ``safe`` is half of how far in mm the corner may be from the chord.
     """
     ends = [k for k, corner in enumerate(hull.tolist()) if tuple(corner) in (start, end)]
     if len(ends) != 2 or len(hull) < 4:
@@ -155,14 +151,7 @@ def crossing_of(a: Array, b: Array, c: Array, d: Array) -> Array | None:
 def near_pieces(pieces: Pieces, safe: float = SAFE) -> Iterator[Array]:
     """Control points (N, 2) of runs of a curve in running order, each near to its chord and ahead along it.
 
-    Parameters
-    ----------
-    safe : how far in mm they may be from it.
-
-    Raises
-    ------
-    InputError
-        For a curve that takes too many.
+    They may be ``safe`` mm from the chord. Refuses a curve that takes too many.
     """
     run: Array | None = None
     for control in small_pieces(pieces, safe):
@@ -214,17 +203,10 @@ def enclosed_curves(
 ) -> Enclosure:
     """What holds the curves that are neither line nor arc of all that can bound a slab of a solid from above.
 
-    Parameters
-    ----------
-    low, high : z in mm of the slab.
-    folds_of : see :func:`workhold.files.step.projected.projected_curves`.
-    squares : those that hold the folds of free-form faces, kept for other slabs.
-    is_there : whether a point belongs to what is bounded; folds are only where some points around do.
-
-    Raises
-    ------
-    InputError
-        For curves that take too many pieces.
+    The slab is between two z in mm. For ``folds_of`` see
+    :func:`workhold.files.step.projected.projected_curves`. The squares are those that hold the folds of
+    free-form faces, kept for other slabs. ``is_there`` says whether a point belongs to what is bounded; folds
+    are only where some points around do. Refuses curves that take too many pieces.
     """
     boxes = list[Array]()
     leaning = [*leaning_between(faces, low, high)]
@@ -273,10 +255,8 @@ def is_beside_some(polygon: Array, is_there: Callable[[Point], bool]) -> bool:
 def enclose_edge(found: Enclosure, edge: Any, points: Array | None, safe: float) -> None:
     """Adds what holds an edge.
 
-    Parameters
-    ----------
-    points : (N, 2) along it, of which boxes are made where the library knows no curve of the edge.
-    safe : see :func:`near_pieces`.
+    Boxes are made of points (N, 2) along it where the library knows no curve of the edge. For ``safe`` see
+    :func:`near_pieces`.
     """
     try:
         pieces = edge_curve(edge)
@@ -301,11 +281,8 @@ def corners_of(low: Array, high: Array) -> list[Point]:
 def fold_boxes(squares: set[tuple[int, int]], size: float, is_there: Callable[[Point], bool]) -> list[Array]:
     """Boxes that hold a fold where there is something at it: rows of squares, larger ones of a long fold.
 
-    Parameters
-    ----------
-    squares : of a raster, by column and row, that hold it.
-    size : of the squares in mm.
-    is_there : see :func:`enclosed_curves`.
+    The squares of a raster that hold it are given by column and row, their size is in mm. For ``is_there``
+    see :func:`enclosed_curves`.
     """
     while len(squares) > MOST_SQUARES:
         size *= 2.0

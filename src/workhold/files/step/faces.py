@@ -98,7 +98,6 @@ def solid_faces(shape: Any) -> list[SolidFace]:
 
 
 def solid_face(face: Any) -> SolidFace:
-    """Look at one face."""
     low, high = bounding_box(face)
     written, surface = occ.BRepAdaptor_Surface(face), surface_of(face)
     lie = lie_of(surface, 2)
@@ -204,7 +203,6 @@ def components(direction: Any, axis: int) -> tuple[float, float]:
 
 
 def grid(surface: Any) -> Iterator[tuple[float, float]]:
-    """Pairs of parameters all over a surface."""
     us = np.linspace(surface.FirstUParameter(), surface.LastUParameter(), GRID_POINTS)
     vs = np.linspace(surface.FirstVParameter(), surface.LastVParameter(), GRID_POINTS)
     return product(us.tolist(), vs.tolist())

@@ -293,9 +293,7 @@ class StandingSolid:
 def standing(shape: Any, low: float | None = None) -> StandingSolid:
     """A solid moved so that its lowest point is at height 0, and turned right side out.
 
-    Parameters
-    ----------
-    low : z in mm of its bounding box, where that is known.
+    ``low`` is z in mm of its bounding box, where that is known.
     """
     shape = sub_shapes(shape, "SOLID")[0]
     occ.BRepLib.OrientClosedSolid_s(shape)
@@ -434,9 +432,7 @@ def row_of(
 ) -> HeightRow | None:
     """The range between two heights, with what pegs touch of the upper one, or of one that much lower.
 
-    Parameters
-    ----------
-    border : see :meth:`StandingSolid.outline`.
+    For the border see :meth:`StandingSolid.outline`.
     """
     try:
         outline = solid.outline(high - before, room, least, silhouette=border)
@@ -457,10 +453,7 @@ def rows_between(
     """The ranges between two heights at which no face begins or ends, with what their outlines offer.
 
     A face that is cut in curves which are neither lines nor arcs may be refused over some of them.
-
-    Parameters
-    ----------
-    is_whole : whether the outline is known to be the silhouette at all heights between.
+    ``is_whole`` says whether the outline is known to be the silhouette at all heights between.
     """
     if is_whole or not any(
         face.lie == "leaning"
@@ -523,7 +516,6 @@ def longest(rows: Sequence[HeightRow]) -> HeightRow | None:
 
 
 def advice(solid: StandingSolid, room: float, least: float) -> str:
-    """What to give instead, in words."""
     best = longest(height_table(solid, room, least))
     if best is None:
         return f"give another axis, or {SECTION}"
@@ -531,7 +523,6 @@ def advice(solid: StandingSolid, room: float, least: float) -> str:
 
 
 def height_remarks(outline: HeightOutline, found: SolidOutline, rows: Sequence[HeightRow]) -> list[str]:
-    """What an outline by height is, what may be touched of it, and a height at which more may be."""
     _, border, touchable, band = measures(outline)
     reach = (
         "pegs are taken to reach as high"
@@ -572,17 +563,10 @@ class OwnDrawing:
 def own_drawings(
     solid: StandingSolid, heights: Mapping[str, Sequence[float]], found: SolidOutline
 ) -> Iterator[OwnDrawing]:
-    """What carriers with heights of their own meet.
+    """What carriers with heights of their own, in mm by role, meet.
 
-    Parameters
-    ----------
-    heights : by role, in mm.
-    found : the solid as all other pegs meet it.
-
-    Raises
-    ------
-    InputError
-        Naming the role, where such an outline cannot be made or has nothing to touch.
+    ``found`` is the solid as all other pegs meet it. Refuses, naming the role, an outline that cannot be made
+    or has nothing to touch.
     """
     for role, (low, high) in heights.items():
         where = f"along {found.axis}, from {low:g} to {high:g} mm, where the {role} reaches"

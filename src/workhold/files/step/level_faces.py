@@ -113,7 +113,6 @@ def bottom_loops(solid: StandingSolid) -> list[Array]:
 
 
 def lying_borders(solid: StandingSolid) -> list[FaceBorder]:
-    """The borders of the level faces on which a solid lies."""
     return read_borders(
         [face for face in solid.faces if face.lie == "level" and not face.upward and face.low <= SAME_HEIGHT]
     )
@@ -146,12 +145,9 @@ def level_top(
 ) -> LevelTop:
     """What is open of some upper faces of one height, with what rises beside them, and what of them hangs.
 
-    Nothing is open where what rises cannot be told, or takes more than may be asked.
-
-    Parameters
-    ----------
-    lies_on : whether a point is surely on a face on which the solid lies.
-    places : at how many it may still be asked what lies above and below.
+    Nothing is open where what rises cannot be told, or takes more than may be asked. ``lies_on`` says whether
+    a point is surely on a face on which the solid lies, ``places`` at how many it may still be asked what
+    lies above and below.
     """
     height, box = faces[0].low, box_around(faces)
     face_borders = read_borders(faces)
@@ -186,12 +182,8 @@ def rises_above(
 ) -> Callable[[Point], bool]:
     """Whether a solid has something above a height over a point, as a function.
 
-    Beside its foot a fillet is hardly above the level face that it runs into.
-
-    Parameters
-    ----------
-    is_on : whether a point is surely on a level face of that height.
-    places : see :func:`level_top`.
+    Beside its foot a fillet is hardly above the level face that it runs into. ``is_on`` says whether a point
+    is surely on a level face of that height; for ``places`` see :func:`level_top`.
     """
     are_above = solid.inside(height, solid.height + 1.0)
 
@@ -210,9 +202,7 @@ def bounds_between(
 ) -> tuple[Enclosure, list[tuple[Segment, Point]]]:
     """What can bound a slab of a solid, seen from above, and points at which segments are to be cut besides.
 
-    Parameters
-    ----------
-    is_there : see :func:`enclosed_curves`.
+    For ``is_there`` see :func:`enclosed_curves`.
     """
     curves = projected_curves(solid.faces, solid.edges, low, high, solid.folds_of)
     bounds = Enclosure([*curves.segments])
@@ -232,14 +222,7 @@ def hanging_of(
 ) -> list[Array]:
     """The loops of what hangs of the open parts of upper faces of one height.
 
-    Parameters
-    ----------
-    lies_on, places : see :func:`level_top`.
-
-    Raises
-    ------
-    InputError
-        Where these do not close.
+    For ``lies_on`` and ``places`` see :func:`level_top`. Refuses loops that do not close.
     """
     segments = segments_of(open_)
     boxes = np.array([bounding_box(one) for one in segments])
@@ -279,16 +262,9 @@ def region(
 ) -> list[Array]:
     """Loops (N, 3) around a region, which lies on their left; outer ones first, the largest before all.
 
-    Parameters
-    ----------
-    segments : that hold all of its border.
-    inside : whether a point that lies on none of them belongs to it.
-    cuts : further points at which the carriers of segments are to be cut.
-
-    Raises
-    ------
-    InputError
-        Where its border does not close.
+    The segments hold all of its border, and ``inside`` says whether a point that lies on none of them belongs
+    to it. Cuts are further points at which the carriers of segments are to be cut. Refuses a border that does
+    not close.
     """
     pieces = border_pieces(subdivide(segments, cuts), lambda points: list(map(inside, points)), NEAR_BESIDE)
     loops = [smoothed(loop) for loop in border_loops(pieces)]
@@ -330,7 +306,6 @@ def lines_of(face_borders: Sequence[FaceBorder]) -> list[Segment]:
 
 
 def lines_near(bounds: Enclosure, box: Box) -> Iterator[Segment]:
-    """The segments and the polygons' sides that reach into a box."""
     x0, y0, x1, y1 = box
     for one in bounds.lines:
         low_x, low_y, high_x, high_y = bounding_box(one)
@@ -350,7 +325,6 @@ def overlap(a: Box, b: Box) -> bool:
 
 
 def segments_of(loops: Sequence[Array]) -> list[Segment]:
-    """All segments of some loops."""
     return [segment for loop in loops for segment in loop_segments(loop)]
 
 
@@ -367,7 +341,6 @@ def smoothed(loop: Sequence[BorderPiece]) -> Array:
 
 
 def continues(before: BorderPiece, after: BorderPiece) -> bool:
-    """Whether a piece goes on along the same line or circle."""
     return before.carrier is after.carrier
 
 
@@ -410,16 +383,9 @@ def border_of(face: SolidFace) -> FaceBorder | None:
 def chorded(chain: Chain, curves: Mapping[str, Pieces], bounds: Enclosure) -> Array:
     """Vertices (N, 3) of a face's border with chords in the place of its curves.
 
-    Parameters
-    ----------
-    chain : the border with some lines and arcs in their place.
-    curves : the pieces of each by its label.
-    bounds : to which its lines and arcs are added, and polygons that hold its curves.
-
-    Raises
-    ------
-    InputError
-        For a curve that takes too many chords.
+    The chain is the border with some lines and arcs in their place, and ``curves`` has the pieces of each by
+    its label. Added to the bounds are its lines and arcs, and polygons that hold its curves. Refuses a curve
+    that takes too many chords.
     """
     vertices: list[tuple[float, float, float]] = []
     count, done = len(chain.bulges), set[str]()

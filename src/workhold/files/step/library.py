@@ -75,7 +75,6 @@ def load_step_library() -> None:
 
 
 def remedy(error: ImportError) -> str:
-    """What to install, by why the import failed."""
     if isinstance(error, ModuleNotFoundError):
         return f"STEP files need a library that is not installed: pip install '{REQUIREMENT}'."
     missing = re.match(r"(lib\S+?\.so[.\d]*): cannot open shared object file", str(error))
@@ -92,10 +91,7 @@ def remedy(error: ImportError) -> str:
 def guarded(read: Callable[[], T], *further: type[Exception]) -> T:
     """What some reading returns; ``further`` are errors that come of a damaged file as well.
 
-    Raises
-    ------
-    InputError
-        Its own, and one where the library or the arithmetic after it fails over what it was given.
+    Refuses what the library, or the arithmetic after it, fails over.
     """
     try:
         return read()

@@ -172,12 +172,7 @@ class PlaneFaces:
 
 
 def boxed(points: Sequence[Point], boxes: Array, more: float = 0.0) -> NDArray[np.bool_]:
-    """Which boxes (F, 4 and more) have points (N, 2) in them, (N, F).
-
-    Parameters
-    ----------
-    more : by how much in mm the boxes are larger on all sides.
-    """
+    """Which boxes (F, 4 and more), larger by ``more`` mm on all sides, have points (N, 2) in them, (N, F)."""
     x, y = np.array(points)[:, :, None].transpose(1, 0, 2)
     near: NDArray[np.bool_] = (boxes[:, 0] - more <= x) & (x <= boxes[:, 2] + more)
     near &= (boxes[:, 1] - more <= y) & (y <= boxes[:, 3] + more)
@@ -256,9 +251,8 @@ class Material:
     def intervals(self, point: Point, near: Sequence[int] | None = None) -> list[tuple[float, float]]:
         """The intervals of the upright line through a point (x, y), from the lowest up.
 
-        Parameters
-        ----------
-        near : numbers of the faces that are not flat and may lie over the point, where they are known.
+        ``near`` are the numbers of the faces that are not flat and may lie over the point, where they are
+        known.
         """
         if point not in self.known:
             near = np.flatnonzero(self.near([point])).tolist() if near is None else near

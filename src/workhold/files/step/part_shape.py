@@ -123,10 +123,7 @@ def levels_of(solid: SolidOutline) -> Levels:
 
 
 def plain(content: bytes, view: dict[str, Any], loops: list[Any], height: float, levels: Levels) -> Any:
-    """Mesh and shape of the solid that gives some loops, as plain data.
-
-    Raises InputError as :func:`part_shape`.
-    """
+    """Mesh and shape of the solid that gives some loops, as plain data."""
     wanted = [np.array(loop) for loop in loops]
     return guarded(lambda: shape_of_outline(content, HeightView(**view), wanted, height, levels), ValueError)
 
@@ -136,7 +133,7 @@ def shape_of_outline(
 ) -> Any:
     """Meshes and keeps the solid of a file that gives some loops and levels, see :func:`plain`.
 
-    Raises InputError where no solid of the file gives these loops.
+    Refuses a file of which no solid gives these loops.
     """
     for solid in read_solids(content):
         found = turned_up(solid, view)

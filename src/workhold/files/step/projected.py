@@ -99,9 +99,7 @@ def projected_curves(
 ) -> ProjectedCurves:
     """Every curve that can bound the projection of the slab between two z in mm.
 
-    Parameters
-    ----------
-    folds_of : the folds of the face of a number, see :func:`folds`; they are the same for all slabs.
+    ``folds_of`` gives the folds of the face of a number, see :func:`folds`; they are the same for all slabs.
     """
     segments: list[Segment] = []
     cuts: list[tuple[Segment, Point]] = []
@@ -383,12 +381,10 @@ class Meridian:
     surface: Any
 
     def Value(self, parameter: float) -> Any:
-        """The point at a parameter."""
         return self.surface.Value(self.surface.FirstUParameter(), parameter)
 
     @property
     def axis(self) -> Any:
-        """A point of the axis."""
         return self.surface.AxeOfRevolution().Location()
 
     def radius(self, point: Point3) -> float:
@@ -413,7 +409,6 @@ def turned_folds(surface: Any) -> list[Found]:
 
 
 def turned_cuts(surface: Any, z: float) -> list[Found]:
-    """The circles in which a turned surface passes a height."""
     curve = Meridian(surface)
     parameters, points = curve.samples()
     away = np.array([height(point) - z for point in points])
@@ -457,7 +452,6 @@ class PlainCurves:
 
     @classmethod
     def of(cls, segments: Sequence[Segment]) -> PlainCurves:
-        """Some segments, as the kernels ask for them."""
         return cls(segments, segment_rows(segments) if segments else np.zeros((0, 10)))
 
     def are_border(self, places: NDArray[np.float64], inside: Inside) -> bool:
@@ -483,16 +477,8 @@ def refuse_others(
     """Refuses a curve that is neither line nor arc where material lies on one side of it only.
 
     The points farthest out are looked at first: where there is such a curve, it is most likely there.
-
-    Parameters
-    ----------
-    inside : which of some points (x, y) belong to the outline's region.
-    plain : lines and arcs that may be the border in its place.
-
-    Raises
-    ------
-    OtherCurveError
-        Naming the face.
+    ``inside`` says which of some points (x, y) belong to the outline's region; ``plain`` has lines and arcs
+    that may be the border in its place. The error is an OtherCurveError that names the face.
     """
     if not others:
         return
@@ -521,10 +507,7 @@ def border_places(
 ) -> NDArray[np.float64]:
     """Points (N, 2) of a curve at which it has the region on one side only; none is an end of it.
 
-    Parameters
-    ----------
-    points : (N, 2) along the curve, in mm.
-    looked : numbers of the points at which it is looked at.
+    Of points (N, 2) along the curve, in mm, those that ``looked`` numbers are looked at.
     """
     steps = points[looked + 1] - points[looked - 1]
     sizes = np.hypot(*steps.T)

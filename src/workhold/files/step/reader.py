@@ -59,13 +59,7 @@ __all__ = [
 
 
 def read_step_apart(content: bytes, **options: Any) -> Drawing:
-    """Runs :func:`read_step` in a process of its own: damaged files crash or hang the library.
-
-    Raises
-    ------
-    InputError
-        As :func:`read_step`, and for a file that the process does not survive.
-    """
+    """Runs :func:`read_step` in a process of its own: damaged files crash or hang the library."""
     return drawing_of(run_apart(__name__, content, options, "the STEP file"))
 
 
@@ -96,10 +90,7 @@ def prepare() -> None:
 def plain(content: bytes, **options: Any) -> Any:
     """Chains and remarks of :func:`read_step` as plain data.
 
-    Raises
-    ------
-    InputError
-        As :func:`read_step`, and where the library or the arithmetic after it fails over what it was given.
+    Refuses a file over which the library or the arithmetic after it fails, too.
     """
     return guarded(lambda: plain_drawing(read_step(content, **options)))
 
@@ -126,7 +117,6 @@ def read_step(
 
     Parameters
     ----------
-    content : the file's bytes.
     axis : "x", "y" or "z" (the default): the direction of the file that the pegs are parallel to. The part is
         seen from the axis's far end. So x and y of the outline are y and z of the file for "x", or z and x
         for "y". With a minus before it the part lies on its other side, turned over like a page.
@@ -155,13 +145,7 @@ def read_solid(
     part_number: int | str | None,
     fit: float | None,
 ) -> Drawing:
-    """The outline of one of some solids, see :func:`read_step`.
-
-    Raises
-    ------
-    InputError
-        See there.
-    """
+    """The outline of one of some solids, see :func:`read_step`."""
     axis = axis_named(axis)
     solid = chosen_solid(solids, part_number)
     shape = along(solid.shape, axis)
@@ -186,7 +170,7 @@ def read_solid(
 def silhouette(shape: Any, volume: float, faces: Sequence[SolidFace], layers: Sequence[Layer]) -> Any:
     """The union of everything flat that the silhouette must hold.
 
-    Raises InputError when the library cannot cut the solid or unite its sections.
+    Refuses a solid that the library cannot cut, and sections that it cannot unite.
     """
     prismatic = [layer for layer in layers if layer.prismatic]
     regions = [section(shape, layer.middle) for layer in prismatic]
@@ -219,10 +203,7 @@ def silhouette(shape: Any, volume: float, faces: Sequence[SolidFace], layers: Se
 
 
 def refuse_missing_volume(swept: float, volume: float, tolerance: float) -> None:
-    """Refuses a solid whose sections do not fill it: it is open, or runs through itself.
-
-    Raises InputError, giving both volumes, in mm³.
-    """
+    """Refuses a solid whose sections do not fill it: it is open, or runs through itself. Volumes are in mm³."""
     if abs(swept - volume) > tolerance * volume:
         raise InputError(
             f"the sections of the solid fill {swept:.6g} mm³, but it says to have {volume:.6g} mm³: repair "
@@ -242,8 +223,7 @@ def has_layer(layers: Sequence[Layer], z: float, *, below: bool) -> bool:
 def chosen_section(shape: Any, faces: Sequence[SolidFace], height: float) -> Any:
     """The section at a height above the lowest point.
 
-    Raises InputError for a height outside the part or at a level face, and where the section falls into
-    pieces.
+    Refuses a height outside the part or at a level face, and a section that falls into pieces.
     """
     low, high = min(face.low for face in faces), max(face.high for face in faces)
     if not 0 < height < high - low:
@@ -276,17 +256,9 @@ def read_shapes(
 ) -> tuple[Drawing, int | str | None]:
     """The drawing of some shapes, and the number of the part that is still to be taken of it.
 
-    Parameters
-    ----------
-    shapes : of Open CASCADE, in mm.
-    axis, section_height, part_number, fit : see :func:`workhold.files.step.reader.read_step`. Faces that
-        are level need no axis.
-
-    Raises
-    ------
-    InputError
-        For shapes without solids and faces, for solids as in :func:`read_step`, and for faces that are not
-        flat, or not at one height along an axis.
+    Shapes are those of Open CASCADE, in mm. For the choices see :func:`workhold.files.step.reader.read_step`;
+    faces that are level need no axis. Refuses shapes without solids and faces, and faces that are not flat,
+    or not at one height along an axis.
     """
     solids = solids_of_shapes(shapes)
     if solids:

@@ -28,10 +28,7 @@ __all__ = ["Borders", "area_of", "borders", "edge_curve", "level_region", "secti
 def edge_curve(edge: Any) -> Pieces:
     """The pieces of an edge's curve, seen from above, in its own direction.
 
-    Raises
-    ------
-    InputError
-        Where the library knows no curve of the edge, or the curve is no spline that can be used.
+    Refuses an edge of which the library knows no curve, or none that can be used as a spline.
     """
     adaptor = occ.BRepAdaptor_Curve(edge)
     first, last = adaptor.FirstParameter(), adaptor.LastParameter()
@@ -77,19 +74,12 @@ class Borders:
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What was done to them."""
         closed = f"Closed gaps of up to {self.gap:.2g} mm between edges of the outline."
         return (closed,) if self.gap > EDGE_GAP else ()
 
 
 def section(solid: Any, z: float) -> Any:
-    """The region in which the plane at height z cuts a solid.
-
-    Raises
-    ------
-    InputError
-        When the library finds none, though the solid reaches from below z to above.
-    """
+    """The region in which the plane at height z cuts a solid."""
     (x0, y0, _), (x1, y1, _) = bounding_box(solid)
     more = max(x1 - x0, y1 - y0)
     plane = occ.gp_Pln(occ.gp_Pnt(0.0, 0.0, z), occ.gp_Dir(0.0, 0.0, 1.0))
@@ -106,11 +96,6 @@ def level_region(face: Any, z: float, upward: bool) -> Any:
     """A level face at height z as a region: the section of the prism over it.
 
     The face itself would not do. Faces that look different ways do not become one in a union.
-
-    Raises
-    ------
-    InputError
-        As :func:`section`.
     """
     height = 1.0 if upward else -1.0
     return section(occ.BRepPrimAPI_MakePrism(face, occ.gp_Vec(0.0, 0.0, height)).Shape(), z + height / 2)
@@ -126,12 +111,8 @@ def area_of(region: Any) -> float:
 def union(regions: Sequence[Any]) -> Any:
     """The union of regions.
 
-    A region that holds all others is returned as it is, so that its curves stay untouched.
-
-    Raises
-    ------
-    InputError
-        When the areas do not add up, so that the library's union cannot be right.
+    A region that holds all others is returned as it is, so that its curves stay untouched. Refuses areas that
+    do not add up: then the library's union cannot be right.
     """
     ordered = sorted(regions, key=area_of, reverse=True)
     whole = ordered[0]
@@ -154,14 +135,7 @@ def union(regions: Sequence[Any]) -> Any:
 def borders(region: Any, fit: float | None = None) -> Borders:
     """The borders of a region as closed chains of lines and arcs.
 
-    Parameters
-    ----------
-    fit : how far they may be from curves that are neither, see ``files.outline.curves``.
-
-    Raises
-    ------
-    InputError
-        For an edge that cannot be read.
+    ``fit`` is how far they may be from curves that are neither, see ``files.outline.curves``.
     """
     chains: list[Chain] = []
     curves = CurveReader(fit)
@@ -191,7 +165,7 @@ Piece = tuple[list[Point], list[float], str | None]
 def edge_piece(edge: Any, curves: CurveReader, label: str) -> Piece | None:
     """An edge in the direction its wire runs; None for an edge of zero length.
 
-    Raises InputError for an edge that cannot be read.
+    Refuses an edge that cannot be read.
     """
     curve = occ.BRepAdaptor_Curve(edge)
     first, last = curve.FirstParameter(), curve.LastParameter()

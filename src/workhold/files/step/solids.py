@@ -70,7 +70,6 @@ class Solid:
 
     @property
     def listed(self) -> FileSolid:
-        """The solid as it is listed."""
         size = tuple(b - a for a, b in zip(self.low, self.high, strict=True))
         return FileSolid(self.number, self.name, size, self.low)
 
@@ -78,10 +77,7 @@ class Solid:
 def read_solids(content: bytes) -> tuple[Solid, ...]:
     """Every solid of a STEP file, wherever assemblies place it, by decreasing volume.
 
-    Raises
-    ------
-    InputError
-        For files that are no STEP, damaged, without a unit of length, or without a solid.
+    Refuses files that are no STEP, damaged, without a unit of length, or without a solid.
     """
     load_step_library()
     refuse_other_formats(content)
@@ -102,13 +98,7 @@ def read_solids(content: bytes) -> tuple[Solid, ...]:
 
 
 def listed_solids(content: bytes) -> tuple[FileSolid, ...]:
-    """The solids of the bytes of a STEP file, read in a process of its own.
-
-    Raises
-    ------
-    InputError
-        As :func:`read_solids`, and for a file that the process does not survive.
-    """
+    """The solids of the bytes of a STEP file, read in a process of its own."""
     return tuple(FileSolid(*one) for one in run_apart(__name__, content, {}, "the STEP file"))
 
 
@@ -118,24 +108,11 @@ def prepare() -> None:
 
 
 def plain(content: bytes) -> Any:
-    """The solids as plain data.
-
-    Raises
-    ------
-    InputError
-        As :func:`listed_solids`.
-    """
     return guarded(lambda: [astuple(solid.listed) for solid in read_solids(content)], ValueError)
 
 
 def numbered(shapes: Sequence[Any], names: Sequence[str] = ()) -> tuple[Solid, ...]:
-    """Solids of Open CASCADE by decreasing volume, with their names where these are known.
-
-    Raises
-    ------
-    InputError
-        As :func:`measured`.
-    """
+    """Solids of Open CASCADE by decreasing volume, with their names where these are known."""
     called = names or [""] * len(shapes)
     found = [evolve(measured(shape), name=name) for shape, name in zip(shapes, called, strict=True)]
     solids = sorted(found, key=lambda solid: (-solid.volume, solid.low, solid.high))
@@ -165,10 +142,7 @@ def lost_remarks(content: bytes, solids: tuple[Solid, ...]) -> list[str]:
 
 
 def refuse_other_formats(content: bytes) -> None:
-    """Refuses what is plainly no STEP file, is cut short, or has no unit (the library would take mm).
-
-    Raises InputError, saying what it is.
-    """
+    """Refuses what is plainly no STEP file, is cut short, or has no unit (the library would take mm)."""
     if content.startswith(b"PK"):
         raise InputError("this is a compressed file, not a STEP file: unpack it first.")
     if b"ISO-10303-21" not in content[:4096]:
@@ -183,10 +157,7 @@ def refuse_other_formats(content: bytes) -> None:
 
 
 def read_through(content: bytes) -> Any:
-    """A reader of the library that has read the file, and has one shape of everything in it.
-
-    Raises InputError when the library cannot read it.
-    """
+    """A reader of the library that has read the file, and has one shape of everything in it."""
     reader = occ.STEPControl_Reader()
     try:
         status = reader.ReadStream("part", BytesIO(content))
@@ -203,7 +174,7 @@ def read_through(content: bytes) -> Any:
 def measured(shape: Any) -> Solid:
     """A solid with its volume and bounding box; its number comes later.
 
-    Raises InputError when it has no volume, or coordinates that leave no digits.
+    Refuses one that has no volume, or coordinates that leave no digits.
     """
     properties = occ.GProp_GProps()
     occ.BRepGProp.VolumeProperties_s(shape, properties)
@@ -217,13 +188,7 @@ def measured(shape: Any) -> Solid:
 
 
 def chosen_solid(solids: tuple[Solid, ...], number: int | str | None) -> Solid:
-    """The solid of a number or a name, or the largest.
-
-    Raises
-    ------
-    InputError
-        When there is no solid of that number or name, and when there are several of that name.
-    """
+    """The solid of a number or a name, or the largest; refuses a name that several solids have."""
     if number is None:
         return solids[0]
     if isinstance(number, str):
@@ -237,8 +202,7 @@ def chosen_solid(solids: tuple[Solid, ...], number: int | str | None) -> Solid:
 def solid_called(solids: tuple[Solid, ...], name: str) -> Solid:
     """The only solid of a name, as it is written, or else in any mixture of capitals.
 
-    Raises InputError when there is none, naming those that are close, and when there are several, with their
-    numbers.
+    Where there is none the refusal names those that are close, and where there are several their numbers.
     """
     if len(solids) == 1:
         raise InputError(f"the STEP file holds only one solid: leave {PART_NUMBER} out.")
@@ -269,7 +233,6 @@ def solid_called(solids: tuple[Solid, ...], name: str) -> Solid:
 
 
 def solid_remarks(solids: tuple[Solid, ...], chosen: Solid, asked: int | str | None) -> list[str]:
-    """What to say about several solids in one file."""
     if len(solids) == 1:
         return []
     more = f"; and {len(solids) - SOLID_LIST} smaller ones" if len(solids) > SOLID_LIST else ""
@@ -281,8 +244,6 @@ def solid_remarks(solids: tuple[Solid, ...], chosen: Solid, asked: int | str | N
 def named_shapes(reader: Any) -> list[tuple[Any, str]] | None:
     """Every solid of what a reader of STEP files has read, with its name; empty where it has none.
 
-    Returns
-    -------
     None where the library does not know: the solids are those of the reader then, without names.
     """
     # Whatever fails over names, the solids are there without them.
@@ -312,7 +273,6 @@ def position(shape: Any) -> tuple[float, ...]:
 
 
 def children(label: Any) -> Iterator[Any]:
-    """The labels directly under a label."""
     at = occ.TDF_ChildIterator(label, False)
     while at.More():
         yield at.Value()
@@ -322,14 +282,8 @@ def children(label: Any) -> Iterator[Any]:
 def places_under(label: Any, moved: Any, names: tuple[str, ...]) -> Iterator[tuple[Any, tuple[str, ...]]]:
     """Every place in which a product without others in it is used, at a label or below.
 
-    Parameters
-    ----------
-    moved : where the assemblies around it place it.
-    names : of these assemblies.
-
-    Returns
-    -------
-    The product's shape there, and names from the outermost assembly inward.
+    The assemblies around it have names, and place it by ``moved``. Yields the product's shape there, and
+    names from the outermost assembly inward.
     """
     product = label
     if occ.XCAFDoc_ShapeTool.IsReference_s(label):
@@ -363,7 +317,6 @@ def shown_name(name: str) -> str:
 
 
 def name_of(solid: Any, names: tuple[str, ...], count: int, process: Any) -> str:
-    """The name of a solid of a product that has so many solids."""
     own = ""
     with suppress(Exception):
         # Solids are known to the reader without the place that assemblies give them.

@@ -67,10 +67,8 @@ class Strip:
 def strips_of_loop(loop: Sequence[BorderPiece], walls: Walls, least: float) -> list[Strip]:
     """The segments of a loop with their bands, in running order.
 
-    Parameters
-    ----------
-    loop : pieces in running order, see ``geometry.subdivision``.
-    least : shortest band in mm that may be touched.
+    So are the loop's pieces, see ``geometry.subdivision``. ``least`` is the shortest band in mm that may be
+    touched.
     """
     pieces = [walls.covered(piece) for piece in loop]
     stretches: Sequence[Stretch] = runs_around(pieces, lambda a, b: continues(a, b, least))
@@ -103,11 +101,8 @@ def continues(before: Covered, after: Covered, least: float) -> bool:
 def at_joint(covered: Covered, end: int) -> list[tuple[Band, float, bool]]:
     """The runs at an end of a piece, each with what its ends may be off in mm, and whether one jumps.
 
-    Places are known to what makes two points one, and the ends of a run move over that.
-
-    Parameters
-    ----------
-    end : 0 for the first in the direction of the border, 1 for the last.
+    Places are known to what makes two points one, and the ends of a run move over that. The end is 0 for the
+    first in the direction of the border, 1 for the last.
     """
     position, carrier = covered.ends[end], covered.piece.carrier
     inward = 1.0 if position == covered.low else -1.0
@@ -222,7 +217,6 @@ def turns_past(
 
 
 def is_past(value: Callable[[float], float], sign: float, position: float) -> bool:
-    """Whether a value has come to have a sign at a position."""
     return sign * value(position) >= 0.0
 
 
@@ -301,9 +295,7 @@ def halved(stretch: Stretch, least: float) -> list[Strip]:
 def cut_at(stretch: Stretch, size: float) -> tuple[Stretch, Stretch]:
     """A stretch up to a place, and from there on.
 
-    Parameters
-    ----------
-    size : how far the place is from its start, in mm on a line and radians on a circle.
+    The place is ``size`` from its start, in mm on a line and radians on a circle.
     """
     left = size
     slack = stretch[0].piece.carrier.slack

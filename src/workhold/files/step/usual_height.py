@@ -76,10 +76,8 @@ def usual_height(
 ) -> UsualHeight:
     """How high pegs of a diameter reach beside a solid, no higher than they must; lengths in mm.
 
-    Parameters
-    ----------
-    rows : what other heights offer; of a prism they are not looked at.
-    room, least : what is kept free above the pegs, and the shortest band that may be touched.
+    ``rows`` are what other heights offer; of a prism they are not looked at. ``room`` is what is kept free
+    above the pegs, and ``least`` the shortest band that may be touched.
     """
     top = solid.height
     enough = SHARE * max((row.touchable for row in rows), default=0.0)
@@ -92,14 +90,11 @@ def usual_height(
         except InputError:
             return False
 
-    heights = [one for one in standouts(diameter) or ends_of(rows, top) if one <= top + SAME_HEIGHT]
+    # Without dowels of this diameter, the heights at which what pegs meet changes, with that of the part.
+    offered = standouts(diameter) or sorted({row.high for row in rows} | {top})
+    heights = [one for one in offered if one <= top + SAME_HEIGHT]
     usual = min(DOWEL_STANDOUT * diameter, top) + SAME_HEIGHT
     low = [one for one in heights if one <= usual]
     in_order = [*reversed(low), *(one for one in heights if one > usual)]
     found = next((one for one in in_order if touches_enough(one)), top)
     return UsualHeight(min(found, top), top, diameter, not is_prism, slides_at_any(rows))
-
-
-def ends_of(rows: Sequence[HeightRow], top: float) -> list[float]:
-    """The heights in mm at which what pegs meet changes, rising, with that of the part."""
-    return sorted({row.high for row in rows} | {top})

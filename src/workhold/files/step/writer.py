@@ -76,8 +76,6 @@ def write_setup_step(
 
     Parameters
     ----------
-    fixture, workpiece, toolkit : the set-up.
-    path : the file.
     thickness : height of the part in mm; that of its solid if None, or 10.
     plate_thickness : of all plates, in mm; 10 if None. Their holes go through.
     peg_height : how far the pegs stand out of the plates, in mm; as far as the part's solid says, or as the
@@ -112,13 +110,7 @@ def setup_step(
     zero: PartZero | None = None,
     **sizes: Any,
 ) -> bytes:
-    """The bytes of a set-up's STEP assembly; the sizes are lengths of :func:`write_setup_step`.
-
-    Raises
-    ------
-    InputError
-        As :func:`write_setup_step`.
-    """
+    """The bytes of a set-up's STEP assembly; the sizes are lengths of :func:`write_setup_step`."""
     bodies = fixture_bodies(fixture, workpiece, toolkit, BodySizes.of(workpiece, **sizes))
     return bodies_step(bodies, toolkit, (zero or part_zero(workpiece)).point, fixture.pose)
 
@@ -220,7 +212,6 @@ def extruded(outer: Any, holes: Sequence[Any], low: float, high: float) -> Any:
 
 
 def assembly(name: str, named: Sequence[tuple[str, Any, Colour | None]]) -> bytes:
-    """The STEP file of an assembly of bodies, each with its name and, where there is one, its colour."""
     document = occ.TDocStd_Document(occ.TCollection_ExtendedString("XmlOcaf"))
     shapes = occ.XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
     compound = occ.TopoDS_Compound()
@@ -277,7 +268,6 @@ def plates_step(plates: Sequence[JawPlate], thickness: float | None = None) -> b
 
 
 def drilled(plate: JawPlate, right: float, thickness: float) -> Any:
-    """A plate as a solid, moved to the right."""
     corners = [(x + right, y) for x, y in plate.outline.corners]
     border = wire([Line(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True)])
     holes: list[tuple[Point, float]] = [(center, plate.hole_diameter) for _, center in plate.holes]
@@ -290,10 +280,7 @@ def drilled(plate: JawPlate, right: float, thickness: float) -> Any:
 def coloured(text: bytes, colours: Sequence[Colour]) -> bytes:
     """The text of a STEP file with a colour for each of its bodies, in their order in the file.
 
-    Raises
-    ------
-    RuntimeError
-        When the file has not one body for each colour.
+    Raises RuntimeError when the file has not one body for each colour.
     """
     bodies = list(BODY.finditer(text))
     if len(bodies) != len(colours) or END not in text:

@@ -64,7 +64,6 @@ def shown(name: str) -> str:
 
 
 def href(element: Element) -> str:
-    """What an element links to."""
     return element.get("href", element.get(LINK, "")).strip()
 
 
@@ -113,12 +112,9 @@ class Document:
 def read_document(content: bytes, budget: Budget) -> Document:
     """The tree of an SVG file.
 
-    Raises
-    ------
-    InputError
-        For files that are no SVG, style sheets outside the file, and animations. Also for XML that is broken
-        (with line and column), nested without end, asks for more than ``budget`` has, or declares entities or
-        attributes, which can blow up to any size.
+    Refuses files that are no SVG, style sheets outside the file, and animations. Refuses XML that is broken
+    (with line and column), nested without end, asks for more than ``budget`` has, or declares entities or
+    attributes, which can blow up to any size.
     """
     if content.startswith(b"\x1f\x8b"):
         raise InputError("the SVG file is compressed (svgz): unpack it first.")
@@ -246,10 +242,7 @@ def parsed(content: bytes, lines: dict[Element, int], budget: Budget) -> Element
 
 
 def refuse_many_attributes(content: bytes) -> None:
-    """Refuses an element with very many attributes before it is read, which is done at once.
-
-    Raises InputError, with its line.
-    """
+    """Refuses an element with very many attributes before it is read, which is done at once."""
     if content.count(b"=") <= MOST_ATTRIBUTES:
         return
     for tag in START_TAG.finditer(content):
@@ -322,7 +315,6 @@ class Styles:
             self.match(styles)
 
     def match(self, styles: list[Element]) -> None:
-        """Note which rules select which elements."""
         sheets = Sheets(self.budget)
         for style in styles:
             place = f"the style sheet on line {self.document.places[style][1]}"
@@ -359,7 +351,6 @@ class Styles:
         return found
 
     def attribute(self, element: Element) -> tuple[Block, Block]:
-        """The declarations of an element's style attribute."""
         text = element.get("style", "")
         if text not in self.attributes:
             place = f"the style of {self.document.name(element)}"
@@ -431,7 +422,7 @@ class Sheets:
 
 
 def refuse_media(media: str, place: str) -> None:
-    """Refuses styles for some screens or printers only; raises InputError, naming the condition."""
+    """Refuses styles for some screens or printers only."""
     if " ".join(media.lower().split()) not in SCREENS:
         raise InputError(
             f"{place} is for '{short(media)}' only, which is not read: write the styles without it."
@@ -444,10 +435,7 @@ def css_letters(text: str) -> int:
 
 
 def tokens_of(text: str, place: str, budget: Budget) -> list[Any]:
-    """The tokens of CSS.
-
-    Raises InputError for CSS that is too long or too deep, and for numbers that cannot be read.
-    """
+    """The tokens of CSS; refuses what is too long or too deep, and numbers that cannot be read."""
     import tinycss2
 
     style = Budget(LIMITS["style"])
@@ -466,7 +454,7 @@ def tokens_of(text: str, place: str, budget: Budget) -> list[Any]:
 def declared(content: Any, place: str) -> tuple[Block, Block]:
     """The known properties of a block of declarations: plain ones, and important ones.
 
-    Raises InputError for rules within the block.
+    Refuses rules within the block.
     """
     import tinycss2
 

@@ -38,7 +38,6 @@ def read_svg(
 
     Parameters
     ----------
-    content : the file's bytes.
     unit : what one user unit is; None to go by the file's physical size.
     usual_unit : what it is in a file without a physical size.
     fit : how far lines and arcs may be from true curves, in mm; None keeps a proposal in their place, see
@@ -146,7 +145,6 @@ def overriding(
 
 
 def in_pixels(root: ShapeElement) -> bool:
-    """Whether a drawing says that its size is in pixels."""
     given = (root.given(name) for name in ("width", "height"))
     return any(side is not None and side.text.lower().endswith("px") for side in given)
 
@@ -161,14 +159,7 @@ def file_scales(
 ) -> tuple[float, float] | None:
     """Millimetres per user unit in x and y by the page's size in mm; None where there is none.
 
-    Parameters
-    ----------
-    pixel : a user unit in mm where there is no viewBox.
-
-    Raises
-    ------
-    InputError
-        For a size that is not positive.
+    ``pixel`` is a user unit in mm where there is no viewBox. Refuses a size that is not positive.
     """
     if size == (None, None):
         return None

@@ -128,13 +128,7 @@ class SelectorMatcher:
         return [self.count - 1]
 
     def matched(self, root: Element, budget: Budget) -> Iterator[tuple[Element, list[tuple[Any, ...]]]]:
-        """The elements of a tree, each with specificity and number of the selectors that select it.
-
-        Raises
-        ------
-        InputError
-            Where time is up.
-        """
+        """The elements of a tree, each with specificity and number of the selectors that select it."""
         import cssselect2
 
         after, open_elements = self.after, [OpenElement(None)]
@@ -208,7 +202,6 @@ def compound_selectors(tokens: Tokens) -> list[tuple[str, list[Any]]]:
 
 
 def trimmed(tokens: Tokens) -> list[Any]:
-    """Tokens without blanks at their ends."""
     blank = [token.type == "whitespace" for token in tokens]
     if all(blank):
         return []

@@ -61,10 +61,7 @@ def near(p: Point, q: Point) -> bool:
 
 
 def path(figure: ShapeElement) -> Iterator[Shape]:
-    """A <path>; each subpath is a chain.
-
-    Raises InputError for path data that cannot be read.
-    """
+    """A <path>; each subpath is a chain."""
     label = figure.label
     start: Point = (0.0, 0.0)
     steps: list[PathStep] = []
@@ -93,7 +90,7 @@ BATCH = 256
 def path_segments(figure: ShapeElement) -> Iterator[Any]:
     """The segments of a path as svgelements resolves them.
 
-    Raises InputError for path data that cannot be read, or asks for more than the budget has.
+    Refuses path data that cannot be read, or asks for more than the budget has.
     """
     from svgelements import Move, Path
 
@@ -129,7 +126,6 @@ class PathStep(NamedTuple):
 
 
 def subpath(start: Point, steps: Sequence[PathStep]) -> Shape:
-    """The shape of the steps from a point."""
     ends, bulges, labels, curves = zip(*steps, strict=True)
     return Shape((start, *ends), bulges, labels, {k: c for k, c in enumerate(curves) if c is not None})
 
@@ -137,7 +133,7 @@ def subpath(start: Point, steps: Sequence[PathStep]) -> Shape:
 def path_data(figure: ShapeElement) -> str:
     """The path data, as attribute or as CSS property; empty when there is none.
 
-    Raises InputError for a property that is not ``path("...")``.
+    Refuses a property that is not ``path("...")``.
     """
     given = figure.given("d")
     if given is None or given.text in ("", "none"):
@@ -234,13 +230,11 @@ def xy(point: Any, label: str) -> Point:
 
 
 def line(figure: ShapeElement) -> Iterator[Shape]:
-    """A <line>."""
     x1, y1, x2, y2 = (figure.length(a) for a in ("x1", "y1", "x2", "y2"))
     yield Shape(((x1, y1), (x2, y2)), (0.0,), (figure.label,))
 
 
 def circle(figure: ShapeElement) -> Iterator[Shape]:
-    """A <circle>."""
     x, y, r = (figure.length(a) for a in ("cx", "cy", "r"))
     return oval(figure.label, (x, y), r, r)
 
@@ -324,12 +318,10 @@ def polyline(figure: ShapeElement, close: bool = False) -> Iterator[Shape]:
 
 
 def polygon(figure: ShapeElement) -> Iterator[Shape]:
-    """A <polygon>."""
     return polyline(figure, close=True)
 
 
 def segment_labels(label: str, count: int) -> tuple[str, ...]:
-    """Labels of the segments of one element."""
     return tuple(f"{label} segment {k}" for k in range(count))
 
 

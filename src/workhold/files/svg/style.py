@@ -89,12 +89,10 @@ class Style:
 
     @property
     def filled(self) -> bool:
-        """Whether a fill is seen."""
         return self.fill_opaque and (self.fill == SEEN or (self.fill == CURRENT and self.color_opaque))
 
     @property
     def stroked(self) -> bool:
-        """Whether a stroke is seen."""
         seen = self.stroke == SEEN or (self.stroke == CURRENT and self.color_opaque)
         return seen and self.stroke_opaque and self.stroke_wide and self.stroke_drawn
 
@@ -105,10 +103,7 @@ INITIAL = Style()
 def computed(declarations: Declarations, around: Style, styles: Styles, label: str) -> Style:
     """The style of an element in one with the style ``around``.
 
-    Raises
-    ------
-    InputError
-        For values that are not read and decide whether the element is seen, naming the element.
+    Refuses values that are not read and decide whether the element is seen.
     """
 
     def value(name: str, parse: Callable[[str], Value | None], inherited: Value, initial: Value) -> Value:
@@ -152,13 +147,7 @@ def computed(declarations: Declarations, around: Style, styles: Styles, label: s
 
 
 def refuse_effects(figure: ShapeElement) -> None:
-    """Refuses masks, filters and other effects that cut, move or hide what is drawn.
-
-    Raises
-    ------
-    InputError
-        Naming element and property.
-    """
+    """Refuses masks, filters and other effects that cut, move or hide what is drawn."""
     for name, harmless in EFFECTS.items():
         text = figure.declarations[name][0].text if name in figure.declarations else harmless
         usual = () if name == "all" else ("normal", "initial", "unset", "inherit")
@@ -252,11 +241,6 @@ def boundaries(chains: Sequence[Chain], budget: Budget) -> list[Chain]:
 
     How often the loops around a point turn about it, less those that turn the other way, is not zero where
     there is paint. A loop that meets others stays, to be refused with its place.
-
-    Raises
-    ------
-    InputError
-        Where time is up.
     """
     clean = [cleaned([chain]).chains for chain in chains]
     known = [k for k, found in enumerate(clean) if found and len(found[0].bulges) > 1]
@@ -281,7 +265,6 @@ def boundaries(chains: Sequence[Chain], budget: Budget) -> list[Chain]:
 
 
 def meet(one: LoopShape, other: LoopShape, budget: Budget) -> bool:
-    """Whether two loops cross or touch."""
     budget.work(len(one.segments) + len(other.segments))
     try:
         refuse_meeting_loops(one, other, str, str)

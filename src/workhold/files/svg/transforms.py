@@ -28,13 +28,7 @@ ATTRIBUTE = {
 
 
 def transform_of(figure: ShapeElement) -> Placement:
-    """The map of an element's transform properties.
-
-    Raises
-    ------
-    InputError
-        For transforms that are not SVG's, or not in the plane, naming the element.
-    """
+    """The map of an element's transform properties; refuses any that are not SVG's, or not in the plane."""
     declarations, label = figure.declarations, figure.label
     given = {name: declarations[name][0] for name in PROPERTIES if name in declarations}
     given = {name: one for name, one in given.items() if one.text not in ("", "none", "initial", "unset")}

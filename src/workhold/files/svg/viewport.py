@@ -83,13 +83,7 @@ def physical(text: str) -> bool:
 
 
 def numbers(text: str, what: str, budget: Budget) -> list[float]:
-    """All numbers of a list separated by blanks and commas.
-
-    Raises
-    ------
-    InputError
-        For anything else in the list, and for more numbers than ``budget`` has.
-    """
+    """All numbers of a list separated by blanks and commas; refuses more than ``budget`` has."""
     values: list[float] = []
     text, position = text.rstrip(), 0
     while position < len(text):
@@ -176,10 +170,7 @@ ASPECT = re.compile(r"x(Min|Mid|Max)Y(Min|Mid|Max)(?: (meet|slice))?$")
 def viewbox_of(text: str | None, label: str, budget: Budget) -> ViewBox | None:
     """Left, top, width and height of a viewBox; None when there is none.
 
-    Raises
-    ------
-    InputError
-        When it is not four numbers with a positive size.
+    Refuses one that is not four numbers with a positive size.
     """
     if text is None:
         return None
@@ -192,13 +183,7 @@ def viewbox_of(text: str | None, label: str, budget: Budget) -> ViewBox | None:
 
 
 def fitted(box: ViewBox, width: float, height: float, aspect: str, label: str) -> Placement:
-    """The map from a viewBox to a viewport at the origin (SVG 2, 8.2).
-
-    Raises
-    ------
-    InputError
-        For a ``preserveAspectRatio`` that is not SVG's.
-    """
+    """The map from a viewBox to a viewport at the origin (SVG 2, 8.2)."""
     words = aspect.removeprefix("defer").split() or ["xMidYMid"]
     sx, sy = width / box[2], height / box[3]
     if words[0] == "none":
@@ -240,13 +225,7 @@ class Window:
     label: str
 
     def shows(self, chain: Chain, budget: Budget) -> Literal["all", "some", "nothing"]:
-        """How much of a chain is inside, as far as the window's edges, taken one by one, show.
-
-        Raises
-        ------
-        InputError
-            Where time is up.
-        """
+        """How much of a chain is inside, as far as the window's edges, taken one by one, show."""
         area = sum(u * y - v * x for (u, v), (x, y) in pairwise(self.corners))
         size = max(hypot(x - u, y - v) for (u, v), (x, y) in pairwise(self.corners))
         whole, outside = True, False

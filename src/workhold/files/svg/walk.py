@@ -84,13 +84,6 @@ class SvgWalk:
         self.sizes: dict[Element, int] = {}
 
     def visit(self, element: Element, nest: ElementNesting) -> None:
-        """Collects one element and those inside it.
-
-        Raises
-        ------
-        InputError
-            For an element that is refused, naming it.
-        """
         self.budget.spend()
         tag = local_name(element)
         if tag in SILENT:
@@ -106,7 +99,6 @@ class SvgWalk:
                 ) from error
 
     def visit_figure(self, figure: ShapeElement, nest: ElementNesting) -> None:
-        """Collects an element with its values and those inside it."""
         element, label = figure.element, figure.label
         tag = local_name(element)
         style = computed(figure.declarations, nest.style, self.styles, label)
@@ -165,13 +157,7 @@ class SvgWalk:
             self.visit(element, nest)
 
     def visit_shape(self, figure: ShapeElement, nest: ElementNesting) -> None:
-        """Adds the chains of a shape that is seen.
-
-        Raises
-        ------
-        InputError
-            For transforms that crush the drawing.
-        """
+        """Adds the chains of a shape that is seen; refuses transforms that crush the drawing."""
         style, label = nest.style, figure.label
         if not style.shown or not (style.stroked or style.filled):
             self.hidden += 1
@@ -212,13 +198,7 @@ class SvgWalk:
                 yield chain
 
     def visit_use(self, figure: ShapeElement, nest: ElementNesting) -> None:
-        """Visits what a <use> shows.
-
-        Raises
-        ------
-        InputError
-            For links to nothing, to other files and to themselves.
-        """
+        """Visits what a <use> shows; refuses links to nothing, to other files and to themselves."""
         label, link = figure.label, href(figure.element)
         target = self.document.linked(link)
         if target is None:
@@ -253,10 +233,7 @@ class SvgWalk:
     def visit_target(self, target: Element, use: ShapeElement, nest: ElementNesting) -> None:
         """Visits a symbol or nested drawing in the size that a <use> gives it (SVG 2, 5.5 and 5.6).
 
-        Raises
-        ------
-        InputError
-            For a transform, size or reference point of a symbol, which programs draw differently.
+        Refuses a transform, size or reference point of a symbol, which programs draw differently.
         """
         own = self.figure(target, nest)
         label = own.label
@@ -282,10 +259,7 @@ class SvgWalk:
     ) -> None:
         """Visits the children of a nested drawing or symbol in its own viewport.
 
-        Raises
-        ------
-        InputError
-            For a transform, which programs draw differently, and for sizes that are not known.
+        Refuses a transform, which programs draw differently, and sizes that are not known.
         """
         element, label = figure.element, figure.label
         if transform_of(figure) != Placement():
@@ -315,13 +289,7 @@ class SvgWalk:
         self.visit_children(element, evolve(nest, placement=view, viewport=(width, height)))
 
     def clipped(self, figure: ShapeElement, nest: ElementNesting) -> ElementNesting:
-        """The nest with the window of an element's ``clip-path``.
-
-        Raises
-        ------
-        InputError
-            For clip paths other than one convex polygon.
-        """
+        """The nest with the window of an element's ``clip-path``; refuses any but one convex polygon."""
         declarations, label, element = figure.declarations, figure.label, figure.element
         text = declarations["clip-path"][0].text if "clip-path" in declarations else "none"
         if text.lower() in ("none", "initial", "unset", ""):
@@ -389,7 +357,7 @@ class SvgWalk:
 
 
 def refuse_absurd(placement: Placement, label: str) -> None:
-    """Refuses a map to mm with which nothing can be reckoned; raises InputError, naming the element."""
+    """Refuses a map to mm with which nothing can be reckoned."""
     numbers = (placement.a, placement.b, placement.c, placement.d)
     if not (
         all(abs(number) <= MOST_SCALE for number in numbers)
@@ -400,10 +368,7 @@ def refuse_absurd(placement: Placement, label: str) -> None:
 
 
 def suits(element: Element, label: str) -> bool:
-    """Whether an element's conditions hold (SVG 2, 5.9).
-
-    Raises InputError for conditions that programs judge differently.
-    """
+    """Whether an element's conditions hold (SVG 2, 5.9); refuses conditions that programs judge differently."""
     if element.get("requiredExtensions") is not None:
         return False
     if element.get("systemLanguage") is not None:

@@ -60,7 +60,6 @@ class ToolkitRules:
 
     @classmethod
     def of(cls, query: Query) -> ToolkitRules:
-        """The rules of the toolkit of a query, and how it lists pairs of clamps."""
         return cls(query.toolkit, every=query.listing == "all")
 
     @cached_property
@@ -155,7 +154,6 @@ class ToolkitRules:
 
     @property
     def pegs_wanted(self) -> str:
-        """What the pegs of a fixture are to be."""
         words = [
             f"the two ends of the {one.noun}"
             if one.is_wall
@@ -293,9 +291,7 @@ class ToolkitRules:
     ) -> Iterator[Finding]:
         """Whether a jaw with ends reaches the part where it is pressed, and the pegs' columns are the best.
 
-        Parameters
-        ----------
-        contacts, shares : those of an endless wall, and their null vector.
+        Contacts and shares are those of an endless wall, and their null vector.
         """
         if self.jaw is None:
             return

@@ -98,7 +98,6 @@ OPPOSITE = {"-x": "+x", "+x": "-x", "-y": "+y", "+y": "-y"}
 
 
 def directions_of(fixture: Fixture) -> tuple[str, ...]:
-    """The directions of a fixture's clamps."""
     return tuple((fixture.direction or "").split())
 
 
@@ -109,7 +108,6 @@ def direction_of(clamp: Peg) -> str:
 
 
 def is_along_x(clamp: Peg) -> bool:
-    """Whether a clamp moves along a row."""
     return direction_of(clamp).endswith("x")
 
 
@@ -277,5 +275,4 @@ def between(piece: LineSide, side: Side) -> Iterator[tuple[arb, arb]]:
 
 
 def along(piece: LineSide, place: arb) -> Point:
-    """The point of a piece's line at a place."""
     return piece.start[0] + place * piece.tangent[0], piece.start[1] + place * piece.tangent[1]

@@ -241,10 +241,7 @@ class Jaw:
     ) -> Iterator[Finding]:
         """Whether the jaw holds the part where its force acts, and no other columns do so better.
 
-        Parameters
-        ----------
-        columns : those in which the pegs stand.
-        force_at : x in mm at which the force of the wall acts.
+        The pegs stand in ``columns``, and the force of the wall acts at ``force_at``, x in mm.
         """
         first, found = min(columns), dict[int, tuple[Stretch, arb]]()
         for column in range(self.columns - (max(columns) - first)):
@@ -308,10 +305,8 @@ def flush_findings(
 ) -> Iterator[Finding]:
     """Whether the part lies flush on a wall called ``noun``, its two named ends where they are written.
 
-    Parameters
-    ----------
-    ends : those of the whole contact.
-    stated : those that the file says, the ends of what the wall reaches of it; the same if None.
+    ``ends`` are those of the whole contact, ``stated`` those that the file says: the ends of what the wall
+    reaches of it, the same if None.
     """
     (left, _), (right, _) = [contact.place(pose) for _, _, contact in ends]
     yield from rule(right - left - LEAST_FLUSH, f"the part does not lie flush on the {noun}")
