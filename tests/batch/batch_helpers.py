@@ -11,14 +11,13 @@ from threading import Event
 
 from attrs import define, field, frozen
 
+from workhold import Query, Vise
 from workhold.batch.durations import Measured
 from workhold.batch.run import ANY_PART, Batch, BatchRun, HeldIn, Request, run_batch
 from workhold.batch.store import FolderStore, Store, refusal_record
 from workhold.batch.tasks import Outcome, Task, done
 from workhold.errors import InputError
 from workhold.files.part_list import part_list
-from workhold.fixels.vise import Vise
-from workhold.model.query import Query
 
 COARSE = HeldIn("coarse", Query(ANY_PART, Vise(pitch=16, columns=1, peg_radius=3)))
 FINE = HeldIn("fine", Query(ANY_PART, Vise(pitch=12, columns=1, peg_radius=3)))

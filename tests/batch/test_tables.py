@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from batch_helpers import COARSE, IMPOSSIBLE, InlineQueue, run_in
 
+from workhold import Fence, Plate, Query
 from workhold.batch import tables
 from workhold.batch.durations import Measured
 from workhold.batch.report import Summary, write_results
@@ -20,9 +21,6 @@ from workhold.batch.store import FolderStore
 from workhold.batch.tables import BEST, RESULTS, JobRow, job_rows, table_names, write_tables
 from workhold.files.replacing import is_own
 from workhold.files.result.reader import read_result
-from workhold.fixels.fence import Fence
-from workhold.fixels.plate import Plate
-from workhold.model.query import Query
 from workhold.statics.judging import unfit
 
 PLATE = HeldIn("plate", Query(ANY_PART, Plate(pitch=20, peg_radius=3)))

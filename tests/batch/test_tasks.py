@@ -9,7 +9,7 @@ import pytest
 from attrs import evolve
 from batch_helpers import COARSE, FINE, Failing, Unprepared
 
-from workhold import load
+from workhold import Query, answer, load
 from workhold.batch import tasks
 from workhold.batch.store import FolderStore, checksum, is_whole, plain_record, workpiece_of
 from workhold.batch.tables import BEST
@@ -18,8 +18,6 @@ from workhold.errors import InputError
 from workhold.files.part.finding import builtin_path
 from workhold.files.result.fixture_forms import seating_figures_of
 from workhold.files.result.writer import result_text
-from workhold.model.query import Query
-from workhold.search.design import answer
 
 FLANGE = builtin_path("flange")
 assert FLANGE is not None

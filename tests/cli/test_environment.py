@@ -15,9 +15,9 @@ import numpy as np
 import pytest
 
 from fakes import fake_result
+from workhold import Workpiece
 from workhold.files.result.reader import read_result
 from workhold.files.result.writer import write_result
-from workhold.model.workpiece import Workpiece
 
 NO_MEMORY = (
     "this needs more memory than there is: close other programs, use fewer threads, or raise the limit."

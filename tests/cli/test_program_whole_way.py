@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from slow_program import OFF, walked
+from workhold import Program
 from workhold.files.result.reader import read_result
-from workhold.model.program import Program
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 PEG_HEIGHT = 6.0

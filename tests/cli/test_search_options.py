@@ -8,10 +8,11 @@ from typing import Any
 
 import pytest
 
+from workhold import Load, Tolerance
 from workhold.cli.search_options import parse_load
 from workhold.errors import InputError
 from workhold.fixels.carrier import Holes
-from workhold.model.requirements import ANY_DIRECTION, Load, Tolerance
+from workhold.model.requirements import ANY_DIRECTION
 
 WIDGET = ("design", "widget", "--pitch", "10", "--columns", "2", "--peg-radius", "3")
 

@@ -18,11 +18,9 @@ from drawing_examples import diamond
 from svg_reading import by_class
 
 import workhold
-from workhold import __version__
+from workhold import Query, Result, __version__
 from workhold.files.result.writer import write_result
 from workhold.model.fixture_table import FixtureTable, unknown_quality
-from workhold.model.query import Query
-from workhold.model.result import Result
 
 
 def diamond_result() -> Result:

@@ -8,10 +8,10 @@ from math import inf
 import pytest
 from attrs import fields
 
+from workhold import Plate
 from workhold.cli.toolkit_options import ToolkitWords
 from workhold.cli.values import number, positive_number
 from workhold.errors import InputError
-from workhold.fixels.plate import Plate
 from workhold.units import MILLIMETRE
 
 

@@ -15,11 +15,9 @@ import numpy as np
 import pytest
 
 from fakes import fake_result
-from workhold import Result, Vise, Workpiece, design
+from workhold import Query, Result, Tolerance, Vise, Workpiece, design
 from workhold.files.result.writer import write_result
 from workhold.model.fixture_table import FixtureTable, unknown_quality
-from workhold.model.query import Query
-from workhold.model.requirements import Tolerance
 from workhold.model.search_report import Proof
 from workhold.statics.effective_error import EffectiveErrors
 from workhold.statics.quality import quality_of

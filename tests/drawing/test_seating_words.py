@@ -11,15 +11,13 @@ from sheet_reading import collisions, page_of, words_of
 from svg_reading import by_class, texts
 
 import workhold
-from workhold import Fence, Plate, Vise, Workpiece
+from workhold import Fence, Load, Plate, Result, Vise, Workpiece
 from workhold.drawing.scene import UNITS_PER_MM, LengthUnit
 from workhold.drawing.seating_words import SeatingSentences
 from workhold.drawing.sheet import draw_sheet, result_sheet
 from workhold.drawing.sheet_facts import SheetDetails, result_cautions
 from workhold.model.clamps import order_words
 from workhold.model.quality import FIGURE_RANKING
-from workhold.model.requirements import Load
-from workhold.model.result import Result
 from workhold.model.seating import CLOSE_READING, SMALL_CAPTURE, Seating
 from workhold.seating.clamping import WHY
 from workhold.statics.loads import load_cases

@@ -24,17 +24,14 @@ from space_examples import (
 )
 from svg_reading import by_class, matrix, texts, to_model
 
+from workhold import Fixture, Peg, Plate, Pose, Workpiece
 from workhold.drawing.bench import bench_of, contact_of
 from workhold.drawing.scene import UNITS_PER_MM
 from workhold.drawing.sheet_facts import SheetDetails, result_details
 from workhold.drawing.sheet_writing import heights_of
 from workhold.drawing.side_view import WAYS, apart, side_view
 from workhold.errors import InputError
-from workhold.fixels.plate import Plate
 from workhold.model.dowel_lengths import dowel_for
-from workhold.model.fixture import Fixture, Peg
-from workhold.model.pose import Pose
-from workhold.model.workpiece import Workpiece
 from workhold.units import INCH, MILLIMETRE, Unit
 
 Box = tuple[float, float, float, float]

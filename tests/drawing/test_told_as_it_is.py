@@ -21,6 +21,7 @@ from held_any_way import AHEAD, HELD, PITCH, WALL_OFFSET, WORDS, Held, load_case
 from sheet_reading import collisions
 from svg_reading import NAMESPACE, by_class, matrix, texts
 
+from workhold import Peg
 from workhold.cli.show_command import load_tables
 from workhold.cli.table import print_tables
 from workhold.cli.tables import fixture_tables, quality_table
@@ -31,7 +32,6 @@ from workhold.drawing.sheet import draw_sheet
 from workhold.drawing.sheet_facts import SheetDetails
 from workhold.files.dxf.writer import setup_dxf
 from workhold.files.result.fixture_text import pin_list
-from workhold.model.fixture import Peg
 from workhold.units import MILLIMETRE
 from workhold.web.answers import fixture_answer
 

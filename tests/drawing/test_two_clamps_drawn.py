@@ -11,7 +11,7 @@ import pytest
 from sheet_reading import collisions
 from svg_reading import by_class, texts
 
-from workhold import Plate, Result, Workpiece, design, load
+from workhold import Load, Plate, Restrictions, Result, Workpiece, design, load
 from workhold.cli.tables import counts_sentence, fixture_tables, result_table
 from workhold.drawing import draw_fixture, draw_thumbnails
 from workhold.drawing.sheet import draw_sheet
@@ -20,7 +20,6 @@ from workhold.files.dxf.writer import setup_dxf
 from workhold.files.result.fixture_text import pin_list
 from workhold.listing.identity import entries
 from workhold.model.clamps import order_words
-from workhold.model.requirements import Load, Restrictions
 from workhold.model.setup import settings_of
 from workhold.model.shown import shown
 from workhold.statics.loads import load_cases

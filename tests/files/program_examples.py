@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from workhold import Program
 from workhold.model.cutting_tool import Cylinder, Tool
-from workhold.model.program import Program, SweptPiece
+from workhold.model.program import SweptPiece
 
 PROGRAMS = Path(__file__).parent.parent / "data" / "programs"
 HEAD = "G21 G90 G17\nT1 M6\n"

@@ -8,9 +8,9 @@ from typing import Any
 
 import ezdxf
 
+from workhold import Workpiece
 from workhold.files.part.load import Loaded, read_workpiece
 from workhold.geometry.loop import signed_area
-from workhold.model.workpiece import Workpiece
 
 RECTANGLE = [(0, 0), (60, 0), (60, 40), (0, 40)]
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from workhold import Load, Tolerance, Vise, Workpiece, circle_zone
 from workhold.errors import InputError, plain, shortened
 from workhold.files.budget import LIMITS, FileLimits
 from workhold.files.loads_file import read_loads
@@ -14,9 +15,6 @@ from workhold.files.part.load import read_workpiece
 from workhold.files.result.reader import read_result
 from workhold.files.text import json_value, read_at_most, read_limited, read_text, toml_table
 from workhold.files.toolkit_file import read_toolkit_file
-from workhold.fixels.vise import Vise
-from workhold.model.requirements import Load, Tolerance, circle_zone
-from workhold.model.workpiece import Workpiece
 
 HUGE = "1" + "0" * 400
 MARK = b"\xef\xbb\xbf"

@@ -14,11 +14,11 @@ import pytest
 
 import workhold
 from fakes import fake_result
+from workhold import Restrictions
 from workhold.cli.tables import result_table
 from workhold.errors import InputError
 from workhold.listing.identity import entries
 from workhold.model.quality import RANKED
-from workhold.model.requirements import Restrictions
 from workhold.presenting.figure_words import figure_text
 from workhold.presenting.live_picture import LivePicture
 from workhold.presenting.markup import MOST_SVG, Markup, compact, image, table

@@ -20,10 +20,8 @@ from flint import arb
 import workhold
 from strategies import outline
 from toolkit_results import assert_all_proven, part, verify_edited
-from workhold import FlatJaw, InputError, Query, Result, Workpiece
+from workhold import Fixture, FlatJaw, InputError, Load, Query, Result, Workpiece
 from workhold.fixels.kinds import toolkit_of
-from workhold.model.fixture import Fixture
-from workhold.model.requirements import Load
 from workhold.search.design import Explored, explore, first_choice
 from workhold.search.explaining import explain
 from workhold.verification.ball_geometry import BallOutline

@@ -12,7 +12,7 @@ import pytest
 
 from cad_parts import cad_part
 from toolkit_results import NOTCHED, part
-from workhold import OpeningVise, Plate, Query, Result, Vise, Workpiece, answer, design, load
+from workhold import OpeningVise, Plate, Query, Restrictions, Result, Vise, Workpiece, answer, design, load
 from workhold.contact.problem import Problem
 from workhold.conventions import SQUARE_TILT
 from workhold.files.result.writer import write_result
@@ -20,7 +20,6 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.listing.bounds import preferred_angles
 from workhold.listing.collector import Needed
 from workhold.model.quality import TILT
-from workhold.model.requirements import Restrictions
 from workhold.model.search_report import best_note
 from workhold.search.lattice_shares import LatticeShares, square_first
 from workhold.search.toolkit_search import ToolkitSearch

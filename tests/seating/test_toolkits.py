@@ -11,11 +11,10 @@ from attrs import evolve
 
 import workhold
 from seating_examples import Obstacle, closed
-from workhold import Fence, Fixture, InputError, OpeningVise, Peg, Plate, Pose, Vise, Workpiece
+from workhold import Fence, Fixture, InputError, OpeningVise, Peg, Plate, Pose, Result, Vise, Workpiece
 from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.base.distance import outline_distances
 from workhold.kernels.seating.columns import CONTACTS, SEPARATION
-from workhold.model.result import Result
 from workhold.model.seating import Seating
 from workhold.seating.closing_simulation import simulate_closing
 from workhold.seating.contact_forces import contact_normals

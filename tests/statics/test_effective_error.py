@@ -10,12 +10,11 @@ import pytest
 from attrs import evolve
 
 import workhold
-from workhold import FlatJaw, OpeningVise, Plate, Query, Vise, Workpiece, answer
+from workhold import FlatJaw, OpeningVise, Plate, Query, Restrictions, Vise, Workpiece, answer
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.first_choice import FACTORS
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import LOCATION_ERROR, WARNINGS
-from workhold.model.requirements import Restrictions
 from workhold.statics.effective_error import EffectiveErrors, angle_classes
 from workhold.statics.why_first import why_first
 from workhold.verification.first_choice import EffectiveJudge

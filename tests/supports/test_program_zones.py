@@ -12,9 +12,9 @@ from attrs import evolve
 from numpy.typing import NDArray
 
 from slow_program import OFF, THICKNESS, TOOLS, Row, path, program_of, random_program, walked
-from workhold import Program, Query, Vise, Workpiece, answer
+from workhold import Program, Query, Vise, Workpiece, answer, circle_zone
 from workhold.geometry.loop import loop_segments
-from workhold.model.requirements import circle_zone, zone_of
+from workhold.model.requirements import zone_of
 from workhold.model.support_request import SupportRequest
 from workhold.supports.choosing import WorkLimit
 from workhold.supports.clamp_point import ClampPlaces, point_on

@@ -8,8 +8,7 @@ import pytest
 from attrs import evolve
 
 from supports.cases import case
-from workhold import Vise
-from workhold.model.query import Query
+from workhold import Query, Vise
 from workhold.model.support_request import SupportRequest
 from workhold.model.support_triples import Supports
 from workhold.supports.listing import supports_of

@@ -11,11 +11,10 @@ import attrs
 import numpy as np
 import pytest
 
-from workhold import Result, Vise, design, load
+from workhold import Load, Restrictions, Result, Vise, circle_zone, design, load
 from workhold.listing.ranking import order_keys, usual_errors
 from workhold.model.first_choice import figures_ranked_by
 from workhold.model.quality import FIGURES, whole_rows
-from workhold.model.requirements import Load, Restrictions, circle_zone
 from workhold.verification import Verification, verify
 from workhold.verification.placing import broken_restriction
 from workhold.verification.rules.hardware import ToolkitRules

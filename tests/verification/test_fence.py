@@ -15,9 +15,8 @@ from numpy.typing import NDArray
 
 import workhold
 from toolkit_results import assert_all_proven, part, verify_edited
-from workhold import Fence, Query, Result, Workpiece, answer, design
-from workhold.completeness import verify as verify_completely
-from workhold.model.requirements import Load, Restrictions, circle_zone
+from workhold import Fence, Load, Query, Restrictions, Result, Workpiece, answer, circle_zone, design
+from workhold import verify as verify_completely
 from workhold.model.search_report import AT_AN_EDGE, Undecided
 from workhold.search.wall_contacts import PinContacts
 from workhold.search.wall_search import WallSearch

@@ -13,9 +13,8 @@ from attrs import evolve
 
 import workhold
 from toolkit_results import assert_all_proven, part, verify_edited
-from workhold import Fence, InputError, Result, design
+from workhold import Fence, InputError, Load, Restrictions, Result, circle_zone, design
 from workhold.listing.seats import undecided_pairs
-from workhold.model.requirements import Load, Restrictions, circle_zone
 from workhold.model.search_report import Undecided, no_pair_note
 from workhold.verification import Verification, verify, verify_fixture
 from workhold.verification.repeats import KnownFixtures

@@ -15,13 +15,12 @@ from flint import arb
 
 from slow_program import PEG_HEIGHT, kinds_of_toolkit, random_program
 from strategies import random_outline
-from workhold import Query, Result, answer
+from workhold import Program, Query, Result, answer
 from workhold.files.result.columns import write_columns
 from workhold.files.result.reader import read_result
 from workhold.files.result.writer import write_result
 from workhold.model.cutting_forces import forces_on
 from workhold.model.cutting_tool import CuttingData, CuttingDirection
-from workhold.model.program import Program
 from workhold.statics.path_pieces import path_forces
 from workhold.verification.force_walk import ForceWalk
 from workhold.verification.verify import verify_file

@@ -12,10 +12,20 @@ import attrs
 import pytest
 
 from undecided_examples import as_undecided
-from workhold import InputError, Plate, Query, Result, Vise, Workpiece, answer
+from workhold import (
+    InputError,
+    Load,
+    Plate,
+    Query,
+    Restrictions,
+    Result,
+    Vise,
+    Workpiece,
+    answer,
+    circle_zone,
+)
 from workhold.files.result.writer import write_result
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.requirements import Load, Restrictions, circle_zone
 from workhold.model.search_report import undecided_note
 from workhold.verification import verify_file
 

@@ -17,10 +17,21 @@ import workhold
 from strategies import random_outline
 from toolkit_results import assert_all_proven, part, verify_edited
 from undecided_examples import as_undecided
-from workhold import Fixture, InputError, Plate, Pose, Query, Result, answer, design
+from workhold import (
+    Fixture,
+    InputError,
+    Load,
+    Plate,
+    Pose,
+    Query,
+    Restrictions,
+    Result,
+    answer,
+    circle_zone,
+    design,
+)
 from workhold.listing.results import joined_ways
 from workhold.model.quality import FIGURE_RANKING
-from workhold.model.requirements import Load, Restrictions, circle_zone
 from workhold.model.search_report import GIVEN_UP, Undecided, no_fixture_notes, undecided_note
 from workhold.verification import Verification, verify, verify_file, verify_fixture
 from workhold.verification.ball_geometry import BallOutline

@@ -14,10 +14,9 @@ from attrs import evolve
 
 from slow_program import OFF, PEG_HEIGHT, kinds_of_toolkit, low_points, random_program, slow_clearance
 from strategies import random_outline
-from workhold import Query, Result, answer
+from workhold import Program, Query, Result, answer
 from workhold.files.result.columns import write_columns
 from workhold.files.result.writer import write_result
-from workhold.model.program import Program
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.tool_walk import Element, elements_of, program_fault, walk_of
 from workhold.verification.verify import verify, verify_file

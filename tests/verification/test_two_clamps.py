@@ -16,10 +16,21 @@ from flint import arb
 
 import workhold
 from toolkit_results import assert_all_proven, part, verify_edited
-from workhold import Fixture, InputError, Plate, Query, Result, Workpiece, design
+from workhold import (
+    Fixture,
+    InputError,
+    Load,
+    Peg,
+    Plate,
+    Query,
+    Restrictions,
+    Result,
+    Workpiece,
+    circle_zone,
+    design,
+)
 from workhold.listing.seats import undecided_pairs
-from workhold.model.fixture import Pair, Peg
-from workhold.model.requirements import Load, Restrictions, circle_zone
+from workhold.model.fixture import Pair
 from workhold.model.search_report import AT_AN_EDGE, Undecided, no_pair_note
 from workhold.verification import Verification, verify, verify_fixture
 from workhold.verification.account import too_few_contacts

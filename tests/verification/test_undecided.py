@@ -8,8 +8,7 @@ import attrs
 import pytest
 
 from undecided_examples import as_undecided
-from workhold import OpeningVise, Query, Result, Workpiece
-from workhold.model.fixture import Fixture
+from workhold import Fixture, OpeningVise, Query, Result, Workpiece
 from workhold.model.search_report import GIVEN_UP, NEARLY_DOUBLE, UNBOUNDED, Undecided, undecided_note
 from workhold.verification import verify
 from workhold.verification.undecided import undecided_faults

@@ -16,7 +16,7 @@ from attrs import define
 from warm_worker import warm_context
 
 from reading_here import work_reading_here
-from workhold.files.part.load import load
+from workhold import load
 from workhold.web.guard import Hosts, ServerLimits
 from workhold.web.origins import Origins
 from workhold.web.serve import Server, bound_socket, make_server

@@ -17,8 +17,7 @@ from test_parts import refused
 
 import workhold
 from glb_reading import ReadBody, read_glb
-from workhold import Plate, Workpiece
-from workhold.model.result import Result
+from workhold import Plate, Result, Workpiece
 from workhold.model.support_request import SpatialLoad, SupportRequest
 from workhold.model.support_triples import Supports
 from workhold.supports.listing import supports_of

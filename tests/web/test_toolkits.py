@@ -11,13 +11,11 @@ import pytest
 from attrs import asdict, fields_dict
 from running_server import WIDGET, RunningServer, request
 
-from workhold.files.part.load import load
+from workhold import Plate, design, load
 from workhold.files.toolkit_file import load_toolkit, preset, preset_names
 from workhold.fixels.contacts import DIRECTIONS
 from workhold.fixels.kinds import ALIASES, KINDS, kind_of, toolkit_of
-from workhold.fixels.plate import Plate
 from workhold.fixels.support_hardware import HARDWARE
-from workhold.search.design import design
 from workhold.web.answers import fixture_answer
 from workhold.web.forms import JobForm
 from workhold.web.toolkits import DESCRIBED, Described, kinds_answer, page_kind, toolkit_answer

@@ -9,8 +9,9 @@ from typing import Any
 import pytest
 from reading_helpers import RECTANGLE, area, new_dxf, perimeter, read_dxf, rectangle
 
+from workhold import load
 from workhold.errors import InputError
-from workhold.files.part.load import load, read_workpiece
+from workhold.files.part.load import read_workpiece
 
 
 def test_loose_lines_and_arcs_make_an_outline(tmp_path: Path) -> None:
