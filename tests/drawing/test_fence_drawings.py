@@ -14,8 +14,8 @@ from svg_reading import texts
 
 from workhold import Fence, Restrictions, Result, Workpiece, design
 from workhold.cli.seat_command import seat_table
+from workhold.drawing import draw_fixture
 from workhold.drawing.bench import contact_of
-from workhold.drawing.fixture_pictures import draw_fixture
 from workhold.drawing.scene import LengthUnit
 from workhold.drawing.seating_words import SeatingSentences
 from workhold.drawing.seats import draw_seats

@@ -14,9 +14,7 @@ from svg_reading import by_class, texts
 
 from workhold import Plate, Result, Vise, Workpiece, design
 from workhold.cli.tables import fixture_tables
-from workhold.drawing import draw_fixture
-from workhold.drawing.sheet import draw_sheet
-from workhold.drawing.sheet_facts import SheetDetails
+from workhold.drawing import SheetDetails, draw_fixture, draw_sheet
 from workhold.files.dxf.writer import setup_dxf
 from workhold.files.result.fixture_text import pin_list
 from workhold.fixels.pegs import Flat, peg_outline

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from workhold import Fence, Plate, Program, Query, Result, Vise, answer, load
-from workhold.drawing.fixture_pictures import draw_fixture
+from workhold.drawing import draw_fixture
 from workhold.drawing.path_drawn import PagePaths, PlannedPath, planned_path
 from workhold.drawing.pdf import svg_to_pdf
 from workhold.drawing.scene import Box, View

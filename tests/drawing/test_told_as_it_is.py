@@ -25,11 +25,9 @@ from workhold import Peg
 from workhold.cli.show_command import load_tables
 from workhold.cli.table import print_tables
 from workhold.cli.tables import fixture_tables, quality_table
-from workhold.drawing import draw_fixture, draw_thumbnails
+from workhold.drawing import SheetDetails, draw_fixture, draw_sheet, draw_thumbnails
 from workhold.drawing.pdf import svg_to_pdf
 from workhold.drawing.scene import Box
-from workhold.drawing.sheet import draw_sheet
-from workhold.drawing.sheet_facts import SheetDetails
 from workhold.files.dxf.writer import setup_dxf
 from workhold.files.result.fixture_text import pin_list
 from workhold.units import MILLIMETRE

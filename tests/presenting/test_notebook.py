@@ -265,7 +265,7 @@ def test_what_is_shown_is_small() -> None:
 
 def test_a_picture_is_the_same_picture_in_fewer_bytes() -> None:
     """The compact one draws the same pixels but for rounding, and numbers of a map stay exact."""
-    from workhold.drawing.render import svg_to_png
+    from workhold.drawing import svg_to_png
 
     drawn = RESULT[0].draw()
     small = compact(drawn)

@@ -7,7 +7,7 @@ import pytest
 from attrs import evolve
 
 from workhold import Query, Result, Vise, Workpiece, design, load
-from workhold.algebra.engine import answer_by_algebra
+from workhold.algebra import answer_by_algebra
 from workhold.proof import deciding
 
 PARTS = [

@@ -31,9 +31,8 @@ from workhold import (
     design,
     polygon_zone,
 )
-from workhold.algebra.engine import answer_by_algebra
-from workhold.verification import verify
-from workhold.verification.verify import verify_fixture
+from workhold.algebra import answer_by_algebra
+from workhold.verification import verify, verify_fixture
 
 Loop = list[tuple[float, ...]]
 Keeps = Callable[..., bool]

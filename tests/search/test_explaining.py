@@ -30,7 +30,7 @@ from workhold.model.search_report import Explanation, asked_note, no_fixture_not
 from workhold.search import explaining
 from workhold.search.explaining import explain
 from workhold.units import MILLIMETRE
-from workhold.verification.verify import verify
+from workhold.verification import verify
 
 PLAIN = Vise(pitch=8, columns=1, peg_radius=3)
 

@@ -16,7 +16,7 @@ from attrs import evolve
 import workhold
 from toolkit_results import NOTCHED, assert_all_proven, part
 from workhold import Fence, Fixture, InputError, Load, Plate, Query, Vise, design
-from workhold.algebra.engine import answer_by_algebra
+from workhold.algebra import answer_by_algebra
 from workhold.contact.features import contact_features
 from workhold.files.toolkit_file import load_toolkit
 from workhold.fixels.pegs import Flat, flat_of, standoff

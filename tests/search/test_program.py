@@ -27,7 +27,7 @@ from slow_program import (
 )
 from strategies import random_outline
 from workhold import Fence, Fixture, InputError, Plate, Program, Query, Result, Vise, Workpiece, answer, load
-from workhold.algebra.engine import answer_by_algebra
+from workhold.algebra import answer_by_algebra
 from workhold.fixels.toolkit import Toolkit
 from workhold.search.explaining import explain
 from workhold.statics.judging import unfit

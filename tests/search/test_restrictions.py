@@ -23,7 +23,7 @@ from workhold import (
     load,
     polygon_zone,
 )
-from workhold.algebra.engine import answer_by_algebra
+from workhold.algebra import answer_by_algebra
 from workhold.fixels.carrier import holes_named
 
 Key = tuple[object, float]

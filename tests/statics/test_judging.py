@@ -9,8 +9,9 @@ import pytest
 
 from workhold import Load, Result, Workpiece
 from workhold.conventions import GENTLE_PEG, SMALL_FACE_POINTS, STRONG_POINTS, TILTED_POINTS
+from workhold.drawing import SheetDetails
 from workhold.drawing.scene import LengthUnit
-from workhold.drawing.sheet_facts import SheetDetails, cautions_of, edge_distances
+from workhold.drawing.sheet_facts import cautions_of, edge_distances
 from workhold.model.own_outlines import outline_diameter
 from workhold.model.quality import (
     CLAMP_AMPLIFICATION,

@@ -22,8 +22,8 @@ from workhold.files.result.writer import write_result
 from workhold.model.cutting_forces import forces_on
 from workhold.model.cutting_tool import CuttingData, CuttingDirection
 from workhold.statics.path_pieces import path_forces
+from workhold.verification import verify_file
 from workhold.verification.force_walk import ForceWalk
-from workhold.verification.verify import verify_file
 
 KINDS = tuple(kinds_of_toolkit(10.0))
 

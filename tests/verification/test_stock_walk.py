@@ -18,8 +18,8 @@ from workhold.files.result.writer import write_result
 from workhold.model.cutting_forces import forces_on
 from workhold.model.cutting_tool import CuttingData
 from workhold.model.stock import Stock, StockShape
+from workhold.verification import verify_file
 from workhold.verification.stock_walk import stock_faults
-from workhold.verification.verify import verify_file
 
 
 def asked(seed: int, side: float = 5.0, shape: StockShape = "outline") -> Query:

@@ -17,9 +17,9 @@ from strategies import random_outline
 from workhold import Program, Query, Result, answer
 from workhold.files.result.columns import write_columns
 from workhold.files.result.writer import write_result
+from workhold.verification import verify, verify_file
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.tool_walk import Element, elements_of, program_fault, walk_of
-from workhold.verification.verify import verify, verify_file
 
 KINDS = tuple(kinds_of_toolkit(10.0))
 

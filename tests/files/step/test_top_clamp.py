@@ -36,7 +36,7 @@ from top_examples import (
     webbed_cover,
 )
 from workhold import Plate, load
-from workhold.drawing.sheet_facts import SheetDetails
+from workhold.drawing import SheetDetails
 from workhold.drawing.sheet_writing import heights_of
 from workhold.files.step.heights import standing
 from workhold.files.step.level_faces import LevelTop, level_tops
