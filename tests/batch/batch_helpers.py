@@ -13,8 +13,10 @@ from attrs import define, field, frozen
 
 from workhold import Query, Vise
 from workhold.batch.durations import Measured
+from workhold.batch.report import Report, Summary, write_results
 from workhold.batch.run import ANY_PART, Batch, BatchRun, HeldIn, Request, run_batch
 from workhold.batch.store import FolderStore, Store, refusal_record
+from workhold.batch.tables import JobRow, job_rows
 from workhold.batch.tasks import Outcome, Task, done
 from workhold.errors import InputError
 from workhold.files.part_list import part_list
@@ -80,6 +82,26 @@ def run_in(
     store = FolderStore(folder / "work") if store is None else store
     measured = Measured(folder / "measured.csv")
     return run_batch(requests, best, BatchRun(store, queue, measured, Onlooker(), Event()))
+
+
+def rows_of(batch: Batch, folder: Path) -> Iterator[JobRow]:
+    """What is known of each job of a batch that was run into a folder."""
+    return job_rows(batch.jobs, FolderStore(folder / "work"), Measured(folder / "measured.csv"))
+
+
+def reported(
+    batch: Batch,
+    folder: Path,
+    out: Path,
+    *,
+    summary: tuple[str, list[str], list[str]] = ("x", [], []),
+    sheets: Path | None = None,
+    store: Store | None = None,
+) -> Report:
+    """The page ``r.html``, the tables and the sheets of a batch that was run into a folder."""
+    store = FolderStore(folder / "work") if store is None else store
+    measured = Measured(folder / "measured.csv")
+    return write_results(batch, store, measured, out, "r.html", Summary(*summary), sheets)
 
 
 def records_in(folder: Path) -> dict[str, bytes]:

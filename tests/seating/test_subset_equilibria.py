@@ -11,7 +11,7 @@ import pytest
 from attrs import evolve
 
 import workhold
-from seating_examples import STEP
+from seating_examples import STEP, equilibria_of
 from workhold import Vise
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC
 from workhold.kernels.seating.columns import (
@@ -29,7 +29,7 @@ from workhold.kernels.seating.obstacles import clearances
 from workhold.kernels.seating.slides import slides_blocked
 from workhold.seating import two_contact_curves
 from workhold.seating.closing import filled
-from workhold.seating.equilibria import Equilibria, SubsetCache, equilibria, equilibria_of_subset
+from workhold.seating.equilibria import Equilibria, SubsetCache, equilibria_of_subset
 from workhold.seating.obstacle_boundary import ObstacleBoundary
 from workhold.seating.pattern import Pattern, PegSubset, subsets_of
 from workhold.seating.solver import Solver
@@ -50,7 +50,7 @@ def patterns() -> list[Pattern]:
 def solve(solver: Solver, pattern: Pattern) -> tuple[Equilibria, Equilibria]:
     """What is found of a pattern, as drawn and turned over."""
     both = (solver.closing(pattern, turned_over) for turned_over in (False, True))
-    one, two = (equilibria(closing.boundary, pattern, closing.size) for closing in both)
+    one, two = (equilibria_of(closing) for closing in both)
     return one, two
 
 

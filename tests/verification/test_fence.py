@@ -14,6 +14,7 @@ from flint import arb
 from numpy.typing import NDArray
 
 import workhold
+from judged import faults_of
 from toolkit_results import assert_all_proven, part, verify_edited
 from workhold import Fence, Load, Query, Restrictions, Result, Workpiece, answer, circle_zone, design
 from workhold import verify as verify_completely
@@ -24,7 +25,6 @@ from workhold.verification import Verification, verify, verify_fixture
 from workhold.verification.ball_geometry import BallOutline
 from workhold.verification.contacts import BallPose as Balls
 from workhold.verification.rules.wall import flush_findings, wall_contacts
-from workhold.verification.undecided import undecided_faults
 
 Data = dict[str, Any]
 Edit = Callable[[Data], object]
@@ -217,8 +217,8 @@ def test_undecided_entries_must_name_faces_and_reasons() -> None:
     """Their places are not looked at."""
     query = Query(part(KITE), Fence(10, 3, wall_offset=5))
     entry = Undecided("edge -x", (1, 0, 0, 3), (0, 0, 0, 0), (0, 0, 0, 2), 0.0, AT_AN_EDGE, 0.0)
-    assert list(undecided_faults([entry], query)) == []
-    assert len(list(undecided_faults([evolve(entry, faces=(9, 0, 0, 3))], query))) == 1
+    assert faults_of([entry], query) == []
+    assert len(faults_of([evolve(entry, faces=(9, 0, 0, 3))], query)) == 1
     assert answer(query).proof is not None
 
 

@@ -14,6 +14,7 @@ from flint import arb
 
 import check_toolkit
 import workhold
+from judged import faults_of, known_in, place_in_order
 from strategies import random_outline
 from toolkit_results import assert_all_proven, part, verify_edited
 from undecided_examples import as_undecided
@@ -36,10 +37,7 @@ from workhold.model.search_report import GIVEN_UP, Undecided, no_fixture_notes, 
 from workhold.verification import Verification, verify, verify_file, verify_fixture
 from workhold.verification.ball_geometry import BallOutline
 from workhold.verification.contacts import BallPose as Balls
-from workhold.verification.judging import rank
-from workhold.verification.repeats import KnownFixtures
 from workhold.verification.rules.hardware import ToolkitRules
-from workhold.verification.undecided import undecided_faults
 
 Data = dict[str, Any]
 Edit = Callable[[Data], object]
@@ -376,7 +374,7 @@ def loops_of(loop: list[list[float]]) -> list[list[list[float]]]:
 
 def test_the_half_turn_and_other_names_are_the_same(result: Result) -> None:
     """A fixture moved by whole holes, with its locators renamed, or on the plate turned half way round, is the same."""
-    seen = KnownFixtures(ToolkitRules(result.toolkit))
+    seen = known_in(result.toolkit)
     for index, fixture in enumerate(result):
         assert seen.add(index, fixture) is None
     opposite = {"-x": "+x", "+x": "-x", "-y": "+y", "+y": "-y"}
@@ -449,7 +447,7 @@ def test_the_order_is_that_of_the_plate_turned_to_the_clamp() -> None:
     workpiece = part(NOTCHED)
     upright, lying = Plate((14, 20), 3, directions="-y"), Plate((20, 14), 3, directions="-x")
     one, other = (
-        [rank(f, ToolkitRules(plate)) for f in design(workpiece, plate, rank_by=FIGURE_RANKING)]
+        [place_in_order(f, plate) for f in design(workpiece, plate, rank_by=FIGURE_RANKING)]
         for plate in (upright, lying)
     )
     assert len(one) == len(other) > 10
@@ -465,7 +463,7 @@ def test_undecided_entries_are_real_places(result: Result) -> None:
     """Where fixtures are there may be undecided ones; not at another orientation, in other holes or of another type."""
 
     def faults(entry: Undecided) -> list[str]:
-        return list(undecided_faults([entry], result.query))
+        return faults_of([entry], result.query)
 
     tried = 0
     for fixture in result:

@@ -15,6 +15,7 @@ import pytest
 from flint import arb
 
 import workhold
+from judged import faults_of, known_in
 from toolkit_results import assert_all_proven, part, verify_edited
 from workhold import (
     Fixture,
@@ -38,12 +39,10 @@ from workhold.verification.ball_geometry import BallOutline
 from workhold.verification.contacts import BallContact
 from workhold.verification.contacts import BallPose as Balls
 from workhold.verification.listing import listing_of
-from workhold.verification.repeats import KnownFixtures
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.rules.travel import WAYS, Stroke, clamp_place
 from workhold.verification.seat import LocatorWrenches, Push, SeatBalance, closure_margin, ratio_of
 from workhold.verification.seat_clamps import SeatClamp, SeatOnPlate
-from workhold.verification.undecided import undecided_faults
 
 Data = dict[str, Any]
 Edit = Callable[[Data], object]
@@ -254,8 +253,7 @@ def test_the_account_is_held_to_what_is_listed(edited: Any) -> None:
 def test_a_pair_left_out_of_all_is_missed(results: dict[str, Result]) -> None:
     """With all counts adjusted: the pairs of each seat are derived."""
     result = results["all"]
-    rules = ToolkitRules(result.toolkit)
-    seen = KnownFixtures(rules)
+    seen = known_in(result.toolkit)
     again = [index for index, fixture in enumerate(result) if seen.add(index, fixture) is not None]
     kept = np.delete(np.arange(len(result)), again[0])
     less = len(result) - 1
@@ -275,7 +273,7 @@ def test_a_pair_left_out_of_all_is_missed(results: dict[str, Result]) -> None:
 def test_another_pair_of_the_seat_is_not_the_best(results: dict[str, Result]) -> None:
     """Each pair of a seat in place of its best: proven just where it is as good."""
     best, every = results["best"], results["all"]
-    seen = KnownFixtures(ToolkitRules(best.toolkit))
+    seen = known_in(best.toolkit)
     for index, fixture in enumerate(best):
         seen.add(index, fixture)
     refuted = 0
@@ -455,7 +453,7 @@ def test_an_undecided_pair_is_a_place_or_a_fault(results: dict[str, Result]) -> 
     table = result.table.take(np.arange(3))
     entries = undecided_pairs(table, result.toolkit)
     assert all(entry.reason == AT_AN_EDGE and len(entry.faces) == 5 for entry in entries)
-    assert list(undecided_faults(entries, result.query)) == []
+    assert faults_of(entries, result.query) == []
     for edit in (
         {"theta_deg": (entries[0].theta_deg + 5.0) % 360},
         {"faces": (entries[0].faces[2], *entries[0].faces[1:])},
@@ -464,6 +462,6 @@ def test_an_undecided_pair_is_a_place_or_a_fault(results: dict[str, Result]) -> 
         {"faces": entries[0].faces[:4]},
     ):
         entry: Undecided = attrs.evolve(entries[0], **edit)
-        assert len(list(undecided_faults([entry], result.query))) == 1, edit
+        assert len(faults_of([entry], result.query)) == 1, edit
     assert degrees(table.theta[0]) % 360 == pytest.approx(entries[0].theta_deg)
     assert {peg.carrier for peg in result[0].pegs[:3]} == {"plate"}
