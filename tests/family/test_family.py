@@ -24,8 +24,8 @@ from workhold.model.fixture_table import FixtureTable, fixture_at
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES, LOCATION_ERROR
 from workhold.statics.effective_error import EffectiveErrors
 from workhold.statics.judging import unfit
+from workhold.verification import Judge
 from workhold.verification.first_choice import EffectiveJudge
-from workhold.verification.verify import Judge
 
 pytest.importorskip("scipy", reason="the extra [batch] is not installed")
 

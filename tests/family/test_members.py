@@ -13,7 +13,7 @@ from workhold.family.patterns import holes_of
 from workhold.model.quality import LOAD_REACTION, LOCATION_ERROR
 from workhold.model.setup import PartZero, part_zero
 from workhold.model.solid import SolidOutline
-from workhold.verification.verify import Judge
+from workhold.verification import Judge
 
 pytest.importorskip("scipy", reason="the extra [batch] is not installed")
 

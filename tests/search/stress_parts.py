@@ -12,11 +12,11 @@ from flint import arb, ctx
 
 from fixture_sets import Listed
 from workhold import Fixture, Pose, Query, Vise, Workpiece
+from workhold.verification import Judge
 from workhold.verification.ball_geometry import BallOutline, dot
 from workhold.verification.contacts import BallContact, contact_system, minors
 from workhold.verification.contacts import BallPose as Balls
 from workhold.verification.placing import certified_zero
-from workhold.verification.verify import Judge
 
 __all__ = [
     "Carried",
