@@ -12,12 +12,12 @@ from pathlib import Path
 import pytest
 from batch_helpers import COARSE, IMPOSSIBLE, InlineQueue, reported, rows_of, run_in
 
+import workhold
 from workhold import Fence, Plate, Query
 from workhold.batch import tables
 from workhold.batch.run import ANY_PART, Batch, HeldIn
 from workhold.batch.tables import BEST, RESULTS, JobRow, table_names, write_tables
 from workhold.files.replacing import is_own
-from workhold.files.result.reader import read_result
 from workhold.statics.judging import unfit
 
 PLATE = HeldIn("plate", Query(ANY_PART, Plate(pitch=20, peg_radius=3)))
@@ -52,7 +52,7 @@ def test_rows_say_what_the_records_do(rows: Iterator[JobRow]) -> None:
         if one.row["state"] != "held":
             assert not one.best and one.row["reason"]
             continue
-        result = read_result(Path(one.row["record"]))
+        result = workhold.open(Path(one.row["record"]))
         held_in.add(one.row["toolkit"])
         assert one.row["fixtures"] == sum(result.found.values())
         assert one.row["fit"] is not bool(unfit(result.table.quality[:1], result.query.tolerance)[0])

@@ -10,13 +10,13 @@ import pytest
 from attrs import evolve
 from batch_helpers import COARSE, FINE, Failing, Unprepared
 
+import workhold
 from workhold import Query, answer, load
 from workhold.batch import tasks
 from workhold.batch.store import FolderStore, checksum, is_whole, plain_record, workpiece_of
 from workhold.batch.tables import BEST
 from workhold.batch.tasks import Answering, Reading, done, name_of, program
 from workhold.errors import InputError
-from workhold.files.result.reader import read_result
 from workhold.files.result.writer import result_text
 
 FLANGE = Path(str(files("workhold"))) / "data" / "parts" / "flange.json"
@@ -72,7 +72,7 @@ def test_an_answer_tells_the_seating_of_those_it_keeps(part: bytes, tmp_path: Pa
             and record == "".join(result_text(first)).encode()
         )
         (tmp_path / "r.json").write_bytes(record)
-        told = [one.figures for one in read_result(tmp_path / "r.json").seating]
+        told = [one.figures for one in workhold.open(tmp_path / "r.json").seating]
         assert told == [
             {key: pytest.approx(value, abs=1e-9) for key, value in one.figures.items()}
             for one in first.seating

@@ -9,10 +9,10 @@ from typing import Any
 import pytest
 
 from fakes import fake_result
+from workhold import save
 from workhold.cli.commands import print_remark
 from workhold.cli.main import COMMANDS
 from workhold.cli.table import Table
-from workhold.files.result.writer import write_result
 
 LONG = "a file name that says what machine, what side and what operation it is for"
 SEARCHES = {
@@ -61,7 +61,7 @@ def test_what_a_command_prints_fits_80_columns(
 ) -> None:
     """Tables and sentences; no text is cut with an ellipsis."""
     monkeypatch.chdir(tmp_path)
-    write_result(fake_result(12), tmp_path / "r.json")
+    save(fake_result(12), tmp_path / "r.json")
     monkeypatch.setenv("COLUMNS", "80")
     outcome = run(*SEARCHES[case])
     assert outcome.exit_code == 0, outcome.stderr

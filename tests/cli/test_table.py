@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 from fakes import fake_result
+from workhold import save
 from workhold.cli.table import Table, width_of
-from workhold.files.result.writer import write_result
 
 
 def table(spare: int = 0) -> Table:
@@ -62,7 +62,7 @@ def test_a_terminal_that_nobody_has_told_its_size_has_no_limit(monkeypatch: pyte
 
 def test_usual_commands_fit_80_columns(run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The tables of a fixture and of the vises."""
-    write_result(fake_result(12), tmp_path / "r.json")
+    save(fake_result(12), tmp_path / "r.json")
     monkeypatch.setenv("COLUMNS", "80")
     for words in (("show", tmp_path / "r.json", 1), ("toolkits",), ("features", "widget")):
         outcome = run(*words)

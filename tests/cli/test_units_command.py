@@ -14,7 +14,7 @@ from reading_helpers import new_dxf, rectangle
 from svg_reading import texts
 
 from fakes import fake_result
-from workhold.files.result.writer import write_result
+from workhold import save
 from workhold.files.toolkit_file import load_toolkit, preset_names
 from workhold.units import INCH
 
@@ -30,7 +30,7 @@ def test_tables_in_inches_are_those_in_millimetres(
     vise = ("--pitch", "10mm", "--columns", "3", "--peg-radius", "3mm")
     listed = run("design", "widget", *vise, "--unit", "inch").stdout
     assert "opening in" in listed and opening in listed.split()
-    write_result(result, tmp_path / "r.json")
+    save(result, tmp_path / "r.json")
     told = run("show", tmp_path / "r.json", 1, "--unit", "inch").stdout
     assert f"Opening S {opening} in" in told and " x in " in told and " y in " in told
     rows = [line.split() for line in told.splitlines()]
@@ -40,7 +40,7 @@ def test_tables_in_inches_are_those_in_millimetres(
 
 
 def test_show_in_inches(run: Any, tmp_path: Path) -> None:
-    write_result(fake_result(2), tmp_path / "r.json")
+    save(fake_result(2), tmp_path / "r.json")
     outcome = run("show", tmp_path / "r.json", 1, "--unit", "inch")
     assert f"Opening S {fake_result(2)[0].jaw_separation / 25.4:.4f} in" in outcome.stdout
     assert "mm" not in outcome.stdout
@@ -75,7 +75,7 @@ def test_pictures_are_in_the_unit_asked(
 ) -> None:
     """Of one fixture, of the faces, of the best and their thumbnails; millimetres where no unit is asked."""
     result = searched["result"] = fake_result(1)
-    write_result(result, tmp_path / "r.json")
+    save(result, tmp_path / "r.json")
     asked = () if unit is None else ("--unit", unit)
     assert run("show", tmp_path / "r.json", 1, "--draw", tmp_path / "shown.svg", *asked).exit_code == 0
     assert (

@@ -15,8 +15,7 @@ import numpy as np
 import pytest
 
 from fakes import fake_result
-from workhold import Query, Result, Tolerance, Vise, Workpiece, design
-from workhold.files.result.writer import write_result
+from workhold import Query, Result, Tolerance, Vise, Workpiece, design, save
 from workhold.model.fixture_table import FixtureTable, unknown_quality
 from workhold.model.search_report import Proof
 from workhold.statics.effective_error import EffectiveErrors
@@ -28,7 +27,7 @@ def proven_text(tmp_path_factory: pytest.TempPathFactory) -> str:
     """A result file of a wedge."""
     path = tmp_path_factory.mktemp("wedge") / "r.json"
     wedge = Workpiece.from_loops("wedge", [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]])
-    write_result(design(wedge, Vise(pitch=15, columns=1, peg_radius=2)), path)
+    save(design(wedge, Vise(pitch=15, columns=1, peg_radius=2)), path)
     return path.read_text()
 
 
@@ -79,7 +78,7 @@ def test_refuted_fixtures_end_with_exit_code_2(run: Any, result_file: Path) -> N
 
 def test_only_the_first_are_listed(run: Any, tmp_path: Path) -> None:
     """What was made up is no fixture of anything."""
-    write_result(fake_result(9), tmp_path / "r.json")
+    save(fake_result(9), tmp_path / "r.json")
     outcome = run("verify", tmp_path / "r.json")
     assert outcome.exit_code == 2
     assert outcome.stdout.count("is refuted: ") == 5
@@ -126,7 +125,7 @@ def on_the_edge(hair: float) -> Result:
 def test_undecided_fixtures_are_no_fault(run: Any, tmp_path: Path, hair: float, verdict: str) -> None:
     """A contact must lie more than 1e-9 mm from a corner. One that lies exactly there, on the very edge of the rule, is
     neither proven nor refuted at any precision; a little to either side it is decided."""
-    write_result(on_the_edge(hair), tmp_path / "r.json")
+    save(on_the_edge(hair), tmp_path / "r.json")
     outcome = run("verify", tmp_path / "r.json")
     counts = {"proven": 0, "refuted": 0, "undecided": 0} | {verdict: 1}
     words = ", ".join(f"{count} {name}" for name, count in counts.items())
@@ -140,7 +139,7 @@ def test_a_rectangle_on_the_lattice_is_proven_throughout(run: Any, tmp_path: Pat
     """Two faces exactly as far apart as two holes: the edges of the rules stand off what drawings meet exactly."""
     rectangle = Workpiece.from_loops("rectangle", [[[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]]])
     result = design(rectangle, Vise(pitch=10, columns=2, peg_radius=3))
-    write_result(result, tmp_path / "r.json")
+    save(result, tmp_path / "r.json")
     outcome = run("verify", tmp_path / "r.json")
     assert outcome.exit_code == 0
     count = len(result)
@@ -156,7 +155,7 @@ def test_an_empty_result(run: Any, result_file: Path) -> None:
     assert outcome.exit_code == 2
     assert outcome.stdout.startswith('The file: the note is missing that says "')
     disc = Workpiece.from_loops("disc", [[[20, 0, 1], [-20, 0, 1]]])
-    write_result(design(disc, Vise(pitch=13, columns=2, peg_radius=3)), result_file)
+    save(design(disc, Vise(pitch=13, columns=2, peg_radius=3)), result_file)
     outcome = run("verify", result_file)
     assert outcome.exit_code == 0
     assert outcome.stdout.startswith("0 fixtures: 0 proven, 0 refuted, 0 undecided")

@@ -9,12 +9,12 @@ from typing import Any
 
 import pytest
 
+import workhold
 from workhold.drawing import scene
 from workhold.drawing.scene import fitting, shortened, text_width, wrapped
 from workhold.errors import InputError
 from workhold.files.input_forms import LONGEST_NAME
 from workhold.files.part.load import read_workpiece
-from workhold.files.result.reader import read_result
 
 HOSTILE = Path(__file__).parents[1] / "data" / "hostile"
 LETTERS = "abcWi .-Ø樂\u202e\x07\u0301🔩"
@@ -76,7 +76,7 @@ def test_long_words_are_measured_about_as_often_as_they_have_lines(
 
 def test_a_name_of_thousands_of_letters_is_read() -> None:
     """One that came in; above the limit a part is refused in a sentence."""
-    assert len(read_result(HOSTILE / "longname.json").workpiece.name) == 3600
+    assert len(workhold.open(HOSTILE / "longname.json").workpiece.name) == 3600
 
 
 def test_a_name_longer_than_any_sheet_is_refused(tmp_path: Path) -> None:

@@ -13,11 +13,10 @@ import numpy as np
 import pytest
 
 from workhold import Fence, Plate, Program, Query, Result, Vise, answer, load
-from workhold.drawing import draw_fixture
+from workhold.drawing import draw_fixture, result_sheet
 from workhold.drawing.path_drawn import PagePaths, PlannedPath, planned_path
 from workhold.drawing.pdf import svg_to_pdf
 from workhold.drawing.scene import Box, View
-from workhold.drawing.sheet import result_sheet
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.moves import Moves
 from workhold.statics.program_clearance import passing_of

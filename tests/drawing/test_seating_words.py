@@ -12,10 +12,9 @@ from svg_reading import by_class, texts
 
 import workhold
 from workhold import Fence, Load, Plate, Result, Vise, Workpiece
-from workhold.drawing import SheetDetails, draw_sheet
+from workhold.drawing import SheetDetails, draw_sheet, result_sheet
 from workhold.drawing.scene import UNITS_PER_MM, LengthUnit
 from workhold.drawing.seating_words import SeatingSentences
-from workhold.drawing.sheet import result_sheet
 from workhold.drawing.sheet_facts import result_cautions
 from workhold.model.clamps import order_words
 from workhold.model.quality import FIGURE_RANKING

@@ -24,6 +24,13 @@ def read_text(folder: Path, text: str, **options: Any) -> Program:
     return Program.read(path, **options)
 
 
+def read_tools(folder: Path, table: Path, *numbers: int, unit: str = "G21") -> tuple[dict[int, Tool], bool]:
+    """The tools of a table that a program calls, and whether the table says its unit."""
+    called = "".join(f"T{number} M6\nG0 X0 Y0 Z9\n" for number in numbers)
+    read = read_text(folder, f"{unit} G90 G17\n{called}", tools=table)
+    return dict(read.tools), not any("does not say its unit" in note for note in read.notes)
+
+
 def shapes(pieces: Sequence[SweptPiece], digits: int = 7) -> list[tuple[object, ...]]:
     """All that pieces sweep, without their lines, to some digits."""
     return [

@@ -23,8 +23,8 @@ from workhold import (
     Workpiece,
     answer,
     circle_zone,
+    save,
 )
-from workhold.files.result.writer import write_result
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.search_report import undecided_note
 from workhold.verification import verify_file
@@ -201,7 +201,7 @@ def test_every_mutation_is_refused_or_harmless_by_name(
 ) -> None:
     """What passes is just what is listed as harmless: none less, so that the list does not rot, and none more."""
     path = tmp_path / "r.json"
-    write_result(wedge_result(toolkit), path)
+    save(wedge_result(toolkit), path)
     data: Data = json.loads(path.read_text(encoding="utf-8"))
     assert holds(data, path)
     passed = set()

@@ -14,9 +14,7 @@ from attrs import evolve
 
 from slow_program import OFF, PEG_HEIGHT, kinds_of_toolkit, low_points, random_program, slow_clearance
 from strategies import random_outline
-from workhold import Program, Query, Result, answer
-from workhold.files.result.columns import write_columns
-from workhold.files.result.writer import write_result
+from workhold import Program, Query, Result, answer, save
 from workhold.verification import verify, verify_file
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.tool_walk import Element, elements_of, program_fault, walk_of
@@ -43,8 +41,8 @@ def program_of_result(result: Result) -> Program:
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_fixture_of_a_list_is_proven_in_either_form(kind: str, tmp_path: Path) -> None:
     result = result_of(kind, best=6, ranking=["program-clearance", "closure-margin"])
-    write_result(result, tmp_path / "a.json")
-    write_columns(result, tmp_path / "a.npz")
+    save(result, tmp_path / "a.json")
+    save(result, tmp_path / "a.npz")
     for name in ("a.json", "a.npz"):
         found = verify_file(tmp_path / name)
         assert found.proven == len(result) > 0 and not found.faults
@@ -95,7 +93,7 @@ def test_a_helix_is_walked_down_to_the_height_of_an_element() -> None:
 
 def tampered(result: Result, change: Callable[[dict[str, Any]], Any], folder: Path) -> list[str]:
     """What a verification says of a file whose first fixture was changed."""
-    write_result(result, folder / "a.json")
+    save(result, folder / "a.json")
     data = json.loads((folder / "a.json").read_text())
     change(data["fixtures"][0])
     (folder / "b.json").write_text(json.dumps(data))
