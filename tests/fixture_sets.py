@@ -13,9 +13,7 @@ import numpy as np
 import pytest
 
 import check_result
-from workhold import Result, Vise, Workpiece, design
-from workhold.fixels.vise import OpeningVise
-from workhold.model.fixture import Fixture
+from workhold import Fixture, OpeningVise, Result, Vise, Workpiece, design
 
 Listed = dict[str, Any]
 COMPLETE = Path(__file__).parent / "data" / "complete"

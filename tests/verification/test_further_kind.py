@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 from attrs import evolve, frozen
 
-from judged import known_in, place_in_order
+from judged import known_in, place_in_order, rules_in
 from workhold import Fixture, InputError, Workpiece
 from workhold.fixels.support_hardware import PinLimits
 from workhold.fixels.toolkit import Arrangement, Carrier, Limit, Symmetry, Toolkit, Travel
@@ -25,7 +25,6 @@ from workhold.geometry.segment import Line, distance_to_segment
 from workhold.verification import Ruling, verify_fixture
 from workhold.verification.reading import fixtures_of
 from workhold.verification.repeats import stance
-from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.seating_contacts import stop_of
 
 Data = dict[str, Any]
@@ -84,7 +83,7 @@ class Known:
     def read(self, item: Data) -> Fixture:
         """A fixture from its JSON object."""
         (fixture,) = fixtures_of([item], Path("truth"))
-        return ToolkitRules(self.toolkit).taken(fixture)
+        return rules_in(self.toolkit).taken(fixture)
 
     def ruling(self, item: Data, **fields: Any) -> Ruling:
         """What is shown of a fixture, perhaps in a toolkit with other fields."""
@@ -127,7 +126,7 @@ def test_every_true_fixture_is_proven(known: Known) -> None:
         ruling = known.ruling(item)
         assert (ruling.verdict, ruling.bits) == ("proven", 128), (number, ruling)
         assert seen.add(number, known.read(item)) is None
-    assert ToolkitRules(known.toolkit).names == (
+    assert rules_in(known.toolkit).names == (
         "the fixed jaw at its left end",
         "the fixed jaw at its right end",
         "peg 1",

@@ -10,11 +10,10 @@ from typing import Any
 
 import attrs
 import pytest
-from flint import arb
 
 import check_toolkit
 import workhold
-from judged import faults_of, known_in, place_in_order
+from judged import faults_of, known_in, place_in_order, posed, rules_in
 from strategies import random_outline
 from toolkit_results import assert_all_proven, part, verify_edited
 from undecided_examples import as_undecided
@@ -36,8 +35,6 @@ from workhold.model.quality import FIGURE_RANKING
 from workhold.model.search_report import GIVEN_UP, Undecided, no_fixture_notes, undecided_note
 from workhold.verification import Verification, verify, verify_file, verify_fixture
 from workhold.verification.ball_geometry import BallOutline
-from workhold.verification.contacts import BallPose as Balls
-from workhold.verification.rules.hardware import ToolkitRules
 
 Data = dict[str, Any]
 Edit = Callable[[Data], object]
@@ -424,7 +421,7 @@ def test_a_clamp_keeps_its_distance_from_locators(
     column: int, row: int, pitch_y: float, radius: float, meets: bool
 ) -> None:
     """A locator of 2 mm beside the body from hole G1 at x = 60 to the tip at 50, before the tip and behind the hole."""
-    hardware = ToolkitRules(Plate((10, pitch_y), 2, clamp_radius=radius, travel=(0, 30)))
+    hardware = rules_in(Plate((10, pitch_y), 2, clamp_radius=radius, travel=(0, 30)))
     pegs = [workhold.Peg("plate", k, 40, 0.0, 0.0, 0, 1.0) for k in (0, 1)]
     pegs += [
         workhold.Peg("plate", column, row, 0.0, 0.0, 0, 1.0),
@@ -433,7 +430,7 @@ def test_a_clamp_keeps_its_distance_from_locators(
     fixture = Fixture("clamp", tuple(pegs), Pose(0.0, 0.0, 0.0), -10.0, {}, "-x")
     outline = BallOutline.of(part([[x + 500.0, y, b] for x, y, b in NOTCHED]))
     contacts = [hardware.contact(peg, outline.faces[0]) for peg in pegs]
-    at = Balls.of(arb(0), arb(0), arb(0), arb(-10))
+    at = posed(-10)
     said = [found.reason for found in hardware.standing_findings(fixture, contacts, at, outline)]
     # It could be bolted at its tip, in F1.
     assert [reason for reason in said if "locator 3" in reason] == [

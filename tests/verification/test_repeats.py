@@ -8,11 +8,10 @@ from math import pi
 import attrs
 import pytest
 
-from judged import known_in, place_in_order
+from judged import known_in, place_in_order, rules_in
 from workhold import Fence, Fixture, Peg, Pose, Result, Vise
 from workhold.verification import repeats
 from workhold.verification.repeats import Key, KnownFixtures, Place
-from workhold.verification.rules.hardware import ToolkitRules
 
 
 def shifted(fixture: Fixture, rows: int) -> Fixture:
@@ -95,7 +94,7 @@ def test_one_set_when_a_rotation_carries_one_to_the_other(
     """The rotation is known to the millionths by which a drawing may miss its symmetry; so much may the fixtures differ
     that it carries into each other."""
     monkeypatch.setattr(repeats, "patterns", one_pattern)
-    seen = KnownFixtures(ToolkitRules(Vise(pitch=10, columns=1, peg_radius=0)), [pi / 2], (10.0, -4.0))
+    seen = KnownFixtures(rules_in(Vise(pitch=10, columns=1, peg_radius=0)), [pi / 2], (10.0, -4.0))
     image = [0.5 + pi / 2, 10.0 + 7.0, -4.0 - 20.0, 33.0]
     image[number] += off
     assert seen.add(0, Placed((0.5, 30.0, 3.0, 33.0))) is None  # type: ignore[arg-type]

@@ -15,8 +15,7 @@ from attrs import evolve
 from slow_program import OFF, PEG_HEIGHT, kinds_of_toolkit, low_points, random_program, slow_clearance
 from strategies import random_outline
 from workhold import Program, Query, Result, answer, save
-from workhold.verification import verify, verify_file
-from workhold.verification.rules.hardware import ToolkitRules
+from workhold.verification import Judge, verify, verify_file
 from workhold.verification.tool_walk import Element, elements_of, program_fault, walk_of
 
 KINDS = tuple(kinds_of_toolkit(10.0))
@@ -52,7 +51,7 @@ def test_every_fixture_of_a_list_is_proven_in_either_form(kind: str, tmp_path: P
 def test_what_the_program_rules_out_is_refuted_and_nothing_else(kind: str) -> None:
     some, full = result_of(kind), result_of(kind, program=False)
     program = program_of_result(some)
-    low, rules = low_points(program, PEG_HEIGHT), ToolkitRules.of(some.query)
+    low, rules = low_points(program, PEG_HEIGHT), Judge(some.query).hardware
     refused = 0
     for fixture in full[:150]:
         clear = slow_clearance(fixture, full.toolkit, low)
@@ -68,7 +67,7 @@ def test_what_the_program_rules_out_is_refuted_and_nothing_else(kind: str) -> No
 def test_the_walk_is_between_its_bounds_and_they_are_near(rapid: Any) -> None:
     result = result_of("bolted fence")
     program = evolve(program_of_result(result), rapid=rapid)
-    low, rules = low_points(program, PEG_HEIGHT), ToolkitRules.of(result.query)
+    low, rules = low_points(program, PEG_HEIGHT), Judge(result.query).hardware
     for fixture in result[:40]:
         nearest = [walk_of(program).nearest(one) for one in elements_of(fixture, rules, PEG_HEIGHT)]
         least = min(one.low for one in nearest)

@@ -15,7 +15,7 @@ import pytest
 from flint import arb
 
 import workhold
-from judged import faults_of, known_in
+from judged import faults_of, known_in, posed, rules_in
 from toolkit_results import assert_all_proven, part, verify_edited
 from workhold import (
     Fixture,
@@ -39,7 +39,6 @@ from workhold.verification.ball_geometry import BallOutline
 from workhold.verification.contacts import BallContact
 from workhold.verification.contacts import BallPose as Balls
 from workhold.verification.listing import listing_of
-from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.rules.travel import WAYS, Stroke, clamp_place
 from workhold.verification.seat import LocatorWrenches, Push, SeatBalance, closure_margin, ratio_of
 from workhold.verification.seat_clamps import SeatClamp, SeatOnPlate
@@ -295,7 +294,7 @@ def test_another_pair_of_the_seat_is_not_the_best(results: dict[str, Result]) ->
 
 def standing(fixture: Fixture, workpiece: Workpiece, toolkit: Plate) -> SeatOnPlate:
     """The seat of a fixture, at its pose as it is written."""
-    rules, outline = ToolkitRules(toolkit), BallOutline.of(workpiece)
+    rules, outline = rules_in(toolkit), BallOutline.of(workpiece)
     pose = Balls.of(
         arb(fixture.pose.theta_deg) * arb.pi() / 180, arb(fixture.pose.x), arb(fixture.pose.y), arb(0)
     )
@@ -374,7 +373,7 @@ def test_clamps_that_touch_each_other_are_none() -> None:
 @pytest.mark.parametrize(("radius", "overlap"), [(4.999, False), (5.001, True)])
 def test_bodies_of_clamps_keep_clear_of_each_other_as_well(radius: float, overlap: bool) -> None:
     """One along a row from its hole at x = 30 to its tip at 0, and a tip 10 mm above the middle of that."""
-    pose = Balls.of(arb(0), arb(0), arb(0), arb(-30), arb(-40))
+    pose = posed(-30, -40)
     side, thick = BallOutline.of(part(BLOCK)).faces[0], arb(radius)
     lying = BallContact((arb(30), arb(0)), (arb(1), arb(0)), side, thick)
     upright = BallContact((arb(20), arb(50)), (arb(0), arb(1)), side, thick, travel=1)
