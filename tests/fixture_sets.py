@@ -13,7 +13,9 @@ import numpy as np
 import pytest
 
 import check_result
-from workhold import Fixture, OpeningVise, Result, Vise, Workpiece, design
+from workhold import Result, Vise, Workpiece, design
+from workhold.fixels.vise import OpeningVise
+from workhold.model.fixture import Fixture
 
 Listed = dict[str, Any]
 COMPLETE = Path(__file__).parent / "data" / "complete"
