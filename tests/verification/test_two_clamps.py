@@ -17,6 +17,7 @@ from flint import arb
 import workhold
 from judged import faults_of, known_in, posed, rules_in
 from toolkit_results import assert_all_proven, part, verify_edited
+from undecided_examples import pairs_undecided
 from workhold import (
     Fixture,
     InputError,
@@ -30,7 +31,6 @@ from workhold import (
     circle_zone,
     design,
 )
-from workhold.listing.seats import undecided_pairs
 from workhold.model.fixture import Pair
 from workhold.model.search_report import AT_AN_EDGE, Undecided, no_pair_note
 from workhold.verification import Verification, verify, verify_fixture
@@ -450,7 +450,7 @@ def test_an_undecided_pair_is_a_place_or_a_fault(results: dict[str, Result]) -> 
     """Its locators with each of its clamps."""
     result = results["best"]
     table = result.table.take(np.arange(3))
-    entries = undecided_pairs(table, result.toolkit)
+    entries = pairs_undecided(table, result.toolkit)
     assert all(entry.reason == AT_AN_EDGE and len(entry.faces) == 5 for entry in entries)
     assert faults_of(entries, result.query) == []
     for edit in (
