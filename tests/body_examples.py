@@ -4,14 +4,8 @@ from __future__ import annotations
 
 from functools import cache
 
-from workhold import design
-from workhold.fixels.fence import Fence
-from workhold.fixels.flat_jaw import FlatJaw
-from workhold.fixels.plate import Plate
+from workhold import Fence, Fixture, FlatJaw, OpeningVise, Plate, Vise, Workpiece, design
 from workhold.fixels.toolkit import Toolkit
-from workhold.fixels.vise import OpeningVise, Vise
-from workhold.model.fixture import Fixture
-from workhold.model.workpiece import Workpiece
 
 # A block with slanted sides, a round corner, and a window that pegs may stand in.
 BLOCK = Workpiece.from_loops(

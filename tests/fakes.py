@@ -6,7 +6,7 @@ import numpy as np
 from attrs import evolve
 from numpy.typing import NDArray
 
-from workhold.fixels.vise import Vise
+from workhold import Query, Result, Vise, Workpiece
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import (
     BEFORE_PINS,
@@ -18,10 +18,7 @@ from workhold.model.quality import (
     PENALTY,
     WARNINGS,
 )
-from workhold.model.query import Query
-from workhold.model.result import Result
 from workhold.model.search_report import Proof, Undecided
-from workhold.model.workpiece import Workpiece
 
 PLATE = [[[0, 0, 0], [60, 0, 0.1], [60, 40, 0], [0, 40, -0.2]], [[20, 20, -1], [30, 20, -1]]]
 

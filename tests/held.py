@@ -11,11 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import workhold
-from workhold.fixels.vise import Vise
-from workhold.model.fixture import Fixture, Peg
-from workhold.model.pose import Pose
-from workhold.model.result import Result
-from workhold.model.workpiece import Workpiece
+from workhold import Fixture, Peg, Pose, Result, Vise, Workpiece
 
 Array = NDArray[np.float64]
 COMPLETE = Path(__file__).parent / "data" / "complete"

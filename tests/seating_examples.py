@@ -18,6 +18,8 @@ from workhold.geometry.segment import Line
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import CONFIG, PAIR, PEG, PIECE
 from workhold.model.seating import Seating
+from workhold.seating.closing import Closing
+from workhold.seating.equilibria import Equilibria, equilibria
 from workhold.seating.solver import Solver
 from workhold.seating.two_contact_curves import TwoContactCurves
 
@@ -69,6 +71,16 @@ def moved(fixture: Fixture, order: list[int], half_turn: bool, shift: tuple[floa
     )
     # The pegs at separation 0 stand where they stood: the separation stays as it is told.
     return Fixture("I", tuple(pegs), pose, fixture.jaw_separation, {})
+
+
+def equilibria_of(closing: Closing) -> Equilibria:
+    """Where the pegs of a closing hold the part."""
+    return equilibria(closing.boundary, closing.pattern, closing.size)
+
+
+def two_contacts_of(closing: Closing) -> TwoContactCurves:
+    """Where two contacts of a closing hold the part, each about a single angle."""
+    return TwoContactCurves.of(closing.boundary, closing.pattern)
 
 
 class Obstacle:

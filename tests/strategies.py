@@ -14,9 +14,8 @@ from random import Random
 from hypothesis import assume
 from hypothesis import strategies as st
 
+from workhold import Vise, Workpiece
 from workhold.errors import InputError
-from workhold.fixels.vise import Vise
-from workhold.model.workpiece import Workpiece
 
 __all__ = ["outlines", "random_outline", "random_row", "seeds", "vises"]
 

@@ -5,9 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from workhold import Fixture
+from workhold.fixels.toolkit import Toolkit
+from workhold.listing.seats import undecided_pairs
+from workhold.model.fixture_table import FixtureTable
 from workhold.model.search_report import AT_AN_EDGE, Undecided
 
-__all__ = ["as_undecided"]
+__all__ = ["as_undecided", "pairs_undecided"]
 
 
 def as_undecided(fixture: Fixture) -> Undecided:
@@ -24,3 +27,8 @@ def as_undecided(fixture: Fixture) -> Undecided:
     faces = [peg.face for peg in fixture.pegs]
     quartets: list[Any] = [tuple(faces), tuple(columns), tuple(rows)]
     return Undecided(kind, *quartets, fixture.pose.theta_deg, AT_AN_EDGE, 1e-8)
+
+
+def pairs_undecided(table: FixtureTable, toolkit: Toolkit) -> list[Undecided]:
+    """Fixtures with two clamps as a search names them where it cannot decide them."""
+    return list(undecided_pairs(table, toolkit))

@@ -11,14 +11,15 @@ from threading import Event
 
 from attrs import define, field, frozen
 
+from workhold import Query, Vise
 from workhold.batch.durations import Measured
+from workhold.batch.report import Report, Summary, write_results
 from workhold.batch.run import ANY_PART, Batch, BatchRun, HeldIn, Request, run_batch
 from workhold.batch.store import FolderStore, Store, refusal_record
+from workhold.batch.tables import JobRow, job_rows
 from workhold.batch.tasks import Outcome, Task, done
 from workhold.errors import InputError
 from workhold.files.part_list import part_list
-from workhold.fixels.vise import Vise
-from workhold.model.query import Query
 
 COARSE = HeldIn("coarse", Query(ANY_PART, Vise(pitch=16, columns=1, peg_radius=3)))
 FINE = HeldIn("fine", Query(ANY_PART, Vise(pitch=12, columns=1, peg_radius=3)))
@@ -81,6 +82,26 @@ def run_in(
     store = FolderStore(folder / "work") if store is None else store
     measured = Measured(folder / "measured.csv")
     return run_batch(requests, best, BatchRun(store, queue, measured, Onlooker(), Event()))
+
+
+def rows_of(batch: Batch, folder: Path) -> Iterator[JobRow]:
+    """What is known of each job of a batch that was run into a folder."""
+    return job_rows(batch.jobs, FolderStore(folder / "work"), Measured(folder / "measured.csv"))
+
+
+def reported(
+    batch: Batch,
+    folder: Path,
+    out: Path,
+    *,
+    summary: tuple[str, list[str], list[str]] = ("x", [], []),
+    sheets: Path | None = None,
+    store: Store | None = None,
+) -> Report:
+    """The page ``r.html``, the tables and the sheets of a batch that was run into a folder."""
+    store = FolderStore(folder / "work") if store is None else store
+    measured = Measured(folder / "measured.csv")
+    return write_results(batch, store, measured, out, "r.html", Summary(*summary), sheets)
 
 
 def records_in(folder: Path) -> dict[str, bytes]:

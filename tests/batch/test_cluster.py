@@ -16,14 +16,11 @@ from types import SimpleNamespace
 
 import pytest
 from attrs import define
-from batch_helpers import Fatal, InlineQueue, Onlooker, records_in, run_in
+from batch_helpers import Fatal, InlineQueue, Onlooker, records_in, reported, run_in
 from test_command import run, started, wait_for_records
 from test_run import square
 
-from workhold.batch.durations import Measured
-from workhold.batch.report import Summary, write_results
 from workhold.batch.store import FolderStore, UrlStore, plain_record, refusal_record, store_at
-from workhold.batch.tables import table_names
 from workhold.batch.tasks import Outcome
 from workhold.errors import InputError
 
@@ -67,7 +64,7 @@ def test_a_cluster_makes_what_one_process_makes(shop: Path, tmp_path: Path) -> N
     # Records and their checksums.
     assert kept[0] == kept[1] and len(kept[0]) == 2 * len(records_in(alone)) > 0
     assert not (cluster / "work").exists()
-    for name in table_names():
+    for name in ("results.parquet", "best.parquet"):
         assert rows_of(alone, name) == rows_of(cluster, name)
 
 
@@ -84,9 +81,7 @@ def test_records_in_an_object_store_are_those_of_a_folder(shop: Path, tmp_path: 
     store.write("abcd", refusal_record("no")[:-1])
     assert not store.has("abcd") and store.read("abcd") is None
     assert run_in(tmp_path, shop / "p30.json", queue=InlineQueue(0), store=store).is_complete
-    write_results(
-        batch, store, Measured(tmp_path / "none"), tmp_path, "r.html", Summary("x", [], []), tmp_path
-    )
+    reported(batch, tmp_path, tmp_path, sheets=tmp_path, store=store)
     text = (tmp_path / "r.html").read_text()
     assert store.place(name) in text and text.count("<img") == 1 and "workhold sheet" not in text
     assert len(list(tmp_path.glob("*.pdf"))) == 1
@@ -317,7 +312,7 @@ def test_two_hundred_parts_in_four_toolkits(tmp_path: Path) -> None:
     assert code == 0, warned
     assert run(shop, *MANY_TOOLS, "--out", alone, "--workers", 1)[0] == 0
     assert records_in(out) == records_in(alone) and len(records_in(out)) == 200 + 199 * 4
-    for name in table_names():
+    for name in ("results.parquet", "best.parquet"):
         assert rows_of(out, name) == rows_of(alone, name)
 
 

@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 from time import sleep
 
@@ -14,11 +15,11 @@ from batch_helpers import records_in
 from test_run import square
 from typer.testing import CliRunner
 
-from workhold.batch.tables import table_names
 from workhold.cli.main import app
 
 TOOLS = ("--pitch", "12,16", "--columns", "1", "--peg-radius", "3", "--toolkit", "vise")
-NAMES = {*table_names(), "report.html", "measured.csv", "work"}
+ENDING = "parquet" if find_spec("pyarrow") else "csv"
+NAMES = {f"results.{ENDING}", f"best.{ENDING}", "report.html", "measured.csv", "work"}
 
 
 @pytest.fixture(scope="module")

@@ -8,12 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from batch_helpers import COARSE, IMPOSSIBLE, InlineQueue, run_in
+from batch_helpers import COARSE, IMPOSSIBLE, InlineQueue, reported, run_in
 from test_run import square
 
 from workhold.batch import report as module
-from workhold.batch.durations import Measured
-from workhold.batch.report import Report, Summary, write_results
 from workhold.batch.store import FolderStore
 from workhold.files.replacing import is_own
 
@@ -35,7 +33,7 @@ class Page(HTMLParser):
 
 
 @pytest.fixture(scope="module")
-def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Report]:
+def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
     """The report of a few parts, with sheets."""
     folder = tmp_path_factory.mktemp("report")
     parts = [square(folder / f"p{side}.json", side) for side in (30, 44, 52)]
@@ -43,29 +41,27 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Report]:
     hostile = folder / HOSTILE.replace("/", "")
     hostile.write_text("{")
     batch = run_in(folder, *parts, hostile, queue=InlineQueue(), held_in=(COARSE, IMPOSSIBLE))
-    summary = Summary("Parts & <tools>", ["It went well."], ["worker 1 ended <by> signal 9."])
-    store, measured = FolderStore(folder / "work"), Measured(folder / "measured.csv")
-    report = write_results(batch, store, measured, folder, "report.html", summary, folder / "sheets")
-    return folder, report
+    summary = "Parts & <tools>", ["It went well."], ["worker 1 ended <by> signal 9."]
+    return folder, reported(batch, folder, folder, summary=summary, sheets=folder / "sheets").counts
 
 
-def test_the_page_needs_nothing_else(written: tuple[Path, Report]) -> None:
-    folder, report = written
-    text = (folder / "report.html").read_text()
+def test_the_page_needs_nothing_else(written: tuple[Path, str]) -> None:
+    folder, counts = written
+    text = (folder / "r.html").read_text()
     page = Page(text)
     assert page.scripts == 1 and "\x1b" not in text and "<by>" not in text and "<tools>" not in text
     outside = [link for link in page.links if not link.startswith("data:image/svg+xml;base64,")]
     assert len(page.links) - len(outside) == 4
     assert len(outside) == 8 and all((folder / link).is_file() for link in outside)
     assert not re.search(r"(?:https?:)?//[a-z]", re.sub(r"base64,[^\"]*", "", text))
-    assert is_own(folder / "report.html")
-    assert report.counts == "10 jobs: 4 held, 4 that cannot be asked, 2 not readable."
+    assert is_own(folder / "r.html")
+    assert counts == "10 jobs: 4 held, 4 that cannot be asked, 2 not readable."
     for words in ("It went well.", "worker 1 ended", "there is no such vise.", "not valid JSON"):
         assert words in text
 
 
 def test_what_there_is_no_room_for_is_told(
-    written: tuple[Path, Report], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    written: tuple[Path, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(module, "MOST_ROWS", 2)
     monkeypatch.setattr(module, "MOST_PICTURES", 1)
@@ -73,21 +69,23 @@ def test_what_there_is_no_room_for_is_told(
     batch = run_in(
         folder, folder / "p30.json", folder / "p44.json", folder / "p52.json", queue=InlineQueue(0)
     )
-    store = FolderStore(folder / "work")
-    write_results(batch, store, Measured(tmp_path / "none"), tmp_path, "r.html", Summary("x", [], []), None)
+    reported(batch, folder, tmp_path)
     text = (tmp_path / "r.html").read_text()
     assert "1 further jobs are in the table of results only." in text
     assert text.count("<tr>") == 3 and text.count("<img") == 1
     # The line that makes the sheet.
-    assert f"workhold sheet {store.place(batch.jobs[0].name)} 1 --part-name p30 -o p30.pdf" in text
+    assert (
+        f"workhold sheet {FolderStore(folder / 'work').place(batch.jobs[0].name)} 1 --part-name p30 -o p30.pdf"
+        in text
+    )
 
 
-def test_rows_are_sorted_and_chosen_in_a_browser(written: tuple[Path, Report], browser: Any) -> None:
+def test_rows_are_sorted_and_chosen_in_a_browser(written: tuple[Path, str], browser: Any) -> None:
     page = browser.new_page()
     errors: list[str] = []
     page.on("pageerror", lambda error: errors.append(str(error)))
     page.on("console", lambda message: errors.append(message.text))
-    page.goto((written[0] / "report.html").as_uri())
+    page.goto((written[0] / "r.html").as_uri())
 
     def column(place: int) -> list[str]:
         return page.locator(f"#jobs tbody tr:visible td:nth-child({place})").evaluate_all(

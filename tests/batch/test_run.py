@@ -9,12 +9,11 @@ from pathlib import Path
 
 import pytest
 from attrs import define
-from batch_helpers import COARSE, FINE, IMPOSSIBLE, InlineQueue, records_in, run_in
+from batch_helpers import COARSE, FINE, IMPOSSIBLE, InlineQueue, records_in, rows_of, run_in
 
 from workhold.batch import store as store_module
 from workhold.batch.durations import Measured
-from workhold.batch.store import FolderStore
-from workhold.batch.tables import job_rows
+from workhold.batch.run import Batch
 from workhold.batch.tasks import Outcome, Task, done
 from workhold.errors import InputError
 
@@ -38,9 +37,8 @@ def shop(tmp_path: Path) -> Path:
     return folder
 
 
-def states_of(batch: object, folder: Path) -> dict[tuple[str, str], str]:
-    rows = job_rows(batch.jobs, FolderStore(folder / "work"), Measured(folder / "measured.csv"))  # type: ignore[attr-defined]
-    return {(one.row["part"], one.row["toolkit"]): one.row["state"] for one in rows}
+def states_of(batch: Batch, folder: Path) -> dict[tuple[str, str], str]:
+    return {(one.row["part"], one.row["toolkit"]): one.row["state"] for one in rows_of(batch, folder)}
 
 
 def test_every_part_with_every_toolkit_is_a_row(shop: Path, tmp_path: Path) -> None:
@@ -259,5 +257,5 @@ def test_what_tasks_took_is_kept_and_lines_cut_short_are_passed_over(shop: Path,
     assert all(seconds > 0 and worker == "inline" for seconds, worker in known.values())
     path.write_bytes(path.read_bytes()[:-9] + os.urandom(20))
     assert len(Measured(path).known) <= len(known)
-    rows = [one.row for one in job_rows(batch.jobs, FolderStore(tmp_path / "work"), Measured(path))]
+    rows = [one.row for one in rows_of(batch, tmp_path)]
     assert all(row["estimated_seconds"] > 0 for row in rows if row["state"] == "held")

@@ -10,19 +10,14 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from batch_helpers import COARSE, IMPOSSIBLE, InlineQueue, run_in
+from batch_helpers import COARSE, IMPOSSIBLE, InlineQueue, reported, rows_of, run_in
 
+import workhold
+from workhold import Fence, Plate, Query
 from workhold.batch import tables
-from workhold.batch.durations import Measured
-from workhold.batch.report import Summary, write_results
 from workhold.batch.run import ANY_PART, Batch, HeldIn
-from workhold.batch.store import FolderStore
-from workhold.batch.tables import BEST, RESULTS, JobRow, job_rows, table_names, write_tables
+from workhold.batch.tables import BEST, RESULTS, JobRow, table_names, write_tables
 from workhold.files.replacing import is_own
-from workhold.files.result.reader import read_result
-from workhold.fixels.fence import Fence
-from workhold.fixels.plate import Plate
-from workhold.model.query import Query
 from workhold.statics.judging import unfit
 
 PLATE = HeldIn("plate", Query(ANY_PART, Plate(pitch=20, peg_radius=3)))
@@ -47,7 +42,7 @@ def batch(folder: Path) -> Batch:
 
 @pytest.fixture
 def rows(batch: Batch, folder: Path) -> Iterator[JobRow]:
-    return job_rows(batch.jobs, FolderStore(folder / "work"), Measured(folder / "measured.csv"))
+    return rows_of(batch, folder)
 
 
 def test_rows_say_what_the_records_do(rows: Iterator[JobRow]) -> None:
@@ -57,7 +52,7 @@ def test_rows_say_what_the_records_do(rows: Iterator[JobRow]) -> None:
         if one.row["state"] != "held":
             assert not one.best and one.row["reason"]
             continue
-        result = read_result(Path(one.row["record"]))
+        result = workhold.open(Path(one.row["record"]))
         held_in.add(one.row["toolkit"])
         assert one.row["fixtures"] == sum(result.found.values())
         assert one.row["fit"] is not bool(unfit(result.table.quality[:1], result.query.tolerance)[0])
@@ -81,8 +76,7 @@ def test_both_forms_have_the_same_rows(
     parquet = pytest.importorskip("pyarrow.parquet", reason="needs pyarrow")
 
     def written() -> list[JobRow]:
-        store, measured = FolderStore(folder / "work"), Measured(folder / "measured.csv")
-        return list(write_tables(job_rows(batch.jobs, store, measured), tmp_path))
+        return list(write_tables(rows_of(batch, folder), tmp_path))
 
     rows = written()
     monkeypatch.setattr(tables, "has_parquet", lambda: False)
@@ -119,9 +113,8 @@ def test_names_that_are_no_utf_8_are_rows_in_either_form(
         Path(os.fsdecode(name)).write_text(json.dumps({"units": "mm", "loops": [loop]}))
     for queue in (InlineQueue(), InlineQueue(0)):
         batch = run_in(tmp_path, tmp_path / "shop", queue=queue)
-        measured, out = Measured(tmp_path / "measured.csv"), tmp_path / "out"
-        summary = Summary("x", [], [])
-        write_results(batch, FolderStore(tmp_path / "work"), measured, out, "r.html", summary, out / "sheets")
+        out = tmp_path / "out"
+        reported(batch, tmp_path, out, sheets=out / "sheets")
         assert {"Fl\\xe4gel.json", "Fl\\xfcgel.json"} <= set(
             re.findall(r"Fl[^<>]*json", read(out / "r.html"))
         )

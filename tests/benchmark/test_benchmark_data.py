@@ -14,9 +14,9 @@ from typing import Any
 import pytest
 
 from benchmark.forgeries import FORGERIES, MANIFEST_ONLY
+from workhold import answer
 from workhold.benchmark.catalogue import data_bytes, manifest, query_of, sets
 from workhold.benchmark.matching import Places, compared, entered_fixture
-from workhold.search.design import answer
 
 Content = Callable[[str], dict[str, Any]]
 ROOT = Path(__file__).resolve().parents[2]

@@ -16,10 +16,9 @@ from typer.testing import CliRunner
 from typer.testing import Result as Outcome
 
 from fakes import fake_result
+from workhold import Query, Result
 from workhold.cli.main import app
-from workhold.drawing.render import svg_to_png
-from workhold.model.query import Query
-from workhold.model.result import Result
+from workhold.drawing import svg_to_png
 
 Run = Callable[..., Outcome]
 

@@ -9,9 +9,8 @@ from typing import Any
 import ezdxf
 import pytest
 
-from workhold import Plate, Query, Workpiece, answer
+from workhold import Plate, Query, Workpiece, answer, save
 from workhold.family.copies import packing_of
-from workhold.files.result.save import save
 
 pytest.importorskip("scipy", reason="the extra [batch] is not installed")
 

@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
+import workhold
 from fakes import fake_proof, fake_result
 from workhold.cli import design_command
 from workhold.errors import InputError
-from workhold.files.result.reader import read_result
 from workhold.search import estimate
 
 # How an earlier output of the same name begins.
@@ -66,7 +66,7 @@ def test_result_and_table(run: Any, searched: dict[str, Any], tmp_path: Path) ->
     outcome = run("design", "widget", *VISE, "--out", tmp_path / "r.json")
     assert outcome.exit_code == 0
     result = searched["result"]
-    assert len(read_result(tmp_path / "r.json")) == 7
+    assert len(workhold.open(tmp_path / "r.json")) == 7
     lines = outcome.stdout.splitlines()
     assert lines[0].split()[:2] == ["rank", "like"]
     shown = next(k for k, line in enumerate(lines) if "fixtures:" in line)

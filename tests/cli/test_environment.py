@@ -14,10 +14,9 @@ import attrs
 import numpy as np
 import pytest
 
+import workhold
 from fakes import fake_result
-from workhold.files.result.reader import read_result
-from workhold.files.result.writer import write_result
-from workhold.model.workpiece import Workpiece
+from workhold import Workpiece, save
 
 pytestmark = pytest.mark.thorough
 
@@ -154,10 +153,10 @@ def test_a_result_on_the_terminal_does_not_steer_it_and_keeps_its_names(run: Any
     name = "a\x1b[2J\x7f\x9b31m\u202eb\u2028ü"
     result = fake_result(3, notes=(name,))
     part = Workpiece.from_loops(name, result.workpiece.loops)
-    write_result(attrs.evolve(result, query=attrs.evolve(result.query, workpiece=part)), tmp_path / "r.json")
+    save(attrs.evolve(result, query=attrs.evolve(result.query, workpiece=part)), tmp_path / "r.json")
     done = run("convert", tmp_path / "r.json", "-")
     assert done.exit_code == 0, done.stderr
     assert done.stdout.isascii() and done.stdout.replace("\n", "").isprintable()
     (tmp_path / "again.json").write_text(done.stdout)
-    again = read_result(tmp_path / "again.json")
+    again = workhold.open(tmp_path / "again.json")
     assert (again.workpiece.name, again.notes) == (name, (name,))

@@ -12,8 +12,8 @@ import pytest
 
 import workhold
 from fakes import fake_proof, fake_result
+from workhold import save
 from workhold.cli.main import COMMANDS
-from workhold.files.result.writer import write_result
 from workhold.presenting.data import part_data
 
 # Commands whose only output is a text for another program, or a page.
@@ -37,7 +37,7 @@ def told(outcome: Any, code: int = 0) -> Any:
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder with a result file of six fixtures and a part."""
     monkeypatch.chdir(tmp_path)
-    write_result(fake_result(6), "r.json")
+    save(fake_result(6), "r.json")
     Path("wedge.json").write_text(WEDGE)
     return tmp_path
 

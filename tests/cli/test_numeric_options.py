@@ -14,8 +14,8 @@ from typer.main import get_command
 from typer.testing import CliRunner
 
 from fakes import fake_result
+from workhold import save
 from workhold.cli.main import app
-from workhold.files.result.writer import write_result
 
 VALUES = ("1e308", "1e400", "nan", "inf", "-1", "0", "", "much", "1e308in", "9" * 400)
 PLATE = {"units": "mm", "loops": [[[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]]]}
@@ -73,7 +73,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "plate.json").write_text(json.dumps(PLATE))
     (tmp_path / "program.nc").write_text(PROGRAM)
     (tmp_path / "tools.csv").write_text(TOOLS)
-    write_result(fake_result(2), tmp_path / "result.json")
+    save(fake_result(2), tmp_path / "result.json")
     return tmp_path
 
 

@@ -12,17 +12,16 @@ import pytest
 
 from fakes import fake_result
 from glb_reading import fixture_glb
-from workhold import __version__
+from workhold import __version__, save
 from workhold import open as open_result
 from workhold.cli.main import COMMANDS, command_of
-from workhold.files.result.writer import write_result
 from workhold.model.bodies import BodySizes
 
 
 @pytest.fixture
 def result_file(tmp_path: Path) -> Path:
     """A result file of six fixtures."""
-    write_result(fake_result(6), tmp_path / "r.json")
+    save(fake_result(6), tmp_path / "r.json")
     return tmp_path / "r.json"
 
 
@@ -171,7 +170,7 @@ def test_no_command_and_an_unknown_one(run: Any) -> None:
 
 def test_a_result_goes_from_one_form_to_the_other_and_back(run: Any, tmp_path: Path) -> None:
     """The same bytes come back; every command opens either form by its content."""
-    write_result(fake_result(5), tmp_path / "a.json")
+    save(fake_result(5), tmp_path / "a.json")
     for source, target in (("a.json", "b"), ("b", "c.json"), ("b", "c.csv"), ("c.json", "d.npz")):
         form = () if "." in target else ("--format", "npz")
         outcome = run("convert", tmp_path / source, tmp_path / target, *form)

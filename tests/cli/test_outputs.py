@@ -11,10 +11,10 @@ import pytest
 from reading_helpers import RECTANGLE, new_dxf
 
 from fakes import fake_result
+from workhold import save
 from workhold.cli import design_report
 from workhold.errors import InputError
 from workhold.files import atomic
-from workhold.files.result.writer import write_result
 
 VISE = ("--pitch", 10, "--columns", 2, "--peg-radius", 2)
 FOREIGN = b"years of work"
@@ -34,7 +34,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, searched: Any) -> Pa
     document, space = new_dxf()
     space.add_lwpolyline(RECTANGLE, close=True)
     document.saveas(tmp_path / "plate.dxf")
-    write_result(fake_result(3), tmp_path / "r.json")
+    save(fake_result(3), tmp_path / "r.json")
     (tmp_path / "v.toml").write_text('unit = "mm"\npitch = 10\ncolumns = 2\npeg_radius = 2\n')
     (tmp_path / "l.toml").write_text("[[load]]\nforce = 1\nat = [1, 2]\n")
     monkeypatch.chdir(tmp_path)

@@ -12,7 +12,6 @@ from typer.testing import Result as Outcome
 import workhold
 from workhold import Plate, Workpiece
 from workhold.drawing.sheet_writing import lift_of
-from workhold.files.result.reader import read_result
 from workhold.fixels.support_hardware import SupportPads, TopClamp
 from workhold.model.support_bodies import supported_sizes
 from workhold.model.support_triples import ChosenSupports
@@ -36,7 +35,7 @@ def test_a_result_keeps_them_and_supports_sheet_and_bodies_use_them(
     result_file: Path, tmp_path: Path, run: Run
 ) -> None:
     """Also with one of them asked for otherwise; ``verify`` accepts both files."""
-    result = read_result(result_file)
+    result = workhold.open(result_file)
     assert result.toolkit == EQUIPPED and run("verify", result_file).exit_code == 0
     out = tmp_path / "supports.json"
     assert (

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+import workhold
 from slow_program import OFF, walked
-from workhold.files.result.reader import read_result
-from workhold.model.program import Program
+from workhold import Program
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 PEG_HEIGHT = 6.0
@@ -39,7 +39,7 @@ def test_the_first_choice_lets_every_tool_pass(run: Any, tmp_path: Path) -> None
     ways = ("--out", result, "--sheet", sheet)
     outcome = run("design", EXAMPLES / "bracket.dxf", *held, *asked, *ways)
     assert outcome.exit_code == 0, outcome.stderr
-    found = read_result(result)
+    found = workhold.open(result)
     best, program = found[0], found.query.program
     assert program is not None and sorted(program.tools) == [1, 2, 3]
     x, y = best.pose.inverse.apply(*np.array([(peg.x, peg.y) for peg in best.pegs]).T)

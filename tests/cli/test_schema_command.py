@@ -11,10 +11,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from typer.testing import CliRunner
 
 import workhold
 from fakes import fake_proof, fake_result
-from workhold.cli.installed_commands import SCHEMAS, schema_of
+from workhold.cli.main import app
 from workhold.errors import InputError
 from workhold.files.loads_file import read_loads
 from workhold.files.result.writer import result_text
@@ -22,7 +23,11 @@ from workhold.files.result.writer import result_text
 jsonschema = pytest.importorskip("jsonschema_rs", reason="schemathesis, which brings it, is not installed")
 ROOT = Path(__file__).parent.parent.parent
 DATA = files("workhold") / "data"
-FITS = {name: jsonschema.validator_for(schema_of(name)).is_valid for name in SCHEMAS}
+SCHEMAS = {
+    name: json.loads(CliRunner().invoke(app, ["schema", name]).stdout)
+    for name in ("part", "toolkit", "loads", "query", "result")
+}
+FITS = {name: jsonschema.validator_for(schema).is_valid for name, schema in SCHEMAS.items()}
 
 
 def parts() -> Iterator[Any]:
@@ -153,15 +158,11 @@ def test_a_query_fits_that_the_server_takes() -> None:
 
 def test_the_command_prints_them(run: Any) -> None:
     """By name, each a schema of its own dialect that says what it is of."""
-    for name, words in SCHEMAS.items():
-        content = json.loads(run("schema", name.upper()).stdout)
-        assert (
-            content == schema_of(name)
-            and content["title"] == f"workhold {name}"
-            and words in content["description"]
-        )
+    for one in json.loads(run("schema", "--json").stdout)["schemas"]:
+        content = json.loads(run("schema", one["name"].upper()).stdout)
+        assert content == SCHEMAS[one["name"]] and content["title"] == f"workhold {one['name']}"
+        assert one["of"] in content["description"] and one["name"] in run("schema").stdout
         assert jsonschema.meta.is_valid(content)
-        assert name in run("schema").stdout
     outcome = run("schema", "nothing")
     assert outcome.exit_code == 2 and "give part, toolkit, loads, query or result" in outcome.stderr
 
@@ -169,5 +170,5 @@ def test_the_command_prints_them(run: Any) -> None:
 @pytest.mark.parametrize("content", RESULTS)
 def test_every_key_of_a_fixture_is_told(content: dict[str, Any]) -> None:
     """The schema describes all that is written of a fixture, whatever the toolkit."""
-    told = schema_of("result")["$defs"]["FixturePart"]["properties"]
+    told = SCHEMAS["result"]["$defs"]["FixturePart"]["properties"]
     assert not {key for fixture in content["fixtures"] for key in fixture} - set(told)

@@ -8,10 +8,9 @@ from typing import Any
 
 import pytest
 
-from workhold.cli.search_options import parse_load
-from workhold.errors import InputError
+from workhold import Load, Tolerance
 from workhold.fixels.carrier import Holes
-from workhold.model.requirements import ANY_DIRECTION, Load, Tolerance
+from workhold.model.requirements import ANY_DIRECTION
 
 WIDGET = ("design", "widget", "--pitch", "10", "--columns", "2", "--peg-radius", "3")
 
@@ -215,14 +214,17 @@ def test_explore_refuses_in_a_sentence(run: Any, words: tuple[str, ...], message
         ("name='rough cut' force=1.5e2 at=1,1", Load([(1, 1)], 150, name="rough cut")),
     ],
 )
-def test_what_may_be_typed(text: str, load: Load) -> None:
+def test_what_may_be_typed(run: Any, searched: dict[str, Any], text: str, load: Load) -> None:
     """Each text is the load it describes."""
-    assert parse_load(text, 1.0) == load
+    assert run(*WIDGET, "--load", text).exit_code == 0
+    assert searched["asked"].loads == (load,)
 
 
-def test_lengths_are_in_the_users_unit() -> None:
+def test_lengths_are_in_the_users_unit(run: Any, searched: dict[str, Any]) -> None:
     """Points are scaled; force, direction and moment are not."""
-    assert parse_load("force=2 at=1,2 direction=30 moment=5", 25.4) == Load([(25.4, 50.8)], 2, (30, 30), 5)
+    words = ("design", "widget", "--vise", "plate-20mm", "--unit", "inch")
+    assert run(*words, "--load", "force=2 at=1,2 direction=30 moment=5").exit_code == 0
+    assert searched["asked"].loads == (Load([(25.4, 50.8)], 2, (30, 30), 5),)
 
 
 @pytest.mark.parametrize(
@@ -245,14 +247,10 @@ def test_lengths_are_in_the_users_unit() -> None:
         ("force=200 path=0,0", "path '0,0' is not a path"),
     ],
 )
-def test_bad_loads_are_refused_in_one_sentence(text: str, said: str) -> None:
+def test_bad_loads_are_refused_in_one_sentence(
+    run: Any, searched: dict[str, Any], text: str, said: str
+) -> None:
     """The message shows what was typed and says what to type."""
-    with pytest.raises(InputError) as refused:
-        parse_load(text, 1.0)
-    message = str(refused.value)
-    assert (
-        said in message
-        and message.startswith(f'--load "{text}"')
-        and message.endswith(".")
-        and "\n" not in message
-    )
+    message = run(*WIDGET, "--load", text).stderr.removeprefix("workhold: error: ")
+    assert said in message and message.startswith(f'--load "{text}"')
+    assert message.endswith(".\n") and message.count("\n") == 1 and searched["asked"] is None

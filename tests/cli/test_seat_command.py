@@ -15,8 +15,6 @@ from workhold import OpeningVise, Plate, Vise, Workpiece
 from workhold.drawing.scene import LengthUnit
 from workhold.drawing.seating_words import SeatingSentences
 from workhold.model.quality import FIGURE_RANKING
-from workhold.seating.clamping import WHY
-from workhold.seating.contact_forces import WAS_NOT_FOUND
 from workhold.seating.solver import Solver
 from workhold.units import INCH, MILLIMETRE
 
@@ -43,7 +41,7 @@ def test_it_says_where_nothing_is_known_of_how_a_part_is_caught(run: Any, tmp_pa
         way_out=0.0,
         cage=None,
         placing=None,
-        unsettled=(WAS_NOT_FOUND,),
+        unsettled=("This fixture was not found among the seats of its own pegs, a fault of the program.",),
     )
     path = tmp_path / "r.json"
     workhold.save(evolve(result, seating=(untold,)), path)
@@ -190,7 +188,10 @@ def test_with_two_clamps_it_says_what_to_do_by_hand(
         assert max(map(len, outcome.stdout.splitlines())) <= 80
         [told], text = workhold.seatings(made, [fixture]), " ".join(outcome.stdout.split())
         steps = told.steps(INCH.text)
-        assert f"Seating of fixture {rank} of {len(made)}: square {WHY}" in text
+        assert (
+            f"Seating of fixture {rank} of {len(made)}: square Neither of the two clamps holds the part alone"
+            in text
+        )
         assert " ".join(f"{number}. {step}" for number, step in enumerate(steps, 1)) in text
         shown = json.loads(
             run("seat", tmp_path / "p.json", rank, "--json", "--draw", picture, "--unit", "inch").stdout

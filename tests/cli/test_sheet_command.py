@@ -18,11 +18,8 @@ from drawing_examples import diamond
 from svg_reading import by_class
 
 import workhold
-from workhold import __version__
-from workhold.files.result.writer import write_result
+from workhold import Query, Result, __version__, save
 from workhold.model.fixture_table import FixtureTable, unknown_quality
-from workhold.model.query import Query
-from workhold.model.result import Result
 
 
 def diamond_result() -> Result:
@@ -47,7 +44,7 @@ def diamond_result() -> Result:
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The folder of a result file ``r.json`` and of a file of loads, from which commands are run."""
-    write_result(diamond_result(), tmp_path / "r.json")
+    save(diamond_result(), tmp_path / "r.json")
     loads = '[[load]]\nname = "drilling"\nforce = 80\nat = [20, 20]\n'
     (tmp_path / "loads.toml").write_text(loads)
     monkeypatch.chdir(tmp_path)

@@ -12,9 +12,7 @@ from typer.testing import Result as Outcome
 
 import workhold
 from workhold import Plate, Workpiece
-from workhold.cli.support_words import spatial_load
 from workhold.model.solid import SolidOutline
-from workhold.units import MILLIMETRE
 
 Run = Callable[..., Outcome]
 KITE = Workpiece.from_loops("kite", [[[0, 0, 0], [70, -8, 0.1], [88, 40, 0], [22, 66, 0]]])
@@ -77,15 +75,16 @@ def test_refusals(result_file: Path, run: Run, words: tuple[str, ...], sentence:
     assert "force=1" not in shown.stderr and shown.stderr.count("\n") == 1
 
 
-def test_words_of_a_load() -> None:
+def test_words_of_a_load(result_file: Path, tmp_path: Path, run: Run) -> None:
     """Heights, axial force and tilt stand beside the words of a load in the plane."""
-    load = spatial_load(
-        "force=80 at=1,2 z=3..4 axial=-5..6 tilt=7,-8 moment=9 direction=0..90", 12.0, MILLIMETRE
-    )
-    assert (load.force, load.heights, load.axial, load.tilt) == (80.0, (3.0, 4.0), (-5.0, 6.0), (7.0, -8.0))
-    assert (load.moment, load.directions, load.points) == (9.0, (0.0, 90.0), ((1.0, 2.0),))
-    drill = spatial_load("at=1,2 axial=300", 12.0, MILLIMETRE)
-    assert (drill.force, drill.heights, drill.axial) == (0.0, (12.0, 12.0), (300.0, 300.0))
+    out = tmp_path / "supports.json"
+    typed = "force=80 at=1,2 z=3..4 axial=-5..6 tilt=7,-8 moment=9 direction=0..90"
+    words = ("--load", typed, "--load", "at=1,2 axial=300")
+    assert run("supports", result_file, 1, "--thickness", 12, *words, "--out", out).exit_code == 0
+    load, drill = json.loads(out.read_text())["loads"]
+    assert (load["force"], load["heights"], load["axial"], load["tilt"]) == (80, [3, 4], [-5, 6], [7, -8])
+    assert (load["moment"], load["directions"], load["points"]) == (9, [0, 90], [[1, 2]])
+    assert (drill["force"], drill["heights"], drill["axial"]) == (0, [12, 12], [300, 300])
 
 
 def test_part_that_no_three_supports_hold_up(tmp_path: Path, run: Run) -> None:

@@ -10,8 +10,10 @@ from typing import Any
 import pytest
 
 from fakes import fake_result
+from workhold import save
 from workhold.cli.table import Table, width_of
-from workhold.files.result.writer import write_result
+
+LONG = "a file name that says what machine, what side and what operation it is for"
 
 
 def table(spare: int = 0) -> Table:
@@ -50,6 +52,39 @@ def test_spare_columns_are_left_out_and_named() -> None:
     assert "plate" in " ".join(table(spare=1).fitted(76).lines)
 
 
+@pytest.mark.parametrize("spare", [0, 1, 3])
+@pytest.mark.parametrize("width", [30, 40, 60, 80, 120])
+def test_any_table_fits_and_cuts_no_number(width: int, spare: int) -> None:
+    """A number is there as a whole or its column is named among those left out."""
+    numbers = [f"{10**k + 0.125}" for k in range(1, 9)]
+    table = Table(("part", *(f">figure {k} mm" for k in range(8)), "words"), spare=spare)
+    table.add_row(LONG, *numbers, LONG)
+    table.add_row("short", *reversed(numbers), "x" * 200)
+    fitted = table.fitted(width)
+    lines = [*fitted.headings, *fitted.lines]
+    assert max(map(len, lines)) <= width
+    said = " ".join(" ".join(lines).split())
+    for k, number in enumerate(numbers):
+        assert number in said.split() or f"figure {k} mm," in said
+    assert set(LONG.split()) <= set(said.split())
+
+
+def test_a_word_wider_than_the_terminal_is_broken_and_keeps_its_letters() -> None:
+    """As the name of a file without blanks may be."""
+    table = Table(("file", ">figure mm"))
+    table.add_row("part" * 30, "1.5")
+    fitted = table.fitted(50)
+    assert max(map(len, fitted.lines)) <= 50 and "1.5" in fitted.lines[1]
+    assert "".join("".join(fitted.lines[1:]).replace("1.5", "").split()) == "part" * 30
+
+
+def test_without_a_limit_nothing_is_left_out_or_wrapped() -> None:
+    """What is piped keeps every column on one line."""
+    table = Table(("part", ">figure mm", "words"), spare=2)
+    table.add_row(LONG, "1.5", LONG)
+    assert len(table.lines()) == 3 and table.lines()[2].count(LONG) == 2
+
+
 def test_a_terminal_that_nobody_has_told_its_size_has_no_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("COLUMNS", raising=False)
     ours, theirs = os.openpty()
@@ -62,7 +97,7 @@ def test_a_terminal_that_nobody_has_told_its_size_has_no_limit(monkeypatch: pyte
 
 def test_usual_commands_fit_80_columns(run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The tables of a fixture and of the vises."""
-    write_result(fake_result(12), tmp_path / "r.json")
+    save(fake_result(12), tmp_path / "r.json")
     monkeypatch.setenv("COLUMNS", "80")
     for words in (("show", tmp_path / "r.json", 1), ("toolkits",), ("features", "widget")):
         outcome = run(*words)

@@ -14,71 +14,33 @@ from reading_helpers import new_dxf, rectangle
 from svg_reading import texts
 
 from fakes import fake_result
-from workhold.cli import options
-from workhold.cli.tables import fixture_tables, result_table
-from workhold.cli.values import length, pitches
-from workhold.errors import InputError
-from workhold.files.result.writer import write_result
+from workhold import save
 from workhold.files.toolkit_file import load_toolkit, preset_names
-from workhold.listing.identity import entries
-from workhold.units import INCH, MILLIMETRE
+from workhold.units import INCH
 
 ROOT = Path(__file__).parent.parent.parent
 
 
-@pytest.mark.parametrize(
-    ("text", "millimetres", "inches"),
-    [
-        ("2", 2, 50.8),
-        ("1/2", 0.5, 12.7),
-        ("-1-1/2", -1.5, -38.1),
-        ("1 1/4", 1.25, 31.75),
-        ("1e-1", 0.1, 2.54),
-        ("0.5in", 12.7, 12.7),
-        ('1/2"', 12.7, 12.7),
-        ("12.7 mm", 12.7, 12.7),
-        ("1INCH", 25.4, 25.4),
-        ("-3cm", -30, -30),
-        ("1m", 1000, 1000),
-    ],
-)
-def test_lengths_carry_their_unit_or_take_the_one_asked(text: str, millimetres: float, inches: float) -> None:
-    assert isclose(length("--x", text), millimetres)
-    assert isclose(length("--x", text, INCH), inches)
-
-
-@pytest.mark.parametrize(
-    "text", ["", "mm", "in", "1/0", "1/2/3", "/2", "1_0", "inf", "nanmm", "5 ft", "1,5", "--1"]
-)
-def test_what_is_no_length_is_refused_in_the_unit_asked(text: str) -> None:
-    with pytest.raises(InputError, match="give a plain number in mm"):
-        length("--x", text)
-    with pytest.raises(InputError, match="give a plain number in in, such as"):
-        length("--x", text, INCH)
-
-
-def test_a_pitch_may_mix_units() -> None:
-    assert pitches("1/2in,20", MILLIMETRE) == (12.7, 20)
-    assert pitches("1,20mm", INCH) == (25.4, 20)
-
-
-def test_tables_in_inches_are_those_in_millimetres() -> None:
+def test_tables_in_inches_are_those_in_millimetres(
+    run: Any, searched: dict[str, Any], tmp_path: Path
+) -> None:
     """Every length of the two tables over 25.4, to four decimals; the other words are the same."""
-    result = fake_result(3)
-    fixture = result[0]
-    table = result_table(result, entries(result), 1, INCH)
-    assert table.rows[0][table.columns.index(">opening in")] == f"{fixture.jaw_separation / 25.4:.4f}"
-    told = fixture_tables(fixture, result.toolkit, 1, 3, INCH)
-    assert f"Opening S {fixture.jaw_separation / 25.4:.4f} in" in str(told[1])
-    pegs = told[3]
-    assert not isinstance(pegs, str)
-    assert pegs.columns[2:4] == (">x in", ">y in")
-    for peg, row in zip(fixture.pegs, pegs.rows, strict=True):
+    result = searched["result"] = fake_result(3)
+    fixture, opening = result[0], f"{result[0].jaw_separation / 25.4:.4f}"
+    vise = ("--pitch", "10mm", "--columns", "3", "--peg-radius", "3mm")
+    listed = run("design", "widget", *vise, "--unit", "inch").stdout
+    assert "opening in" in listed and opening in listed.split()
+    save(result, tmp_path / "r.json")
+    told = run("show", tmp_path / "r.json", 1, "--unit", "inch").stdout
+    assert f"Opening S {opening} in" in told and " x in " in told and " y in " in told
+    rows = [line.split() for line in told.splitlines()]
+    for peg in fixture.pegs:
+        row = next(one for one in rows if one[:1] == [str(peg.hole)])
         assert (float(row[2]), float(row[3])) == pytest.approx((peg.x / 25.4, peg.y / 25.4), abs=5e-5)
 
 
 def test_show_in_inches(run: Any, tmp_path: Path) -> None:
-    write_result(fake_result(2), tmp_path / "r.json")
+    save(fake_result(2), tmp_path / "r.json")
     outcome = run("show", tmp_path / "r.json", 1, "--unit", "inch")
     assert f"Opening S {fake_result(2)[0].jaw_separation / 25.4:.4f} in" in outcome.stdout
     assert "mm" not in outcome.stdout
@@ -113,7 +75,7 @@ def test_pictures_are_in_the_unit_asked(
 ) -> None:
     """Of one fixture, of the faces, of the best and their thumbnails; millimetres where no unit is asked."""
     result = searched["result"] = fake_result(1)
-    write_result(result, tmp_path / "r.json")
+    save(result, tmp_path / "r.json")
     asked = () if unit is None else ("--unit", unit)
     assert run("show", tmp_path / "r.json", 1, "--draw", tmp_path / "shown.svg", *asked).exit_code == 0
     assert (
@@ -301,7 +263,7 @@ def test_somebody_at_a_terminal_is_asked(
     run: Callable[..., Any], drawing: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The answer is the drawing's unit; one that is none is refused."""
-    monkeypatch.setattr(options, "at_terminal", lambda: True)
+    monkeypatch.setattr("workhold.cli.options.at_terminal", lambda: True)
     answers = iter(["inch", "ell"])
     monkeypatch.setattr(typer, "prompt", lambda *words, **more: next(answers))
     outcome = run("features", drawing)

@@ -11,17 +11,13 @@ from hypothesis import given, settings
 
 from exact_chords import exactly
 from strategies import outlines, vises
-from workhold import load
+from workhold import Query, Restrictions, Vise, Workpiece, load, polygon_zone
 from workhold.contact import features
 from workhold.contact.features import allowed_features, contact_features, end_slacks, feature_rows
 from workhold.contact.problem import Problem
-from workhold.fixels.vise import Vise
 from workhold.geometry.segment import Arc, segment_rows
 from workhold.kernels.base.distance import outline_distance, outline_distances, segment_distance
 from workhold.model.own_outlines import outline_diameter, segments_diameter
-from workhold.model.query import Query
-from workhold.model.requirements import Restrictions, polygon_zone
-from workhold.model.workpiece import Workpiece
 from workhold.proof.ball_contacts import contact_value, from_origin
 from workhold.statics.contact_matrix import outward_normals
 from workhold.verification.ball_geometry import BallOutline

@@ -8,14 +8,13 @@ import numpy as np
 import pytest
 from attrs import evolve, frozen
 
-from workhold import Result, Vise, Workpiece, design
+from workhold import Query, Result, Vise, Workpiece, design
 from workhold.contact.features import end_distances
 from workhold.contact.problem import Frame, Problem
 from workhold.errors import InputError
 from workhold.fixels.carrier import Holes
 from workhold.fixels.toolkit import Carrier, Travel
 from workhold.model.quality import END_DISTANCE
-from workhold.model.query import Query
 from workhold.statics.quality import quality_of
 
 PART = Workpiece.from_loops(

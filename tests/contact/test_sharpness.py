@@ -13,10 +13,8 @@ from flint import arb
 from exact_chords import exactly
 from sharpness import Constant, check_sharpness
 from strategies import random_outline
+from workhold import Query, Vise, Workpiece
 from workhold.contact.problem import Problem
-from workhold.fixels.vise import Vise
-from workhold.model.query import Query
-from workhold.model.workpiece import Workpiece
 from workhold.verification.ball_geometry import LineSide, Point, norm, vertex_side
 
 

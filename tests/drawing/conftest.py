@@ -6,9 +6,7 @@ import pytest
 from attrs import evolve
 from drawing_examples import example
 
-from workhold.fixels.vise import Vise
-from workhold.model.fixture import Fixture
-from workhold.model.workpiece import Workpiece
+from workhold import Fixture, Vise, Workpiece
 
 
 @pytest.fixture(params=[1.0, 0.01, 40.0], ids=["usual", "tiny", "huge"])

@@ -7,10 +7,7 @@ from random import Random
 
 import numpy as np
 
-from workhold.fixels.vise import Vise
-from workhold.model.fixture import Fixture, Peg
-from workhold.model.pose import Pose
-from workhold.model.workpiece import Workpiece
+from workhold import Fixture, Peg, Pose, Vise, Workpiece
 
 QUARTER = tan(np.pi / 8)
 PART = [

@@ -9,15 +9,10 @@ from random import Random
 
 from attrs import evolve, frozen
 
-from workhold.fixels.fence import Fence
-from workhold.fixels.plate import Plate
+from workhold import Fence, Fixture, Load, OpeningVise, Peg, Plate, Pose, Vise, Workpiece
 from workhold.fixels.toolkit import Arrangement, Toolkit
-from workhold.fixels.vise import OpeningVise, Vise
-from workhold.model.fixture import Fixture, Pair, Peg
-from workhold.model.pose import Pose
+from workhold.model.fixture import Pair
 from workhold.model.quality import FIGURES
-from workhold.model.requirements import Load
-from workhold.model.workpiece import Workpiece
 from workhold.statics.loads import LoadCase, Worst
 
 __all__ = ["AHEAD", "HELD", "PITCH", "WALL_OFFSET", "WORDS", "Held", "load_cases_of", "tips_of"]

@@ -7,10 +7,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from workhold.fixels.plate import Plate
-from workhold.model.fixture import Fixture, Peg
-from workhold.model.pose import Pose
-from workhold.model.workpiece import Workpiece
+from workhold import Fixture, Peg, Plate, Pose, Workpiece
 
 WAYS = ("-x", "-y", "+x", "+y")
 TRAVEL = (10.0, 30.0)

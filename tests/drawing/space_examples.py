@@ -9,16 +9,13 @@ import pypdfium2
 from sheet_reading import collisions, page_of, words_of
 
 from body_examples import BLOCK, TOOLKITS
-from workhold import design
+from workhold import Load, Result, Workpiece, design
+from workhold.drawing import result_sheet
 from workhold.drawing.pdf import svg_to_pdf
 from workhold.drawing.scene import UNITS_PER_MM
-from workhold.drawing.sheet import result_sheet
-from workhold.model.requirements import Load
-from workhold.model.result import Result
 from workhold.model.solid import SolidOutline
 from workhold.model.support_request import SupportRequest
 from workhold.model.support_triples import ChosenSupports
-from workhold.model.workpiece import Workpiece
 from workhold.supports.listing import supports_of
 
 HEIGHT, PEG_HEIGHT, HEAD_ROOM = 24.0, 9.0, 0.75

@@ -13,6 +13,7 @@ import pytest
 from attrs import evolve, frozen
 from svg_reading import texts
 
+from workhold import Fixture, Peg, Pose, Workpiece
 from workhold.cli.tables import fixture_tables
 from workhold.drawing import SheetDetails, draw_fixture, draw_sheet
 from workhold.drawing.panel import arrangement_words
@@ -20,10 +21,7 @@ from workhold.files.dxf.writer import setup_dxf
 from workhold.files.result.fixture_text import fixture_template, pin_list
 from workhold.fixels.setup_words import Datum, SetupWords
 from workhold.fixels.toolkit import Arrangement, Carrier, Symmetry, Toolkit, Travel
-from workhold.model.fixture import Fixture, Peg
-from workhold.model.pose import Pose
 from workhold.model.shown import shown
-from workhold.model.workpiece import Workpiece
 from workhold.units import MILLIMETRE
 from workhold.web.answers import contact_answer, fixture_answer
 

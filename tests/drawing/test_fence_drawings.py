@@ -12,19 +12,17 @@ from attrs import evolve
 from sheet_reading import collisions
 from svg_reading import texts
 
-from workhold import Fence, Result, Workpiece, design
+from workhold import Fence, Restrictions, Result, Workpiece, design
 from workhold.cli.seat_command import seat_table
+from workhold.drawing import draw_fixture, result_sheet
 from workhold.drawing.bench import contact_of
-from workhold.drawing.fixture_pictures import draw_fixture
 from workhold.drawing.scene import LengthUnit
 from workhold.drawing.seating_words import SeatingSentences
 from workhold.drawing.seats import draw_seats
-from workhold.drawing.sheet import result_sheet
 from workhold.files.dxf.writer import setup_dxf
 from workhold.files.result.fixture_text import pin_list, result_csv_text
 from workhold.fixels.contacts import ROUND_PIN, WALL_END
 from workhold.geometry.segment import Line
-from workhold.model.requirements import Restrictions
 from workhold.model.seating import Seat
 from workhold.model.shown import shown
 from workhold.statics.contact_matrix import Touched

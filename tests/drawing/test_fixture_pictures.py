@@ -10,13 +10,10 @@ from attrs import evolve
 from drawing_examples import PART_AREA, example, hole_area
 from svg_reading import area, by_class, matrix, texts, to_model
 
+from workhold import Fixture, Pose, Vise, Workpiece
 from workhold.drawing import draw_fixture, draw_thumbnails
 from workhold.drawing.scene import text_width
 from workhold.errors import InputError
-from workhold.fixels.vise import Vise
-from workhold.model.fixture import Fixture
-from workhold.model.pose import Pose
-from workhold.model.workpiece import Workpiece
 
 Held = tuple[Fixture, Workpiece, Vise]
 

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
+import re
 from datetime import date
 from functools import cache
 from io import StringIO
+from pathlib import Path
 
 import ezdxf
 import numpy as np
 import pytest
 from sheet_reading import collisions
 from svg_reading import by_class, texts
+from typer.testing import CliRunner
 
-from workhold import Plate, Result, Vise, Workpiece, design
-from workhold.cli.tables import fixture_tables
-from workhold.drawing import draw_fixture
-from workhold.drawing.sheet import draw_sheet
-from workhold.drawing.sheet_facts import SheetDetails
+from workhold import Plate, Result, Vise, Workpiece, design, save
+from workhold.cli.main import app
+from workhold.drawing import SheetDetails, draw_fixture, draw_sheet
 from workhold.files.dxf.writer import setup_dxf
 from workhold.files.result.fixture_text import pin_list
 from workhold.fixels.pegs import Flat, peg_outline
@@ -57,7 +58,7 @@ def test_an_outline_is_a_circle_cut_off() -> None:
     )
 
 
-def test_pictures_and_sheet_show_them() -> None:
+def test_pictures_and_sheet_show_them(tmp_path: Path) -> None:
     """Flats as paths, what is round as circles; the table has a column for them, and nothing covers anything."""
     result, number = held(VISE), mixed()
     fixture = result[number]
@@ -71,9 +72,9 @@ def test_pictures_and_sheet_show_them() -> None:
     assert all(f"{peg.flat_deg:.2f}°" in words for peg in fixture.pegs if peg.flat_deg is not None)
     assert "–" in words and any("flat: which way it looks" in word for word in words)
     assert all(collisions(page) == [] for page in pages)
-    pegs = fixture_tables(fixture, VISE, 1, 1)[-1]
-    assert not isinstance(pegs, str)
-    assert "flat at" in pegs.columns[5]
+    save(result, tmp_path / "r.json")
+    shown = CliRunner().invoke(app, ["show", str(tmp_path / "r.json"), str(number + 1)]).stdout
+    assert re.search(r"^hole +jaw +x mm +y mm +face +flat at", shown, re.MULTILINE)
 
 
 def test_files_have_them() -> None:

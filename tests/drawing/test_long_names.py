@@ -9,12 +9,13 @@ from typing import Any
 
 import pytest
 
+import workhold
 from workhold.drawing import scene
 from workhold.drawing.scene import fitting, shortened, text_width, wrapped
 from workhold.errors import InputError
-from workhold.files.input_forms import LONGEST_NAME
 from workhold.files.part.load import read_workpiece
-from workhold.files.result.reader import read_result
+
+LONGEST = 10_000
 
 HOSTILE = Path(__file__).parents[1] / "data" / "hostile"
 LETTERS = "abcWi .-Ø樂\u202e\x07\u0301🔩"
@@ -76,15 +77,15 @@ def test_long_words_are_measured_about_as_often_as_they_have_lines(
 
 def test_a_name_of_thousands_of_letters_is_read() -> None:
     """One that came in; above the limit a part is refused in a sentence."""
-    assert len(read_result(HOSTILE / "longname.json").workpiece.name) == 3600
+    assert len(workhold.open(HOSTILE / "longname.json").workpiece.name) == 3600
 
 
 def test_a_name_longer_than_any_sheet_is_refused(tmp_path: Path) -> None:
     """With the limit."""
     path = tmp_path / "p.json"
     text = '{"name": "%s", "units": "mm", "loops": [[[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]]]}'
-    path.write_text(text % ("x" * LONGEST_NAME))
-    assert len(read_workpiece(path).workpiece.name) == LONGEST_NAME
-    path.write_text(text % ("x" * (LONGEST_NAME + 1)))
+    path.write_text(text % ("x" * LONGEST))
+    assert len(read_workpiece(path).workpiece.name) == LONGEST
+    path.write_text(text % ("x" * (LONGEST + 1)))
     with pytest.raises(InputError, match='"name" must be text of 10,000 letters at most'):
         read_workpiece(path)

@@ -11,11 +11,9 @@ from sheet_reading import page_of, words_of
 from svg_reading import NAMESPACE, by_class, texts
 
 from workhold import Vise, Workpiece, design
+from workhold.drawing import SheetDetails, draw_fixture, draw_sheet
 from workhold.drawing.annotation import Label, LabelPlacer
-from workhold.drawing.fixture_pictures import draw_fixture
 from workhold.drawing.scene import Box
-from workhold.drawing.sheet import draw_sheet
-from workhold.drawing.sheet_facts import SheetDetails
 
 DETAILS = SheetDetails(1, 2, date(2026, 3, 31), "", "1")
 

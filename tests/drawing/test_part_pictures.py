@@ -7,9 +7,9 @@ import pytest
 from drawing_examples import PART_AREA, example, hole_area
 from svg_reading import NAMESPACE, area, by_class, matrix, texts
 
+from workhold import Workpiece
 from workhold.contact.features import contact_features
 from workhold.drawing import draw_features
-from workhold.model.workpiece import Workpiece
 
 
 def gear(teeth: int) -> Workpiece:

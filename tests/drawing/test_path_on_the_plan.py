@@ -12,15 +12,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from workhold import Fence, Plate, Program, Query, Vise, answer, load
-from workhold.drawing.fixture_pictures import draw_fixture
+from workhold import Fence, Plate, Program, Query, Result, Vise, answer, load
+from workhold.drawing import draw_fixture, result_sheet
 from workhold.drawing.path_drawn import PagePaths, PlannedPath, planned_path
 from workhold.drawing.pdf import svg_to_pdf
 from workhold.drawing.scene import Box, View
-from workhold.drawing.sheet import result_sheet
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.moves import Moves
-from workhold.model.result import Result
 from workhold.statics.program_clearance import passing_of
 
 EXAMPLES = Path(__file__).parent.parent.parent / "examples"

@@ -10,10 +10,8 @@ import pytest
 from sheet_reading import collisions
 from svg_reading import NAMESPACE, scale_bar_of, texts
 
+from workhold import Fixture, Vise, Workpiece
 from workhold.drawing import draw_features, draw_fixture, draw_thumbnails
-from workhold.fixels.vise import Vise
-from workhold.model.fixture import Fixture
-from workhold.model.workpiece import Workpiece
 from workhold.units import INCH, MILLIMETRE, Unit
 
 Held = tuple[Fixture, Workpiece, Vise]

@@ -10,11 +10,10 @@ from attrs import evolve
 from held_any_way import HELD
 from svg_reading import by_class
 
-from workhold import Workpiece
+from workhold import Pose, Workpiece
 from workhold.drawing import draw_fixture
 from workhold.drawing.plan import angle_mark
 from workhold.drawing.scene import Scene
-from workhold.model.pose import Pose
 
 
 @pytest.mark.parametrize("theta", [25.0, 90.0, 179.0, 200.0, -20.0])

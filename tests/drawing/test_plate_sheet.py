@@ -10,14 +10,10 @@ from plate_examples import WAYS, on_plate
 from sheet_reading import collisions, page_of, words_of
 from svg_reading import texts
 
+from workhold import Fixture, Load, Plate, Workpiece
+from workhold.drawing import SheetDetails, draw_sheet
 from workhold.drawing.scene import UNITS_PER_MM
-from workhold.drawing.sheet import draw_sheet
-from workhold.drawing.sheet_facts import SheetDetails
 from workhold.files.result.fixture_text import pin_list
-from workhold.fixels.plate import Plate
-from workhold.model.fixture import Fixture
-from workhold.model.requirements import Load
-from workhold.model.workpiece import Workpiece
 from workhold.statics.loads import load_cases
 from workhold.units import INCH, MILLIMETRE, Unit
 

@@ -10,9 +10,9 @@ from attrs import evolve
 from held_any_way import HELD, PITCH, Held
 from svg_reading import NAMESPACE, by_class, to_model
 
+from workhold import Pose
 from workhold.drawing import draw_fixture
 from workhold.files.dxf.writer import setup_dxf
-from workhold.model.pose import Pose
 from workhold.model.shown import Shown, shown
 from workhold.web.answers import carriers_answer
 

@@ -9,11 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from workhold import load
+from workhold import Program, load
+from workhold.drawing import svg_to_png
 from workhold.drawing.path_drawn import COLOURS, shaded
 from workhold.drawing.program_picture import draw_program
-from workhold.drawing.render import svg_to_png
-from workhold.model.program import Program
 from workhold.units import INCH
 
 HAAS = Path(__file__).parent.parent / "data" / "programs" / "haas.nc"

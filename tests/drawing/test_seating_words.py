@@ -11,17 +11,14 @@ from sheet_reading import collisions, page_of, words_of
 from svg_reading import by_class, texts
 
 import workhold
-from workhold import Fence, Plate, Vise, Workpiece
+from workhold import Fence, Load, Plate, Result, Vise, Workpiece
+from workhold.drawing import SheetDetails, draw_sheet, result_sheet
 from workhold.drawing.scene import UNITS_PER_MM, LengthUnit
 from workhold.drawing.seating_words import SeatingSentences
-from workhold.drawing.sheet import draw_sheet, result_sheet
-from workhold.drawing.sheet_facts import SheetDetails, result_cautions
+from workhold.drawing.sheet_facts import result_cautions
 from workhold.model.clamps import order_words
 from workhold.model.quality import FIGURE_RANKING
-from workhold.model.requirements import Load
-from workhold.model.result import Result
 from workhold.model.seating import CLOSE_READING, SMALL_CAPTURE, Seating
-from workhold.seating.clamping import WHY
 from workhold.statics.loads import load_cases
 from workhold.units import INCH, MILLIMETRE, Unit
 
@@ -217,7 +214,8 @@ def test_with_two_clamps_it_says_what_to_do_by_hand(toolkit: Plate | Fence) -> N
             words = " ".join(word for page in pages for word in texts(page))
             wanted = seating or (seating is None and rank == 2)
             steps = told.steps(LengthUnit.suiting(MILLIMETRE, 20.0).words, with_order=False)
-            assert all((part in words) == wanted for part in (WHY, *steps, "Will it end up there?"))
+            why = "Neither of the two clamps holds the part alone"
+            assert all((part in words) == wanted for part in (why, *steps, "Will it end up there?"))
             assert words.count(order_words(result[rank - 1])) == 2
             assert "What it looks like" not in words and not any(collisions(page) for page in pages)
     [asked, plain] = [result_cautions(result, 1, seating=seating) for seating in (True, False)]

@@ -13,24 +13,14 @@ from sheet_reading import collisions, distance, page_of, words_of
 from svg_reading import by_class, scale_bar_of, texts, to_model
 
 from fakes import fake_result
-from workhold import FlatJaw, design
+from workhold import Fixture, FlatJaw, Load, Peg, Pose, Vise, Workpiece, design
 from workhold.conventions import NEAR_EDGE, STRONG_PEG, WEAK_CLOSURE
+from workhold.drawing import SheetDetails, draw_sheet, result_sheet
 from workhold.drawing.bench import bench_of
 from workhold.drawing.scene import UNITS_PER_MM, Box, LengthUnit
-from workhold.drawing.sheet import draw_sheet, filled_runs, result_sheet, standard_scale
-from workhold.drawing.sheet_facts import (
-    PAPERS,
-    SheetDetails,
-    caliper_check,
-    cautions_of,
-    edge_distances,
-)
+from workhold.drawing.sheet import filled_runs, standard_scale
+from workhold.drawing.sheet_facts import PAPERS, caliper_check, cautions_of, edge_distances
 from workhold.fixels.carrier import Holes
-from workhold.fixels.vise import Vise
-from workhold.model.fixture import Fixture, Peg
-from workhold.model.pose import Pose
-from workhold.model.requirements import Load
-from workhold.model.workpiece import Workpiece
 from workhold.statics.loads import load_cases
 from workhold.units import INCH, MILLIMETRE, Unit
 

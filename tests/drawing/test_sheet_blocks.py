@@ -8,11 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from strategies import outlines
+from workhold import Pose, Workpiece
 from workhold.drawing.scene import LengthUnit
 from workhold.drawing.upper_side import Mark, distinguishing_marks, marks_of, side_words
 from workhold.geometry.symmetry import is_own_mirror_image
-from workhold.model.pose import Pose
-from workhold.model.workpiece import Workpiece
 
 LENGTHS = LengthUnit.mm()
 SQUARE = [[0, 0, 0], [20, 0, 0], [20, 20, 0], [0, 20, 0]]

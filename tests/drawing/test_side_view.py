@@ -24,17 +24,15 @@ from space_examples import (
 )
 from svg_reading import by_class, matrix, texts, to_model
 
+from workhold import Fixture, Peg, Plate, Pose, Workpiece
+from workhold.drawing import SheetDetails
 from workhold.drawing.bench import bench_of, contact_of
 from workhold.drawing.scene import UNITS_PER_MM
-from workhold.drawing.sheet_facts import SheetDetails, result_details
+from workhold.drawing.sheet_facts import result_details
 from workhold.drawing.sheet_writing import heights_of
 from workhold.drawing.side_view import WAYS, apart, side_view
 from workhold.errors import InputError
-from workhold.fixels.plate import Plate
 from workhold.model.dowel_lengths import dowel_for
-from workhold.model.fixture import Fixture, Peg
-from workhold.model.pose import Pose
-from workhold.model.workpiece import Workpiece
 from workhold.units import INCH, MILLIMETRE, Unit
 
 Box = tuple[float, float, float, float]
@@ -274,7 +272,7 @@ def test_pegs_other_than_those_of_the_outline_are_seen() -> None:
 def test_names_of_pegs_stand_below_them_in_their_order() -> None:
     """Each hole of a peg is named once below the plates, from left to right as the pegs stand."""
     fixture, workpiece, vise = example()
-    from workhold.drawing.sheet import draw_sheet
+    from workhold.drawing import draw_sheet
 
     page = side_page(
         draw_sheet(fixture, workpiece, vise, SheetDetails(1, 1, sheet_day(), "", "1", thickness=8.0))

@@ -21,17 +21,15 @@ from held_any_way import AHEAD, HELD, PITCH, WALL_OFFSET, WORDS, Held, load_case
 from sheet_reading import collisions
 from svg_reading import NAMESPACE, by_class, matrix, texts
 
+from workhold import Peg
 from workhold.cli.show_command import load_tables
 from workhold.cli.table import print_tables
 from workhold.cli.tables import fixture_tables, quality_table
-from workhold.drawing import draw_fixture, draw_thumbnails
+from workhold.drawing import SheetDetails, draw_fixture, draw_sheet, draw_thumbnails
 from workhold.drawing.pdf import svg_to_pdf
 from workhold.drawing.scene import Box
-from workhold.drawing.sheet import draw_sheet
-from workhold.drawing.sheet_facts import SheetDetails
 from workhold.files.dxf.writer import setup_dxf
 from workhold.files.result.fixture_text import pin_list
-from workhold.model.fixture import Peg
 from workhold.units import MILLIMETRE
 from workhold.web.answers import fixture_answer
 

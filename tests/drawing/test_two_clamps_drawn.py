@@ -11,16 +11,13 @@ import pytest
 from sheet_reading import collisions
 from svg_reading import by_class, texts
 
-from workhold import Plate, Result, Workpiece, design, load
+from workhold import Load, Plate, Restrictions, Result, Workpiece, design, load
 from workhold.cli.tables import counts_sentence, fixture_tables, result_table
-from workhold.drawing import draw_fixture, draw_thumbnails
-from workhold.drawing.sheet import draw_sheet
-from workhold.drawing.sheet_facts import SheetDetails
+from workhold.drawing import SheetDetails, draw_fixture, draw_sheet, draw_thumbnails
 from workhold.files.dxf.writer import setup_dxf
 from workhold.files.result.fixture_text import pin_list
 from workhold.listing.identity import entries
 from workhold.model.clamps import order_words
-from workhold.model.requirements import Load, Restrictions
 from workhold.model.setup import settings_of
 from workhold.model.shown import shown
 from workhold.statics.loads import load_cases

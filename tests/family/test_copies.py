@@ -10,12 +10,10 @@ import pytest
 from sheet_reading import collisions, page_of, words_of
 from svg_reading import by_class
 
-from workhold import Fence, Plate, Query, Vise, Workpiece, answer
+from workhold import Fence, Fixture, Plate, Query, Result, Vise, Workpiece, answer
 from workhold.errors import InputError
 from workhold.family import copies as module
 from workhold.family.copies import Packing, copies_of, draw_copies, packing_of, places_on, too_near_shifts
-from workhold.model.fixture import Fixture
-from workhold.model.result import Result
 
 pytest.importorskip("scipy", reason="the extra [batch] is not installed")
 

@@ -12,7 +12,7 @@ import pytest
 from attrs import evolve
 
 from family_parts import shop_parts
-from workhold import Fence, Plate, Query, Vise, Workpiece, answer
+from workhold import Fence, Peg, Plate, Query, Restrictions, Vise, Workpiece, answer
 from workhold.errors import InputError
 from workhold.family.family import Asked, Family, family_of, family_text, peg_entry
 from workhold.family.members import RANKINGS, losses, member_of, threshold, with_half_turns
@@ -20,14 +20,12 @@ from workhold.family.patterns import holes_of, shifted, turned
 from workhold.family.plan import Holding
 from workhold.fixels.toolkit import Toolkit
 from workhold.listing.ranking import measured
-from workhold.model.fixture import Peg
 from workhold.model.fixture_table import FixtureTable, fixture_at
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES, LOCATION_ERROR
-from workhold.model.requirements import Restrictions
 from workhold.statics.effective_error import EffectiveErrors
 from workhold.statics.judging import unfit
+from workhold.verification import Judge
 from workhold.verification.first_choice import EffectiveJudge
-from workhold.verification.verify import Judge
 
 pytest.importorskip("scipy", reason="the extra [batch] is not installed")
 

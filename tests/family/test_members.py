@@ -6,15 +6,14 @@ import numpy as np
 import pytest
 
 from family_parts import shop_parts
-from workhold import InputError, Plate, Query, Vise, Workpiece, answer
+from workhold import InputError, Load, Plate, Query, Restrictions, Vise, Workpiece, answer, circle_zone
 from workhold.family.family import Asked, family_of
 from workhold.family.members import RANKINGS, other_side, zero_of_other_side
 from workhold.family.patterns import holes_of
 from workhold.model.quality import LOAD_REACTION, LOCATION_ERROR
-from workhold.model.requirements import Load, Restrictions, circle_zone
 from workhold.model.setup import PartZero, part_zero
 from workhold.model.solid import SolidOutline
-from workhold.verification.verify import Judge
+from workhold.verification import Judge
 
 pytest.importorskip("scipy", reason="the extra [batch] is not installed")
 

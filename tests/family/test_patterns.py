@@ -9,12 +9,11 @@ import pytest
 from attrs import evolve
 
 from family_parts import shop_parts
-from workhold import Fence, OpeningVise, Plate, Query, Vise, Workpiece, answer
+from workhold import Fence, OpeningVise, Plate, Query, Result, Vise, Workpiece, answer
 from workhold.family.patterns import half_turn, holes_of, moved_onto, pattern_words, shifted, turned
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture_table import fixture_at
-from workhold.model.result import Result
-from workhold.verification.verify import Judge
+from workhold.verification import Judge
 
 ELL, BRACKET = shop_parts(2)
 RING = Workpiece.from_loops(

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import pytest
-from attrs import fields
+from typer.testing import CliRunner
 
 from slow_program import END_MILL, path, program_of
 from workhold import InputError, Query, Vise, load
-from workhold.cli.jobs import jobs_of
-from workhold.cli.options import PartWords
-from workhold.cli.search_options import QueryWords
+from workhold.cli.main import app
 from workhold.family.family import Asked, family_of
 
 
@@ -26,9 +23,6 @@ def test_a_part_with_a_program_is_refused() -> None:
 def test_a_job_with_a_program_is_refused(tmp_path: Path) -> None:
     jobs = tmp_path / "jobs.toml"
     jobs.write_text('[[job]]\npart = "widget"\nprogram = "plate.nc"\n')
-
-    def untyped(kind: Any) -> Any:
-        return kind(**dict.fromkeys(one.name for one in fields(kind)))
-
-    with pytest.raises(InputError, match=r"job 1 names a program: a family of parts is planned without"):
-        jobs_of([str(jobs)], untyped(QueryWords), untyped(PartWords))
+    refused = CliRunner().invoke(app, ["family", str(jobs), "--vise", "plate-20mm"])
+    assert refused.exit_code == 2
+    assert "job 1 names a program: a family of parts is planned without" in refused.stderr

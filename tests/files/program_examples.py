@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from workhold import Program
 from workhold.model.cutting_tool import Cylinder, Tool
-from workhold.model.program import Program, SweptPiece
+from workhold.model.program import SweptPiece
 
 PROGRAMS = Path(__file__).parent.parent / "data" / "programs"
 HEAD = "G21 G90 G17\nT1 M6\n"
@@ -21,6 +22,13 @@ def read_text(folder: Path, text: str, **options: Any) -> Program:
     options.setdefault("tools", {1: MILL})
     options.setdefault("z_zero", 0.0)
     return Program.read(path, **options)
+
+
+def read_tools(folder: Path, table: Path, *numbers: int, unit: str = "G21") -> tuple[dict[int, Tool], bool]:
+    """The tools of a table that a program calls, and whether the table says its unit."""
+    called = "".join(f"T{number} M6\nG0 X0 Y0 Z9\n" for number in numbers)
+    read = read_text(folder, f"{unit} G90 G17\n{called}", tools=table)
+    return dict(read.tools), not any("does not say its unit" in note for note in read.notes)
 
 
 def shapes(pieces: Sequence[SweptPiece], digits: int = 7) -> list[tuple[object, ...]]:

@@ -8,9 +8,9 @@ from typing import Any
 
 import ezdxf
 
+from workhold import Workpiece
 from workhold.files.part.load import Loaded, read_workpiece
 from workhold.geometry.loop import signed_area
-from workhold.model.workpiece import Workpiece
 
 RECTANGLE = [(0, 0), (60, 0), (60, 40), (0, 40)]
 
@@ -33,7 +33,9 @@ def new_dxf(insunits: int | None = 4, version: str = "R2000") -> tuple[Any, Any]
     return document, document.modelspace()
 
 
-def read_dxf(tmp_path: Path, draw: Callable[[Any], None], insunits: int | None = 4, **options: Any) -> Loaded:
+def read_dxf(
+    tmp_path: Path, draw: Callable[[Any], object], insunits: int | None = 4, **options: Any
+) -> Loaded:
     """What is read from a DXF file whose model space a function has drawn."""
     document, space = new_dxf(insunits)
     draw(space)

@@ -13,8 +13,8 @@ import hostile_batch
 import pytest
 from fuzzed import ALL_MAKERS
 
+from workhold import Workpiece
 from workhold.files.part.load import read_workpiece
-from workhold.model.workpiece import Workpiece
 
 # Of each kind; of all together 10,000.
 FEW, CASES, CHUNK = 30, 480, 150

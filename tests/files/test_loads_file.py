@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from workhold import Load
 from workhold.errors import InputError
 from workhold.files.loads_file import POUND_FORCE, read_loads
-from workhold.model.requirements import Load
 
 TOML = """
 [[load]]

@@ -11,10 +11,11 @@ import pytest
 from typer.testing import CliRunner
 
 import workhold
+from workhold import load
 from workhold.cli.main import app
 from workhold.cli.options import CALLED as ON_THE_COMMAND_LINE
 from workhold.files import questions
-from workhold.files.part.load import load, read_workpiece
+from workhold.files.part.load import read_workpiece
 from workhold.files.questions import worded
 from workhold.web.part_tasks import CALLED as ON_THE_PAGE
 from workhold.web.part_tasks import Upload, read_part

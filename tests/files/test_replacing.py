@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 import workhold
+from workhold import Fixture, Result
 from workhold.errors import InputError
 from workhold.files.replacing import (
     is_own,
@@ -18,8 +19,6 @@ from workhold.files.replacing import (
     refuse_output_folder,
 )
 from workhold.files.supports_file import write_supports
-from workhold.model.fixture import Fixture
-from workhold.model.result import Result
 
 FOREIGN = b"years of work"
 PLATE = workhold.Workpiece.from_loops("plate", [[[0, 0, 0], [80, 0, 0], [80, 60, 0], [0, 60, 0]]])

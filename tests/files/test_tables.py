@@ -5,14 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from program_examples import read_tools
 
 from workhold.benchmark.matching import read_entry
 from workhold.cli.jobs import read_jobs
 from workhold.errors import InputError
 from workhold.files.budget import UNLIMITED, Budget, FileLimits
-from workhold.files.program.tool_tables import read_tools
 from workhold.files.tables import MOST_COLUMNS, MOST_LETTERS, table_of
-from workhold.units import MILLIMETRE
 
 HOSTILE = Path(__file__).parents[1] / "data" / "hostile"
 ROWS = [{"a": "1", "b": "x"}, {"a": "2", "b": "y, z"}]
@@ -107,7 +106,7 @@ def test_a_tool_says_in_words_that_something_is_not_given(tmp_path: Path, word: 
     path.write_text(mark.join(("tool", "diameter", "flutes", "stickout", "name")) + "\n", encoding="utf-8")
     with path.open("a", encoding="utf-8") as stream:
         stream.write(mark.join(("1", "10.5", word, word, word)) + "\n")
-    tools, _ = read_tools(path, MILLIMETRE)
+    tools, _ = read_tools(tmp_path, path, 1)
     assert (tools[1].diameter, tools[1].cutting.teeth, tools[1].name) == (10.5, None, word.strip())
 
 
@@ -116,12 +115,12 @@ def test_a_comma_in_a_number_is_its_point_where_commas_separate_nothing(tmp_path
     """As spreadsheets of much of Europe write it."""
     path = tmp_path / "tools.csv"
     path.write_text(f"tool{mark}diameter\n1{mark}10,5\n", encoding="utf-8")
-    assert read_tools(path, MILLIMETRE)[0][1].diameter == 10.5
+    assert read_tools(tmp_path, path, 1)[0][1].diameter == 10.5
 
 
-def test_the_tables_that_came_in_are_read() -> None:
+def test_the_tables_that_came_in_are_read(tmp_path: Path) -> None:
     """Flutes that are not given, and lines that end in CR alone."""
-    tools, said = read_tools(HOSTILE / "flutes.csv", MILLIMETRE)
+    tools, said = read_tools(tmp_path, HOSTILE / "flutes.csv", 1, 2, 3)
     assert [one.cutting.teeth for one in tools.values()] == [None, 3.0, 2.0] and said
     assert [(one.part, one.toolkits) for one in read_jobs(HOSTILE / "jobs_cr.csv")] == [
         ("widget", ["gripper-one-column"])
@@ -133,10 +132,10 @@ def test_flutes_that_are_none_hold_nothing_up(tmp_path: Path, flutes: str) -> No
     """Where no force is asked for they are not used; where one is, they are refused in a sentence."""
     path = tmp_path / "tools.csv"
     path.write_text(f"tool,diameter,flutes\n1,10,{flutes}\n")
-    assert read_tools(path, MILLIMETRE)[0][1].cutting.teeth is None
+    assert read_tools(tmp_path, path, 1)[0][1].cutting.teeth is None
     path.write_text(f"tool,diameter,flutes,power\n1,10,{flutes},2\n")
     with pytest.raises(InputError, match=r"teeth .* cannot be used: give a whole number from 1"):
-        read_tools(path, MILLIMETRE)
+        read_tools(tmp_path, path, 1)
 
 
 @pytest.mark.parametrize("name", ["tools.csv", "jobs.csv", "bar-plate.csv"])
@@ -155,7 +154,7 @@ def test_every_reader_of_tables_refuses_in_a_sentence(
     """Of tools, jobs and other programs' fixtures; Latin-1 and UTF-16 as Excel writes them."""
     path = tmp_path / name
     path.write_bytes(content)
-    reader = {"tools.csv": lambda: read_tools(path, MILLIMETRE), "jobs.csv": lambda: read_jobs(path)}
+    reader = {"tools.csv": lambda: read_tools(tmp_path, path, 1), "jobs.csv": lambda: read_jobs(path)}
     with pytest.raises(InputError, match=words):
         reader.get(name, lambda: read_entry(path))()
 

@@ -7,16 +7,14 @@ from pathlib import Path
 
 import pytest
 
+import workhold
+from workhold import Load, Tolerance, Vise, Workpiece, circle_zone
 from workhold.errors import InputError, plain, shortened
 from workhold.files.budget import LIMITS, FileLimits
 from workhold.files.loads_file import read_loads
 from workhold.files.part.load import read_workpiece
-from workhold.files.result.reader import read_result
 from workhold.files.text import json_value, read_at_most, read_limited, read_text, toml_table
 from workhold.files.toolkit_file import read_toolkit_file
-from workhold.fixels.vise import Vise
-from workhold.model.requirements import Load, Tolerance, circle_zone
-from workhold.model.workpiece import Workpiece
 
 HUGE = "1" + "0" * 400
 MARK = b"\xef\xbb\xbf"
@@ -83,7 +81,7 @@ def test_a_key_given_twice_is_refused(tmp_path: Path) -> None:
         '{"format": "workhold-result/1",\n"complete": true,\n"complete": false,\n"fixtures": [\n]}'
     )
     with pytest.raises(InputError, match=r'r\.json is not a result file: the key "complete" is given twice'):
-        read_result(result)
+        workhold.open(result)
 
 
 def test_size_is_looked_at_before_a_file_is_read(tmp_path: Path) -> None:

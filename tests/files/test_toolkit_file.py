@@ -10,12 +10,10 @@ from typing import Any
 
 import pytest
 
+from workhold import Plate, Tolerance, Vise
 from workhold.errors import InputError
 from workhold.files.input_forms import checked_toolkit
 from workhold.files.toolkit_file import dowel_series, dowel_size, load_toolkit, preset_names
-from workhold.fixels.plate import Plate
-from workhold.fixels.vise import Vise
-from workhold.model.requirements import Tolerance
 
 OWN: dict[str, Any] = {"unit": '"mm"', "pitch": "20", "columns": "2", "peg_radius": "3"}
 

@@ -3,25 +3,26 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 from attrs import evolve
+from typer.testing import CliRunner
 from typer.testing import Result as Outcome
 
 import workhold
 from toolkit_values import given
 from workhold import Plate, Workpiece
-from workhold.cli.catalogue_commands import own_figures
+from workhold.cli.main import app
 from workhold.errors import InputError
 from workhold.files.result.writer import toolkit_entry, toolkit_fields
 from workhold.files.toolkit_file import LoadedToolkit, load_toolkit
 from workhold.fixels.kinds import KINDS, table_of, toolkit_of
 from workhold.fixels.support_hardware import HARDWARE, PinLimits, SupportPads, TopClamp
 from workhold.model.support_request import SupportRequest
-from workhold.units import MILLIMETRE
 from workhold.web.forms import FORMS
 
 Run = Callable[..., Outcome]
@@ -64,7 +65,8 @@ def test_a_file_says_what_supports_and_clamp_there_are_and_they_are_the_usual_on
     """In mm whatever the file's unit; each figure by itself, and what is asked for comes first."""
     one = loaded(tmp_path, TABLES)
     assert one.toolkit == EQUIPPED
-    assert dict(own_figures(one, MILLIMETRE))["radius of the supports' pads"] == "3 mm"
+    shown = CliRunner().invoke(app, ["toolkits", str(tmp_path / "own.toml")]).stdout
+    assert re.search(r"radius of the supports' pads +3 mm", shown)
     inch = loaded(
         tmp_path,
         "[supports]\nheight = 0.5\n[top-clamp]\nreach = [[0, 1, 1, 2]]\n",

@@ -6,11 +6,10 @@ from typing import Any
 
 import pytest
 
-from workhold import Fence, FlatJaw, OpeningVise, Plate, Vise
+from workhold import Fence, Fixture, FlatJaw, OpeningVise, Peg, Plate, Pose, Vise
 from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, ROUND_PIN, WALL_END
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.fixture import Fixture, Pair, Peg
-from workhold.model.pose import Pose
+from workhold.model.fixture import Pair
 from workhold.model.setup import contact_names, settings_of
 
 VISE = Vise(pitch=10, columns=2, peg_radius=3)

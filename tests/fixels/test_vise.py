@@ -10,10 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from strategies import vises
+from workhold import Peg, Vise
 from workhold.errors import InputError
 from workhold.fixels.carrier import Holes, column_letters, holes_named
-from workhold.fixels.vise import Vise
-from workhold.model.fixture import Peg
 from workhold.units import MILLIMETRE
 
 VALID = {"pitch": 10, "columns": 2, "peg_radius": 3}

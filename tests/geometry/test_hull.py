@@ -10,9 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from slow_fence import orientations
-from workhold import Fence, InputError, design
+from workhold import Fence, InputError, Workpiece, design
 from workhold.geometry.hull import HullEdge
-from workhold.model.workpiece import Workpiece
 
 Loop = list[tuple[float, ...]]
 

@@ -8,10 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from strategies import outlines
+from workhold import Workpiece
 from workhold.geometry.offset import raw_offset, trimmed_offsets
 from workhold.geometry.segment import Arc, segment_rows
 from workhold.kernels.base.distance import is_inside, outline_distances
-from workhold.model.workpiece import Workpiece
 
 radii = st.one_of(st.sampled_from([0.0, 1.0, 3.0]), st.floats(0.05, 12.0).map(lambda r: round(r, 3)))
 

@@ -12,6 +12,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from strategies import outlines, seeds
+from workhold import Workpiece
 from workhold.geometry.segment import (
     Arc,
     Line,
@@ -22,7 +23,6 @@ from workhold.geometry.segment import (
     segment_from_bulge,
     segment_rows,
 )
-from workhold.model.workpiece import Workpiece
 
 places = st.tuples(st.floats(-100, 100), st.floats(-100, 100)).map(lambda p: (round(p[0], 3), round(p[1], 3)))
 bulges = st.one_of(st.floats(0.01, 20), st.floats(-20, -0.01))

@@ -10,8 +10,8 @@ from hypothesis import given, settings
 
 import workhold
 from strategies import outlines
+from workhold import Workpiece
 from workhold.geometry.symmetry import rotations_onto_itself
-from workhold.model.workpiece import Workpiece
 
 
 def group(*loops):

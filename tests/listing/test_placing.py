@@ -11,10 +11,9 @@ from attrs import evolve
 
 from candidate_examples import candidates
 from toolkit_results import NOTCHED, part
-from workhold import Fence, Plate, Result, design
+from workhold import Fence, Plate, Result, Vise, design
+from workhold import Plate as AnyPlate
 from workhold.contact.problem import Frame
-from workhold.fixels.plate import Plate as AnyPlate
-from workhold.fixels.vise import Vise
 from workhold.listing.placing import outward_moves, placed_as_is
 
 

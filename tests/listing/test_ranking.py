@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from workhold import InputError
+from workhold import InputError, Load, Tolerance
 from workhold.listing.ranking import OrderKeys, billionths, error_steps, is_worse, keys_of
 from workhold.model.first_choice import has_house_order
 from workhold.model.quality import (
@@ -25,7 +25,6 @@ from workhold.model.quality import (
     asked_ranking,
     chosen_ranking,
 )
-from workhold.model.requirements import Load, Tolerance
 
 # So loose that no fixture is unfit by its location error.
 LOOSE = Tolerance(1.0, 1.0)

@@ -15,8 +15,7 @@ from attrs import evolve
 import workhold
 from cad_parts import cad_part
 from toolkit_results import NOTCHED, part
-from workhold import Plate, Query, Result, answer
-from workhold.completeness import verify
+from workhold import Load, Plate, Query, Restrictions, Result, Tolerance, answer, verify
 from workhold.conventions import SAME_PLACE, SAME_POSE
 from workhold.geometry.symmetry import rotated
 from workhold.kernels.chord.intervals import share_one_line
@@ -26,7 +25,6 @@ from workhold.listing import seat_order
 from workhold.listing.contact_groups import PackedContacts, SeatGroups
 from workhold.listing.ranking import is_worse, order_keys
 from workhold.model.quality import FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION
-from workhold.model.requirements import Load, Restrictions, Tolerance
 from workhold.model.search_report import best_note
 from workhold.search import design, lattice_shares, shares
 from workhold.verification import verify_file

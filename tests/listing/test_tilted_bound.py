@@ -11,14 +11,13 @@ import numpy as np
 import pytest
 
 from cad_parts import cad_part
-from workhold import OpeningVise, Plate, Query, Result, Vise, Workpiece, answer, load
+from workhold import OpeningVise, Plate, Query, Result, Tolerance, Vise, Workpiece, answer, load
 from workhold.contact.problem import Problem
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc
 from workhold.listing.bounds import preferred_angles, tilted_keys
 from workhold.listing.ranking import is_worse, order_keys, usual_errors
 from workhold.model.quality import LOCATION_ERROR, PREFERENCES, TILT
-from workhold.model.requirements import Tolerance
 
 TOLERANCES = [Tolerance(), Tolerance(peg=0.03, face=0.0), Tolerance(peg=0.0, face=0.02)]
 TOOLKITS: list[Toolkit] = [

@@ -9,11 +9,9 @@ import pytest
 from attrs import evolve
 
 import workhold
+from workhold import Fixture, Load, Workpiece
 from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.fixture import Fixture
-from workhold.model.requirements import Load
-from workhold.model.workpiece import Workpiece
 from workhold.seating.closing_simulation import simulate_closing
 from workhold.seating.solver import Solver
 from workhold.statics.loads import load_cases

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from workhold import Fixture, Peg, Pose
 from workhold.model.clamps import clamp_names, clamp_shares, freedom_words, order_words
-from workhold.model.fixture import Fixture, Pair, Peg
-from workhold.model.pose import Pose
+from workhold.model.fixture import Pair
 
 LOCATOR = Peg("plate", 0, 0, 0.0, 0.0, 1, 0.3)
 NUMBER = re.compile(r"\d[\d,]*(?:\.\d+)?(?:e[-+]\d+)?(?= )")

@@ -10,11 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from workhold import InputError
+from workhold import InputError, Program
 from workhold.model.cutting_forces import CuttingForces, forces_on, teeth_together
 from workhold.model.cutting_tool import MATERIALS, SOURCE, CuttingData, Cylinder, Tool, material_named
 from workhold.model.moves import Moves
-from workhold.model.program import Program
 
 # A rapid move, a line, a ramp down, a hole down and up at the feed.
 PLACES = [(0, 0, 5), (0, 0, -2), (30, 0, -2), (30, 20, -4), (30, 20, -9), (30, 20, 1)]

@@ -10,10 +10,9 @@ from attrs import evolve
 from hypothesis import given
 from hypothesis import strategies as st
 
+from workhold import Plate, Vise
 from workhold.errors import InputError
 from workhold.fixels.carrier import Holes
-from workhold.fixels.plate import Plate
-from workhold.fixels.vise import Vise
 from workhold.model.dowels import Bolts, jaw_plates, peg_error, refuse_limits
 from workhold.units import INCH
 

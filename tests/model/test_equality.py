@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from fakes import fake_proof, fake_result
+from workhold import Workpiece
 from workhold.model.fixture_table import FixtureTable
-from workhold.model.workpiece import Workpiece
 
 PLATE = [[0.0, 0.0, 0.0], [60.0, 0.0, 0.2], [60.0, 40.0, 0.0], [0.0, 40.0, 0.0]]
 

@@ -8,10 +8,9 @@ import pytest
 
 import workhold
 from toolkit_results import MOUTH, part
-from workhold import Fence, FlatJaw, InputError, Plate, Result, Vise
+from workhold import Fence, Fixture, FlatJaw, InputError, Plate, Result, Vise
 from workhold.drawing.sheet_facts import result_details
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.fixture import Fixture
 from workhold.model.moved_setup import middle_move, move_to, moved_on, overhang_words, overhangs, spare_holes
 from workhold.model.shown import placed_box
 from workhold.web.answers import fixture_answer

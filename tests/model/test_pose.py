@@ -7,8 +7,7 @@ from math import cos, pi, sin
 import numpy as np
 import pytest
 
-from workhold import Workpiece
-from workhold.model.pose import Pose
+from workhold import Pose, Workpiece
 
 
 @pytest.mark.parametrize("turned", [0.0, 0.01, 1.0, 5.0])

@@ -12,10 +12,11 @@ from attrs import evolve
 from hypothesis import given
 from hypothesis import strategies as st
 
+from workhold import Program
 from workhold.errors import InputError
 from workhold.model.cutting_tool import Cylinder, Tool
 from workhold.model.moves import Moves, along
-from workhold.model.program import Program, SweptPiece
+from workhold.model.program import SweptPiece
 from workhold.model.program_figures import tip_box, tool_figures
 
 TOOL = Tool(1, [Cylinder(0, 20, 3), Cylinder(20, 60, 15)], 6.0, "mill")

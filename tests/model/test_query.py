@@ -10,9 +10,20 @@ import numpy as np
 import pytest
 from attrs import evolve
 
-from workhold import InputError, Query, Vise, Workpiece, answer, design
-from workhold.fixels.vise import OpeningVise
-from workhold.model.requirements import Load, Restrictions, Tolerance, circle_zone, polygon_zone
+from workhold import (
+    InputError,
+    Load,
+    OpeningVise,
+    Query,
+    Restrictions,
+    Tolerance,
+    Vise,
+    Workpiece,
+    answer,
+    circle_zone,
+    design,
+    polygon_zone,
+)
 
 
 def part(corner: float = 9.0) -> Workpiece:

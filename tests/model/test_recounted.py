@@ -9,11 +9,9 @@ from attrs import evolve
 from plate_examples import on_plate
 
 from body_examples import BLOCK, TOOLKITS
-from workhold import Plate, Vise, design
+from workhold import Fixture, Plate, Query, Vise, design
 from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.fixture import Fixture
-from workhold.model.query import Query
 from workhold.model.support_request import SupportRequest
 from workhold.model.support_triples import (
     FARTHEST,

@@ -6,8 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from workhold import Load
 from workhold.errors import InputError
-from workhold.model.requirements import ANY_DIRECTION, Load
+from workhold.model.requirements import ANY_DIRECTION
 
 ANGLES = st.floats(-1000, 1000)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fakes import fake_result
-from workhold.model.fixture import Fixture
+from workhold import Fixture
 from workhold.model.fixture_table import FixtureTable
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from workhold import Workpiece
 from workhold.errors import InputError
 from workhold.model.setup import part_zero
-from workhold.model.workpiece import Workpiece
 from workhold.units import INCH
 
 

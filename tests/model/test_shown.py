@@ -12,15 +12,12 @@ from attrs import evolve, frozen
 from hypothesis import given
 from hypothesis import strategies as st
 
+from workhold import Fixture, OpeningVise, Peg, Pose, Vise, Workpiece
 from workhold.errors import InputError
 from workhold.fixels.carrier import Holes
 from workhold.fixels.toolkit import Arrangement, Carrier, Symmetry, Toolkit, Travel
-from workhold.fixels.vise import OpeningVise, Vise
 from workhold.geometry.segment import Box
-from workhold.model.fixture import Fixture, Peg
-from workhold.model.pose import Pose
 from workhold.model.shown import Shown, placed_boxes, shown, shown_beside
-from workhold.model.workpiece import Workpiece
 
 WAYS = {"+x": 0.0, "+y": pi / 2, "-x": pi, "-y": -pi / 2}
 

@@ -12,10 +12,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from strategies import outlines
+from workhold import Workpiece
 from workhold.errors import InputError
 from workhold.geometry.loop import signed_area
 from workhold.model.solid import SolidOutline
-from workhold.model.workpiece import Workpiece
 
 SQUARE = [[0, 0, 0], [40, 0, 0], [40, 40, 0], [0, 40, 0]]
 HOLE = [[10, 10, 0], [20, 10, 0], [20, 20, 0], [10, 20, 0]]

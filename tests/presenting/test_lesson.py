@@ -13,11 +13,10 @@ import numpy as np
 import pytest
 
 import workhold
+from workhold import Fixture, Workpiece
 from workhold.errors import InputError
 from workhold.geometry.segment import Line
 from workhold.kernels.chord.evaluation import chord, distance_to_end, parameter_on
-from workhold.model.fixture import Fixture
-from workhold.model.workpiece import Workpiece
 from workhold.presenting.lesson import MOST_FACES, lesson
 
 ROOT = Path(__file__).parents[2]

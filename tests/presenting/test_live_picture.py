@@ -8,8 +8,8 @@ import xml.etree.ElementTree as ET
 import pytest
 
 import workhold
+from workhold import Load
 from workhold.errors import InputError
-from workhold.model.requirements import Load
 from workhold.presenting.closing_shown import closing_shown
 from workhold.presenting.live_picture import USUAL, LivePicture, TriedForce
 from workhold.statics.loads import load_cases

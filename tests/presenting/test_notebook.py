@@ -14,11 +14,11 @@ import pytest
 
 import workhold
 from fakes import fake_result
+from workhold import Restrictions
 from workhold.cli.tables import result_table
 from workhold.errors import InputError
 from workhold.listing.identity import entries
 from workhold.model.quality import RANKED
-from workhold.model.requirements import Restrictions
 from workhold.presenting.figure_words import figure_text
 from workhold.presenting.live_picture import LivePicture
 from workhold.presenting.markup import MOST_SVG, Markup, compact, image, table
@@ -266,7 +266,7 @@ def test_what_is_shown_is_small() -> None:
 
 def test_a_picture_is_the_same_picture_in_fewer_bytes() -> None:
     """The compact one draws the same pixels but for rounding, and numbers of a map stay exact."""
-    from workhold.drawing.render import svg_to_png
+    from workhold.drawing import svg_to_png
 
     drawn = RESULT[0].draw()
     small = compact(drawn)

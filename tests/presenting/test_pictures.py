@@ -10,8 +10,7 @@ import attrs
 import pytest
 
 from fakes import fake_result, plate
-from workhold.drawing.fixture_pictures import draw_fixture
-from workhold.drawing.part_pictures import draw_features
+from workhold.drawing import draw_features, draw_fixture
 from workhold.errors import InputError
 from workhold.presenting.markup import compact
 from workhold.units import unit_named

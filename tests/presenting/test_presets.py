@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 import workhold
+from workhold import Query
 from workhold.errors import InputError
 from workhold.files.toolkit_file import load_toolkit, preset_names
-from workhold.model.query import Query
 
 CLASSES = (workhold.Vise, workhold.Plate, workhold.Fence, workhold.FlatJaw)
 

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from attrs import evolve
 
-from workhold import Query, Vise, Workpiece, design, load
-from workhold.algebra.engine import answer_by_algebra
-from workhold.model.result import Result
+from workhold import Query, Result, Vise, Workpiece, design, load
+from workhold.algebra import answer_by_algebra
 from workhold.proof import deciding
 
 PARTS = [

@@ -15,13 +15,12 @@ from flint import arb
 from numpy.typing import NDArray
 
 from chord_examples import arc_row, line_row
-from workhold import Query, Vise, design, load
+from workhold import Query, Result, Vise, design, load
 from workhold.contact.problem import Problem
 from workhold.conventions import END_SLACK
 from workhold.kernels.contact import record
 from workhold.listing import collector as finish_module
 from workhold.listing.results import Work, listed_result
-from workhold.model.result import Result
 from workhold.proof import deciding
 from workhold.proof import interval_newton as settling
 from workhold.proof.ball_contacts import end_slacks

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from workhold import Plate, Vise, Workpiece, answer, design, verify
+from workhold import Plate, Query, Vise, Workpiece, answer, design, verify
 from workhold.contact.problem import Problem
 from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.base.feature import IS_ARC, RADIUS, X, Y
@@ -28,7 +28,6 @@ from workhold.kernels.contact.record import (
 )
 from workhold.kernels.proof.interval_newton import jacobians
 from workhold.listing import collector
-from workhold.model.query import Query
 from workhold.proof import deciding
 from workhold.proof.degenerate import (
     TouchedFeatures,

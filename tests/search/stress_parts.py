@@ -11,15 +11,12 @@ from attrs import evolve, frozen
 from flint import arb, ctx
 
 from fixture_sets import Listed
-from workhold import Vise, Workpiece
-from workhold.model.fixture import Fixture
-from workhold.model.pose import Pose
-from workhold.model.query import Query
+from workhold import Fixture, Pose, Query, Vise, Workpiece
+from workhold.verification import Judge
 from workhold.verification.ball_geometry import BallOutline, dot
 from workhold.verification.contacts import BallContact, contact_system, minors
 from workhold.verification.contacts import BallPose as Balls
 from workhold.verification.placing import certified_zero
-from workhold.verification.verify import Judge
 
 __all__ = [
     "Carried",

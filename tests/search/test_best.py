@@ -9,9 +9,8 @@ from time import sleep
 import numpy as np
 import pytest
 
-from workhold import Query, Vise, Workpiece, count_contacts, design, load
+from workhold import Query, Vise, Workpiece, count_contacts, design, load, save
 from workhold.contact.problem import Problem
-from workhold.files.result.writer import write_result
 from workhold.listing.collector import BestFixtures, Needed
 from workhold.listing.ranking import measured
 from workhold.model.fixture_table import FixtureTable
@@ -59,7 +58,7 @@ def test_what_is_left_out_does_not_depend_on_threads(tmp_path: Path) -> None:
             threads=threads,
         )
         files.append(tmp_path / f"{threads}.json")
-        write_result(best, files[-1])
+        save(best, files[-1])
     assert len({file.read_bytes() for file in files}) == 1
     assert any("not counted" in note for note in best.notes)
 

@@ -17,6 +17,7 @@ from test_restrictions import identities
 from bounds import WITHIN, avoids, clear_of_box, clear_of_circle, keeps_margin, lies_within
 from workhold import (
     Fence,
+    Fixture,
     InputError,
     OpeningVise,
     Plate,
@@ -26,13 +27,12 @@ from workhold import (
     Vise,
     Workpiece,
     answer,
+    circle_zone,
     design,
+    polygon_zone,
 )
-from workhold.algebra.engine import answer_by_algebra
-from workhold.model.fixture import Fixture
-from workhold.model.requirements import circle_zone, polygon_zone
-from workhold.verification import verify
-from workhold.verification.verify import verify_fixture
+from workhold.algebra import answer_by_algebra
+from workhold.verification import verify, verify_fixture
 
 Loop = list[tuple[float, ...]]
 Keeps = Callable[..., bool]

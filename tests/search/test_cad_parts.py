@@ -16,9 +16,8 @@ from cad_parts import SHAPES, cad_part
 from fixture_sets import Judge, assert_same, listed
 from slow_fence import slow_fence
 from slow_plate import seen, slow_plate
-from workhold import Fence, Plate, Query, Result, Vise, Workpiece, design
-from workhold.algebra.engine import answer_by_algebra
-from workhold.completeness import verify
+from workhold import Fence, Plate, Query, Result, Vise, Workpiece, design, verify
+from workhold.algebra import answer_by_algebra
 from workhold.files.toolkit_file import load_toolkit, preset_names
 
 PRESETS = preset_names()

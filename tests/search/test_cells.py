@@ -8,11 +8,10 @@ from threading import Event
 import numpy as np
 import pytest
 
-from workhold import Vise, answer, load
+from workhold import Query, Vise, answer, load
 from workhold.contact.problem import Problem
 from workhold.kernels.curves.block_work import CANDIDATES, CROSSED
 from workhold.listing.collector import Needed
-from workhold.model.query import Query
 from workhold.proof.deciding import Course, decided
 from workhold.search.cells import Block, cell_edges, member_counts, members_of_cell, run_blocks
 from workhold.search.toolkit_search import ToolkitSearch

@@ -17,10 +17,9 @@ from test_plate import plate_of
 
 import workhold
 from toolkit_results import MOUTH, NOTCHED, check_and_read_back, checked, part, rectangle
-from workhold import InputError, Plate, Query, Result, Workpiece, answer, design
+from workhold import InputError, Plate, Query, Restrictions, Result, Workpiece, answer, design
 from workhold.kernels.contact import clamp_pairs
 from workhold.model.clamps import ratios, working_forces
-from workhold.model.requirements import Restrictions
 from workhold.search import lattice_shares
 from workhold.statics.quality import quality_of
 

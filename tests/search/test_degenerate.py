@@ -9,7 +9,7 @@ import pytest
 
 from fixture_sets import Judge, assert_same, listed, missing, turned
 from workhold import InputError, Query, Vise, Workpiece, design, load
-from workhold.algebra.engine import answer_by_algebra
+from workhold.algebra import answer_by_algebra
 from workhold.geometry import loop
 
 DRAWINGS = Path(__file__).parent.parent / "data" / "drawings"

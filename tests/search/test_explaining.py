@@ -11,14 +11,26 @@ import numpy as np
 import pytest
 from attrs import evolve
 
-from workhold import Fence, InputError, Plate, Query, Result, Vise, Workpiece, answer, design, load
-from workhold.model.requirements import Restrictions, circle_zone
+from workhold import (
+    Fence,
+    InputError,
+    Plate,
+    Query,
+    Restrictions,
+    Result,
+    Vise,
+    Workpiece,
+    answer,
+    circle_zone,
+    count_contacts,
+    design,
+    load,
+)
 from workhold.model.search_report import Explanation, asked_note, no_fixture_notes
 from workhold.search import explaining
 from workhold.search.explaining import explain
-from workhold.search.toolkit_search import count_contacts
 from workhold.units import MILLIMETRE
-from workhold.verification.verify import verify
+from workhold.verification import verify
 
 PLAIN = Vise(pitch=8, columns=1, peg_radius=3)
 

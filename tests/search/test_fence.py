@@ -15,10 +15,9 @@ import pytest
 import workhold
 from slow_fence import slow_fence
 from toolkit_results import NOTCHED, check_and_read_back, checked, part
-from workhold import Fence, InputError, Query, Result, Workpiece, answer, design
+from workhold import Fence, InputError, Query, Restrictions, Result, Workpiece, answer, circle_zone, design
 from workhold.listing import results
 from workhold.listing.ranking import order_keys, usual_errors
-from workhold.model.requirements import Restrictions, circle_zone
 from workhold.search import wall_search
 from workhold.verification import verify
 

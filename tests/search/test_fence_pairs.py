@@ -13,8 +13,7 @@ import pytest
 
 import workhold
 from toolkit_results import MOUTH, NOTCHED, check_and_read_back, checked, part, rectangle
-from workhold import Fence, Query, Workpiece, answer, design
-from workhold.model.requirements import Restrictions
+from workhold import Fence, Query, Restrictions, Workpiece, answer, design
 from workhold.proof.flush import reactions_on_fence
 from workhold.search import wall_search
 

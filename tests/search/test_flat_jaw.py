@@ -16,11 +16,10 @@ import workhold
 from own_heights import FOOT, STEM, stepped
 from strategies import outline
 from toolkit_results import NOTCHED, assert_all_proven, check_and_read_back, checked, part, rectangle
-from workhold import FlatJaw, InputError, Restrictions, Result, Workpiece, circle_zone
+from workhold import FlatJaw, InputError, Pose, Restrictions, Result, Workpiece, circle_zone
 from workhold.contact.features import contact_features
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Line, Segment
-from workhold.model.pose import Pose
 from workhold.search.explaining import explain
 
 TRUTHS = sorted((Path(__file__).parent.parent / "data" / "toolkits").glob("flat_*.json"))

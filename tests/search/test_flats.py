@@ -15,15 +15,14 @@ from attrs import evolve
 
 import workhold
 from toolkit_results import NOTCHED, assert_all_proven, part
-from workhold import Fence, Fixture, InputError, Plate, Query, Vise, design
-from workhold.algebra.engine import answer_by_algebra
+from workhold import Fence, Fixture, InputError, Load, Plate, Query, Vise, design
+from workhold.algebra import answer_by_algebra
 from workhold.contact.features import contact_features
 from workhold.files.toolkit_file import load_toolkit
 from workhold.fixels.pegs import Flat, flat_of, standoff
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.offset import trimmed_offsets
 from workhold.geometry.segment import Arc, Line
-from workhold.model.requirements import Load
 from workhold.statics.loads import load_cases
 from workhold.verification import verify_file, verify_fixture
 

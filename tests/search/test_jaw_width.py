@@ -18,17 +18,15 @@ from attrs import evolve
 from flint import arb
 
 import workhold
+from judged import rules_in
 from strategies import outline
 from toolkit_results import assert_all_proven, part, verify_edited
-from workhold import FlatJaw, InputError, Query, Result, Workpiece
+from workhold import Fixture, FlatJaw, InputError, Load, Query, Result, Workpiece
 from workhold.fixels.kinds import toolkit_of
-from workhold.model.fixture import Fixture
-from workhold.model.requirements import Load
 from workhold.search.design import Explored, explore, first_choice
 from workhold.search.explaining import explain
 from workhold.verification.ball_geometry import BallOutline
 from workhold.verification.contacts import BallPose
-from workhold.verification.rules.hardware import ToolkitRules
 
 KITE = [(0, 0, 0), (56, 6, 0), (48, 44, 0), (10, 37, 0)]
 # Two feet, arcs outside and inside.
@@ -278,7 +276,7 @@ def test_verify_refutes_what_the_jaw_does_not_reach_and_other_columns(tmp_path: 
     number = next(
         k for k, one in enumerate(wide) if one.quality["jaw_contact"] > 57.9 and one.pegs[2].column > 0
     )
-    jaw, fixture = ToolkitRules(wide.toolkit).jaw, wide[number]
+    jaw, fixture = rules_in(wide.toolkit).jaw, wide[number]
     assert jaw is not None
     outline, pose = BallOutline.of(wide.workpiece), BallPose.written(fixture.pose)
     columns, left, right = [peg.column for peg in fixture.pegs[2:]], *fixture.pegs[:2]

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 from attrs import asdict
 
-from workhold import Query, Vise, Workpiece, design
+from workhold import OpeningVise, Query, Vise, Workpiece, design
 from workhold.contact.problem import Problem
 from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE
-from workhold.fixels.vise import OpeningVise
 from workhold.search.broken_rules import all_contacts
 
 # A hole and a notch to hold it from inside, and sides to hold it from outside.

@@ -17,12 +17,10 @@ import slow_plate
 from own_heights import BASE, FOOT, ROOF, STEM, stepped
 from slow_fence import slow_fence
 from toolkit_results import NOTCHED, assert_all_proven, part
-from workhold import Fence, FlatJaw, InputError, OpeningVise, Plate, Result, Vise, design
-from workhold.algebra.engine import answer_by_algebra
+from workhold import Fence, FlatJaw, InputError, OpeningVise, Plate, Query, Restrictions, Result, Vise, design
+from workhold.algebra import answer_by_algebra
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.query import Query
-from workhold.model.requirements import Restrictions
-from workhold.verification.verify import verify
+from workhold.verification import verify
 
 TIP, LOW_WALL, LEFT, RIGHT = (10.0, 18.0), (0.0, 4.0), (0.0, 6.0), (11.0, 20.0)
 PLATE = Plate(pitch=(14, 12), peg_radius=3, clamp_radius=4, columns=4, rows=4, directions=("-x", "+y"))

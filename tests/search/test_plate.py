@@ -16,9 +16,8 @@ from numpy.typing import NDArray
 
 from strategies import random_outline
 from toolkit_results import MOUTH, NOTCHED, check_and_read_back, checked, part
-from workhold import InputError, Plate, Query, Result, Vise, Workpiece, answer, design
-from workhold.algebra.engine import answer_by_algebra
-from workhold.model.requirements import Restrictions
+from workhold import InputError, Plate, Query, Restrictions, Result, Vise, Workpiece, answer, design
+from workhold.algebra import answer_by_algebra
 from workhold.search.explaining import explain
 
 TESTS = Path(__file__).parent.parent

@@ -26,11 +26,9 @@ from slow_program import (
     slow_clearance,
 )
 from strategies import random_outline
-from workhold import Fence, InputError, Plate, Query, Result, Vise, Workpiece, answer, load
-from workhold.algebra.engine import answer_by_algebra
+from workhold import Fence, Fixture, InputError, Plate, Program, Query, Result, Vise, Workpiece, answer, load
+from workhold.algebra import answer_by_algebra
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.fixture import Fixture
-from workhold.model.program import Program
 from workhold.search.explaining import explain
 from workhold.statics.judging import unfit
 

@@ -13,10 +13,21 @@ from typing import Any
 import pytest
 
 from strategies import random_outline
-from workhold import Fence, FlatJaw, InputError, OpeningVise, Plate, Result, Vise, Workpiece, design
+from workhold import (
+    Fence,
+    Fixture,
+    FlatJaw,
+    InputError,
+    OpeningVise,
+    Plate,
+    Restrictions,
+    Result,
+    Vise,
+    Workpiece,
+    circle_zone,
+    design,
+)
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.fixture import Fixture
-from workhold.model.requirements import Restrictions, circle_zone
 
 Key = tuple[object, ...]
 # Of degrees or mm: more than rules are loosened by.

@@ -9,11 +9,22 @@ import numpy as np
 import pytest
 
 from fixture_sets import Judge, listed
-from workhold import InputError, Query, Result, Vise, Workpiece, answer, design, load
-from workhold.algebra.engine import answer_by_algebra
+from workhold import (
+    Fixture,
+    InputError,
+    Query,
+    Restrictions,
+    Result,
+    Vise,
+    Workpiece,
+    answer,
+    circle_zone,
+    design,
+    load,
+    polygon_zone,
+)
+from workhold.algebra import answer_by_algebra
 from workhold.fixels.carrier import holes_named
-from workhold.model.fixture import Fixture
-from workhold.model.requirements import Restrictions, circle_zone, polygon_zone
 
 Key = tuple[object, float]
 

@@ -8,12 +8,9 @@ from typing import Any
 
 import pytest
 
-from workhold.files.part.load import load
+from workhold import Result, Vise, design, load
 from workhold.files.result.writer import result_text
-from workhold.fixels.vise import Vise
-from workhold.model.result import Result
 from workhold.search import shares
-from workhold.search.design import design
 
 
 def identity(fixture: Any) -> tuple[Any, ...]:

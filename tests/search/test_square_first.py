@@ -12,15 +12,25 @@ import pytest
 
 from cad_parts import cad_part
 from toolkit_results import NOTCHED, part
-from workhold import OpeningVise, Plate, Query, Result, Vise, Workpiece, answer, design, load
+from workhold import (
+    OpeningVise,
+    Plate,
+    Query,
+    Restrictions,
+    Result,
+    Vise,
+    Workpiece,
+    answer,
+    design,
+    load,
+    save,
+)
 from workhold.contact.problem import Problem
 from workhold.conventions import SQUARE_TILT
-from workhold.files.result.writer import write_result
 from workhold.fixels.toolkit import Toolkit
 from workhold.listing.bounds import preferred_angles
 from workhold.listing.collector import Needed
 from workhold.model.quality import TILT
-from workhold.model.requirements import Restrictions
 from workhold.model.search_report import best_note
 from workhold.search.lattice_shares import LatticeShares, square_first
 from workhold.search.toolkit_search import ToolkitSearch
@@ -87,7 +97,7 @@ def test_the_file_of_such_a_search_holds_and_does_not_depend_on_threads(tmp_path
         files = []
         for threads in (1, 3):
             files.append(tmp_path / f"{threads}.json")
-            write_result(design(workpiece, toolkit, best=8, threads=threads), files[-1])
+            save(design(workpiece, toolkit, best=8, threads=threads), files[-1])
         assert files[0].read_bytes() == files[1].read_bytes()
         assert verify_file(files[0]).proven == 8
 

@@ -16,10 +16,9 @@ import pytest
 import stress_parts as parts
 
 from fixture_sets import Judge, assert_same, listed, mirrored, missing, near_an_end, turned
-from workhold import Result, Vise, Workpiece, design
-from workhold.algebra.engine import answer_by_algebra
+from workhold import Fixture, Result, Vise, Workpiece, design
+from workhold.algebra import answer_by_algebra
 from workhold.contact.features import contact_features
-from workhold.model.fixture import Fixture
 from workhold.verification import verify
 
 pytestmark = pytest.mark.thorough

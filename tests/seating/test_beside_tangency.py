@@ -10,15 +10,13 @@ import numpy as np
 import pytest
 from attrs import evolve
 
-from seating_examples import at_angle, held, solved, touching
+from seating_examples import at_angle, equilibria_of, held, solved, touching, two_contacts_of
 from workhold import Vise, load
 from workhold.kernels.seating.closing import AT_REST
 from workhold.kernels.seating.columns import CONFIG, CONTACTS, SECOND, SEPARATION, THETA
-from workhold.seating.equilibria import equilibria
 from workhold.seating.join_tree import JoinTree
 from workhold.seating.pattern import Pattern, subsets_of
 from workhold.seating.solver import Solver
-from workhold.seating.two_contact_curves import TwoContactCurves
 
 BRACKET = Path(__file__).parents[2] / "examples" / "bracket.dxf"
 VISE = Vise(pitch=20, columns=2, peg_radius=3)
@@ -48,14 +46,14 @@ def solver_and_jaws(case):
 def test_it_is_a_seat_and_nothing_is_unsettled(case):
     """The separation is least there, by differences of what three contacts leave free, and jaws that close lead there."""
     closing = solver_and_jaws(case)
-    found = equilibria(closing.boundary, closing.pattern, closing.size)
+    found = equilibria_of(closing)
     assert len(found.doubtful) == 0
     assert len(JoinTree.of(found, closing).doubtful) == 0
     [row] = [row for row in found.seats if abs(row[SEPARATION] - case[2][3]) < 2e-6]
     assert (
         np.abs((row[CONFIG] - case[2] + np.pi) % (2.0 * np.pi) - np.pi).max() < 5e-6 and row[CONTACTS] == 3.0
     )
-    given, step = TwoContactCurves.of(closing.boundary, closing.pattern).given, 2e-8
+    given, step = two_contacts_of(closing).given, 2e-8
     assert np.abs(touching(row, given, row[CONFIG])).max() < 1e-9
     before, after = (at_angle(row, given, row[THETA] + off) for off in (-step, step))
     assert (before + after - 2.0 * row[SEPARATION]) / step**2 == pytest.approx(row[SECOND], rel=0.05)
@@ -74,8 +72,8 @@ def test_second_derivatives_are_those_of_the_separation(number):
     """By differences, of three contacts of which two are of one jaw, on lines and arcs."""
     solver, fixture, _ = solved(number)
     closing = solver.closing(Pattern.of(fixture, solver.toolkit), False)
-    found = equilibria(closing.boundary, closing.pattern, closing.size)
-    given = TwoContactCurves.of(closing.boundary, closing.pattern).given
+    found = equilibria_of(closing)
+    given = two_contacts_of(closing).given
     assert len(subsets_of(closing.pattern)) > 4
     rows, steps = [row for row in (*found.seats, *found.passes) if row[CONTACTS] == 3.0], 0
     for row in rows:

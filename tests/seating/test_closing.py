@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.optimize import nnls
 
+from seating_examples import equilibria_of
 from sharpness import changed
 from workhold import Fixture, Peg, Pose, Vise, Workpiece
 from workhold.kernels.seating.closing import AT_THE_STOP, GAVE_UP
@@ -16,7 +17,6 @@ from workhold.kernels.seating.descent_paths import OUTSIDE, STOP
 from workhold.kernels.seating.linear_program import add_normal, shortest_out
 from workhold.kernels.seating.obstacles import clearances
 from workhold.seating.closing import descent_starts
-from workhold.seating.equilibria import equilibria
 from workhold.seating.join_tree import JoinTree
 from workhold.seating.pattern import ClosingFrame, Pattern
 from workhold.seating.solver import Solver
@@ -43,7 +43,7 @@ def ways():
     solver, pattern, out = Solver(NOTCH, VISE), Pattern.of(fixture, VISE), []
     for turned_over in (False, True):
         closing = solver.closing(pattern, turned_over)
-        found = equilibria(closing.boundary, pattern, closing.size)
+        found = equilibria_of(closing)
         starts = descent_starts(found.passes, closing.size)[0]
         out.append((closing, starts, JoinTree.of(found, closing)))
     return out

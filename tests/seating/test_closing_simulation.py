@@ -11,8 +11,7 @@ from attrs import evolve
 
 import workhold
 from seating_examples import LEFT, RIGHT, Obstacle, held, solved
-from workhold import Fence, InputError, OpeningVise, Plate, Pose, Vise, Workpiece
-from workhold.model.fixture import Fixture
+from workhold import Fence, Fixture, InputError, OpeningVise, Plate, Pose, Vise, Workpiece
 from workhold.model.quality import FIGURE_RANKING
 from workhold.model.seating import Seat
 from workhold.seating.closing_simulation import ENDINGS, ClosingSimulation, simulate_closing

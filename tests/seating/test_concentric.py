@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from seating_examples import at_angle, held, on_pieces, touching
+from seating_examples import at_angle, equilibria_of, held, on_pieces, touching, two_contacts_of
 from workhold import Vise, Workpiece, load
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
 from workhold.kernels.seating.columns import (
@@ -24,11 +24,10 @@ from workhold.kernels.seating.columns import (
 )
 from workhold.kernels.seating.parallel_and_concentric import about_one_center
 from workhold.seating.closing import filled
-from workhold.seating.equilibria import equilibria, in_balance
+from workhold.seating.equilibria import in_balance
 from workhold.seating.join_tree import JoinTree
 from workhold.seating.pattern import Pattern
 from workhold.seating.solver import Solver
-from workhold.seating.two_contact_curves import TwoContactCurves
 
 VISE = Vise(pitch=10, columns=2, peg_radius=3)
 # A plate with a rounded end, a round notch, a slanted side and a small hole.
@@ -63,7 +62,7 @@ def found():
         ]
         pattern = Pattern.of(held(pegs, (0.0, 0.0, 0.0), 100.0), VISE)
         closing = solver.closing(pattern, False)
-        given = TwoContactCurves.of(closing.boundary, pattern).given
+        given = two_contacts_of(closing).given
         rows = filled(CANDIDATE_LENGTH, 4, about_one_center, given, -1e3, 1e3)
         out.append((closing, given, rows, in_balance(rows.copy(), given, closing.size)))
     return out
@@ -96,7 +95,7 @@ def test_ways_down_end_nowhere_that_is_not_known(found):
     """Where a part comes to rest so, ways down end there: in a seat, and in none that is unsettled."""
     looked_at = 0
     for closing, _, _, balanced in found:
-        known = equilibria(closing.boundary, closing.pattern, closing.size)
+        known = equilibria_of(closing)
         free = balanced[(balanced[:, SECOND] > 0.0) & (balanced[:, CLEAR] > 0.0)][:, 1:4]
         resting = [row for row in free if (np.abs(known.seats[:, 1:4] - row).max(axis=1) < 1e-6).any()]
         if resting:
@@ -118,7 +117,7 @@ def test_a_bracket_that_rests_on_its_rounded_end_is_seated():
     ]
     fixture = held(pegs, (90.0, 62.098281121250174, 3.0), 55.09828112125016)
     closing = Solver(part, VISE).closing(Pattern.of(fixture, VISE), True)
-    tree = JoinTree.of(equilibria(closing.boundary, closing.pattern, closing.size), closing)
+    tree = JoinTree.of(equilibria_of(closing), closing)
     assert len(tree.doubtful) == 0
     [seat] = [row for row in tree.seats if abs(row[SEPARATION] - 26.2451) < 1e-4]
     assert np.degrees(seat[0]) % 360.0 == pytest.approx(96.1725, abs=1e-4)

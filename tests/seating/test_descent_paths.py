@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from seating_examples import STEP, held
+from seating_examples import STEP, equilibria_of, held
 from workhold import Vise, Workpiece
 from workhold.kernels.seating.closing import AT_REST, AT_THE_STOP
 from workhold.kernels.seating.columns import (
@@ -26,7 +26,6 @@ from workhold.kernels.seating.descent_paths import free_until
 from workhold.kernels.seating.free_space import RANGES, leave
 from workhold.kernels.seating.obstacles import clearances
 from workhold.seating.closing import Closing, DescentCache, descent_starts
-from workhold.seating.equilibria import equilibria
 from workhold.seating.join_tree import free_paths, pass_descents, shifts_of
 from workhold.seating.pattern import Pattern
 from workhold.seating.solver import Solver
@@ -47,7 +46,7 @@ PATTERNS = [pattern_of(), pattern_of(lifted=-10.0), pattern_of(lifted=10.0, wide
 def followed(solver, pattern, turned_over=False):
     """The jaws, what was found, the strict seats, and where the ways down begin and end, and how."""
     closing = solver.closing(pattern, turned_over)
-    found = equilibria(closing.boundary, pattern, closing.size)
+    found = equilibria_of(closing)
     seats = np.ascontiguousarray(found.seats[:, CONFIG])
     return closing, found, seats, pass_descents(found, closing, seats)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from attrs import evolve
 
-from seating_examples import cells_by_pair, moved, solved
+from seating_examples import cells_by_pair, moved, solved, two_contacts_of
 from workhold.kernels.seating.candidates import complete_third, complete_three
 from workhold.kernels.seating.columns import BOTTOM, CANDIDATE_LENGTH, CELL_LENGTH, DEPTH, SEPARATION, TOP
 from workhold.kernels.seating.four_contacts import third_of_jaw, two_pairs
@@ -14,7 +14,6 @@ from workhold.kernels.seating.three_contacts import ROOT_LENGTH, three_contacts
 from workhold.seating.closing import filled
 from workhold.seating.pattern import Pattern
 from workhold.seating.solver import Solver
-from workhold.seating.two_contact_curves import TwoContactCurves
 
 
 def told_by(holdings, boundary, pattern, discs, stop):
@@ -39,8 +38,8 @@ def test_pieces_left_out_have_no_roots(number):
     """Discs as large as the table and no stop let every piece be looked at: no more balances are found."""
     solver, fixture, _ = solved(number)
     pattern = Pattern.of(fixture, solver.toolkit)
-    boundary = solver.closing(pattern, False).boundary
-    holdings = TwoContactCurves.of(boundary, pattern)
+    closing = solver.closing(pattern, False)
+    boundary, holdings = closing.boundary, two_contacts_of(closing)
     everywhere = np.array(boundary.discs)
     everywhere[:, 2] += 1e4
     few, fixed = told_by(holdings, boundary, pattern, boundary.discs, pattern.stop)
@@ -58,7 +57,7 @@ def test_holdings_meet_as_of_each_cell_by_itself():
     """Which cells of the other jaw reach into a cell does not depend on the cells before it."""
     solver, fixture, _ = solved(0)
     pattern = Pattern.of(fixture, solver.toolkit)
-    holdings = TwoContactCurves.of(solver.closing(pattern, False).boundary, pattern)
+    holdings = two_contacts_of(solver.closing(pattern, False))
     left, right = holdings.of_jaw(0), holdings.of_jaw(1)
     work = np.empty((2, CELL_LENGTH)), np.empty((DEPTH, 2)), np.empty(len(right.cells), np.int64)
     every = filled(ROOT_LENGTH, 1024, two_pairs, left, right, holdings.sought, *work)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from math import inf
+from typing import Any
 
 import numpy as np
 import pytest
@@ -24,7 +25,6 @@ from workhold.seating.join_tree import (
     RestPoses,
     kinds_of,
 )
-from workhold.seating.obstacle_boundary import ObstacleBoundary
 from workhold.seating.pattern import Pattern
 from workhold.seating.solver import Solver
 
@@ -42,7 +42,7 @@ def example(name: str) -> tuple[Solver, Fixture]:
     return Solver(STEP, toolkit), workhold.design(STEP, toolkit, best=1)[0]
 
 
-def kind(row: np.ndarray, boundary: ObstacleBoundary, pattern: Pattern) -> str:
+def kind(row: np.ndarray, boundary: Any, pattern: Pattern) -> str:
     """What a strict seat is called."""
     touches, count = boundary.touches + boundary.hull.touches, int(row[CONTACTS])
     pegs, pieces = (row[at : at + count].astype(int).tolist() for at in (PEG, PIECE))
@@ -56,7 +56,7 @@ def kind(row: np.ndarray, boundary: ObstacleBoundary, pattern: Pattern) -> str:
     return "corner" if any(at_corner) else "fixture"
 
 
-def listed(tree: JoinTree, boundary: ObstacleBoundary, pattern: Pattern) -> list[Told]:
+def listed(tree: JoinTree, boundary: Any, pattern: Pattern) -> list[Told]:
     """Kind, depth and configuration of what is listed of a tree, one after the other."""
     every = [(kind(row, boundary, pattern), row) for row in tree.seats] + [
         ("loose", row) for row in tree.loose

@@ -8,14 +8,13 @@ import numpy as np
 import pytest
 from attrs import evolve
 
-from seating_examples import LEFT, RIGHT, held
+from seating_examples import LEFT, RIGHT, held, two_contacts_of
 from workhold import Vise, Workpiece
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import CONTACTS, SEPARATION
 from workhold.seating.pattern import Pattern, PegSubset
 from workhold.seating.self_motions import balance, circles_meet, on_one_center, on_one_line, on_parallel_lines
 from workhold.seating.solver import Solver
-from workhold.seating.two_contact_curves import TwoContactCurves
 
 VISE = Vise(pitch=10, columns=2, peg_radius=3)
 # Parallel faces at three depths, a round end, and an arc about the same centre that bends in; none along x or y.
@@ -37,8 +36,8 @@ def ways_of(part, pegs, right):
     ]
     whole = Pattern.of(held([*placed, ("left", -300.0, 300.0)], (0.0, 0.0, 0.0), 100.0), VISE)
     pattern = evolve(PegSubset.of(whole, range(len(pegs))).pattern, stop=-np.inf)
-    boundary = SOLVERS[id(part)].closing(pattern, False).boundary
-    held_by = TwoContactCurves.of(boundary, pattern)
+    closing = SOLVERS[id(part)].closing(pattern, False)
+    boundary, held_by = closing.boundary, two_contacts_of(closing)
     three = on_parallel_lines(boundary, pattern, held_by.slides, held_by.given)
     return boundary, pattern, [*on_one_line(boundary, pattern), *three, *on_one_center(boundary, pattern)]
 

@@ -8,10 +8,20 @@ import numpy as np
 import pytest
 
 import workhold
-from seating_examples import LEFT, RIGHT, SAMPLED, Obstacle, case_fixture, closed, held, moved, solved
+from seating_examples import (
+    LEFT,
+    RIGHT,
+    SAMPLED,
+    Obstacle,
+    case_fixture,
+    closed,
+    equilibria_of,
+    held,
+    moved,
+    solved,
+)
 from workhold import Fixture, Peg, Pose, Vise, Workpiece
 from workhold.model.seating import Seating
-from workhold.seating.equilibria import equilibria
 from workhold.seating.join_tree import JoinTree
 from workhold.seating.pattern import Pattern
 from workhold.seating.solver import Solver
@@ -63,7 +73,7 @@ def test_passes_and_seats_are_equilibria(number):
     part = solver.workpiece
     obstacle = Obstacle(part, fixture, solver.toolkit.peg_radius)
     closing = solver.closing(pattern, False)
-    found = equilibria(closing.boundary, pattern, closing.size)
+    found = equilibria_of(closing)
     for row in [*found.seats, *found.passes]:
         config = row[[0, 1, 2, 3]]
         near = obstacle.near(config, np.inf)
@@ -309,7 +319,7 @@ def test_three_parallel_forces_are_found():
     solver = Solver(bar, vise)
     pattern = Pattern.of(held(pegs, (0.0, 0.0, 0.0), 0.0), vise)
     closing = solver.closing(pattern, False)
-    found = equilibria(closing.boundary, pattern, closing.size)
+    found = equilibria_of(closing)
     rows = [row for row in [*found.seats, *found.passes] if row[4] == 3.0]
     obstacle = Obstacle(bar, held(pegs, (0.0, 0.0, 0.0), 0.0), 2.0)
     parallel = []
@@ -349,7 +359,7 @@ def test_curved_seats_hold_and_passes_let_go(number):
     solver, fixture, _ = solved(number)
     pattern = Pattern.of(fixture, solver.toolkit)
     closing = solver.closing(pattern, False)
-    found = equilibria(closing.boundary, pattern, closing.size)
+    found = equilibria_of(closing)
     for rows, holds in ((found.seats, True), (found.passes, False)):
         for row in (row for row in rows if row[4] < 4.0):
             motion = np.append(row[18:21], 0.0)

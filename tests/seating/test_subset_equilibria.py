@@ -5,13 +5,14 @@ from __future__ import annotations
 from functools import cache
 from itertools import combinations
 from math import pi, tau
+from typing import Any
 
 import numpy as np
 import pytest
 from attrs import evolve
 
 import workhold
-from seating_examples import STEP
+from seating_examples import STEP, equilibria_of
 from workhold import Vise
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC
 from workhold.kernels.seating.columns import (
@@ -29,8 +30,7 @@ from workhold.kernels.seating.obstacles import clearances
 from workhold.kernels.seating.slides import slides_blocked
 from workhold.seating import two_contact_curves
 from workhold.seating.closing import filled
-from workhold.seating.equilibria import Equilibria, SubsetCache, equilibria, equilibria_of_subset
-from workhold.seating.obstacle_boundary import ObstacleBoundary
+from workhold.seating.equilibria import Equilibria, SubsetCache, equilibria_of_subset
 from workhold.seating.pattern import Pattern, PegSubset, subsets_of
 from workhold.seating.solver import Solver
 
@@ -50,7 +50,7 @@ def patterns() -> list[Pattern]:
 def solve(solver: Solver, pattern: Pattern) -> tuple[Equilibria, Equilibria]:
     """What is found of a pattern, as drawn and turned over."""
     both = (solver.closing(pattern, turned_over) for turned_over in (False, True))
-    one, two = (equilibria(closing.boundary, pattern, closing.size) for closing in both)
+    one, two = (equilibria_of(closing) for closing in both)
     return one, two
 
 
@@ -134,7 +134,7 @@ def test_groups_that_stand_otherwise_are_others():
         assert PegSubset.of(other, (0, 1, 2)).key != known
 
 
-def touch(row: np.ndarray, pattern: Pattern, boundary: ObstacleBoundary) -> None:
+def touch(row: np.ndarray, pattern: Pattern, boundary: Any) -> None:
     """See that each peg of a candidate is on the piece it is said to touch."""
     places, out = pattern.at(row[None, :4])[0], np.empty(1)
     for peg, piece in zip(row[PEG:PIECE].astype(int), row[PIECE:FORCE].astype(int), strict=True):
@@ -143,7 +143,7 @@ def touch(row: np.ndarray, pattern: Pattern, boundary: ObstacleBoundary) -> None
             assert abs(out[0]) < 1e-7
 
 
-def slides_on(row: np.ndarray, pattern: Pattern, boundary: ObstacleBoundary) -> int:
+def slides_on(row: np.ndarray, pattern: Pattern, boundary: Any) -> int:
     """How many pegs of one jaw touch in a candidate, two of them on parallel faces on which the part slides; 0 of none."""
     touching = [(int(row[PEG + k]), boundary.rows[int(row[PIECE + k])]) for k in range(int(row[CONTACTS]))]
     for (p, one), (q, two) in combinations(touching, 2):

@@ -10,16 +10,14 @@ import pytest
 from attrs import evolve
 
 import workhold
-from seating_examples import Obstacle, closed
-from workhold import Fence, Fixture, InputError, OpeningVise, Peg, Plate, Pose, Vise, Workpiece
+from seating_examples import Obstacle, closed, equilibria_of
+from workhold import Fence, Fixture, InputError, OpeningVise, Peg, Plate, Pose, Result, Vise, Workpiece
 from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.base.distance import outline_distances
 from workhold.kernels.seating.columns import CONTACTS, SEPARATION
-from workhold.model.result import Result
 from workhold.model.seating import Seating
 from workhold.seating.closing_simulation import simulate_closing
 from workhold.seating.contact_forces import contact_normals
-from workhold.seating.equilibria import equilibria
 from workhold.seating.join_tree import JoinTree
 from workhold.seating.pattern import ClosingFrame, Pattern
 from workhold.seating.solver import Solver
@@ -350,7 +348,7 @@ def test_a_part_slides_along_a_fence_under_the_clamp():
     )
     pattern = Pattern.of(fixture, fence)
     closing = Solver(plate, fence).closing(pattern, False)
-    found = equilibria(closing.boundary, pattern, closing.size)
+    found = equilibria_of(closing)
     tree = JoinTree.of(found, closing)
     assert len(tree.seats) == 0
     flat = [row for row in (*tree.loose, *tree.slack) if row[CONTACTS] >= 3.0]

@@ -24,7 +24,6 @@ from workhold.kernels.seating.columns import (
 )
 from workhold.model.quality import FIGURE_RANKING
 from workhold.seating.contact_forces import settle_on_wall
-from workhold.seating.obstacle_boundary import ObstacleBoundary
 from workhold.seating.pattern import Pattern
 from workhold.seating.solver import Solver
 from workhold.seating.wall_equilibria import LOCATOR, TIP, WallEquilibria
@@ -316,5 +315,5 @@ def test_no_two_fixtures_of_a_design_are_in_doubt():
     toolkit = Fence(pitch=20, peg_radius=3, wall_offset=10)
     for fixture in workhold.design(PART, toolkit, best=3, rank_by=FIGURE_RANKING):
         pattern = Pattern.of(fixture, toolkit)
-        fence = WallEquilibria(ObstacleBoundary.of(PART, pattern.radii), pattern)
+        fence = WallEquilibria(Solver(PART, toolkit).closing(pattern, False).boundary, pattern)
         assert not fence.three_contacts()[:, DOUBT].any()

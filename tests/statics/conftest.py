@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from held import CASES, held
-from workhold.model.result import Result
+from workhold import Result
 
 
 @pytest.fixture(params=CASES, ids=lambda case: case[0])

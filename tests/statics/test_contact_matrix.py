@@ -13,10 +13,9 @@ import pytest
 from attrs import evolve
 
 from closing_forces import clamping_force, null_vectors
+from workhold import Vise, Workpiece
 from workhold.conventions import LEAST_SPAN
-from workhold.fixels.vise import Vise
 from workhold.kernels.contact.rules import minors
-from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import Touched, outward_normals
 
 # An L: the faces at x = 20 and y = 20 meet in a concave corner, where a peg's centre stays its radius away.

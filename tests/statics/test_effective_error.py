@@ -10,16 +10,14 @@ import pytest
 from attrs import evolve
 
 import workhold
-from workhold import FlatJaw, OpeningVise, Plate, Query, Vise, Workpiece, answer
+from workhold import FlatJaw, OpeningVise, Plate, Query, Restrictions, Vise, Workpiece, answer
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.first_choice import FACTORS
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import LOCATION_ERROR, WARNINGS
-from workhold.model.requirements import Restrictions
 from workhold.statics.effective_error import EffectiveErrors, angle_classes
 from workhold.statics.why_first import why_first
 from workhold.verification.first_choice import EffectiveJudge
-from workhold.verification.listing import listing_of
 
 BLOCK = [(0, 0, 0), (100, 0, 0), (100, 60, 0), (0, 60, 0)]
 BORE = [(38, 30, 1), (62, 30, 1)]
@@ -115,10 +113,10 @@ def test_verification_finds_the_same_factors(kind: str) -> None:
     part = Workpiece.from_loops("part", [L_SHAPE, [(8, 14, 1), (20, 14, 1)]])
     query = Query(part, TOOLKITS[kind])
     result = answer(query, threads=1)
-    effective, listing = EffectiveErrors.of(query), listing_of(result)
+    effective = EffectiveErrors.of(query)
     judge = EffectiveJudge(query, result.least_effective_error)
     marks = effective.holding(result.table)
-    for fixture, row in zip(listing.fixtures, marks, strict=True):
+    for fixture, row in zip(result, marks, strict=True):
         said = [ends for _, ends in judge.factors(fixture)]
         assert all(
             surely <= bool(mark) <= perhaps

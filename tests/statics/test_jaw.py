@@ -10,9 +10,8 @@ import pytest
 from numpy.typing import NDArray
 
 from held import force_directions, held, load_wrench, plate_fixture
+from workhold import Load, Result
 from workhold.errors import InputError
-from workhold.model.requirements import Load
-from workhold.model.result import Result
 from workhold.statics.loads import jaw_stiffness, load_cases, shared_forces
 
 Array = NDArray[np.float64]

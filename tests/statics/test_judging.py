@@ -7,10 +7,11 @@ from math import ceil, log10
 import numpy as np
 import pytest
 
-from workhold import Workpiece
+from workhold import Load, Result, Workpiece
 from workhold.conventions import GENTLE_PEG, SMALL_FACE_POINTS, STRONG_POINTS, TILTED_POINTS
+from workhold.drawing import SheetDetails
 from workhold.drawing.scene import LengthUnit
-from workhold.drawing.sheet_facts import SheetDetails, cautions_of, edge_distances
+from workhold.drawing.sheet_facts import cautions_of, edge_distances
 from workhold.model.own_outlines import outline_diameter
 from workhold.model.quality import (
     CLAMP_AMPLIFICATION,
@@ -21,8 +22,6 @@ from workhold.model.quality import (
     TILT,
     WARNINGS,
 )
-from workhold.model.requirements import Load
-from workhold.model.result import Result
 from workhold.statics.judging import Judging
 from workhold.statics.loads import load_cases
 from workhold.statics.quality import main_direction, quality_of, tilts

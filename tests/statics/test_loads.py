@@ -13,9 +13,8 @@ from scipy.optimize import linprog
 
 import workhold
 from held import force_directions, held, load_wrench, plate_fixture
+from workhold import Fixture, Load, OpeningVise, Result, Vise, Workpiece
 from workhold.errors import InputError
-from workhold.fixels.vise import OpeningVise, Vise
-from workhold.model.fixture import Fixture
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import (
     CLAMP_AMPLIFICATION,
@@ -24,9 +23,6 @@ from workhold.model.quality import (
     LOAD_REACTION,
     LOCATION_ERROR,
 )
-from workhold.model.requirements import Load
-from workhold.model.result import Result
-from workhold.model.workpiece import Workpiece
 from workhold.statics.loads import load_cases
 from workhold.statics.quality import quality_of
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from workhold import Program
 from workhold.model.cutting_forces import CuttingForces
 from workhold.model.cutting_tool import CuttingDirection, Cylinder, Tool
 from workhold.model.moves import Moves, along
-from workhold.model.program import Program
 from workhold.statics import path_forces as module
 from workhold.statics.path_forces import PathForces, all_pieces, inside, path_forces, without_torques
 

@@ -9,12 +9,10 @@ import numpy as np
 import pytest
 from attrs import evolve
 
-from workhold import Plate, Vise, Workpiece, design
+from workhold import Plate, Query, Result, Vise, Workpiece, design
 from workhold.errors import InputError
 from workhold.fixels.support_hardware import PinLimits
 from workhold.model.quality import BEFORE_PINS, FIGURES, PIN_KEYS, PIN_STRESS, WARNINGS, figures_in
-from workhold.model.query import Query
-from workhold.model.result import Result
 from workhold.model.solid import SolidOutline
 from workhold.statics.bent_pegs import bent_pegs
 from workhold.statics.contact_matrix import Touched

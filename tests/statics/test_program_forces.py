@@ -12,11 +12,10 @@ from attrs import evolve
 
 from slow_program import PEG_HEIGHT, kinds_of_toolkit, random_program
 from strategies import random_outline
-from workhold import Load, Query, Result, answer
+from workhold import Load, Program, Query, Result, answer
 from workhold.model.cutting_forces import CuttingForces, forces_on
 from workhold.model.cutting_tool import CuttingData
 from workhold.model.moves import Moves, Stretches, along
-from workhold.model.program import Program
 from workhold.model.quality import JAW_FORCE_NEEDED, LOAD_REACTION
 from workhold.statics.loads import load_cases
 from workhold.statics.program_forces import cutting_need_of

@@ -12,10 +12,9 @@ from scipy.optimize import linprog, root
 from scipy.spatial import ConvexHull
 
 from held import contacts, force_directions, held, load_wrench
-from workhold import Plate, design
+from workhold import Fixture, Load, Plate, Result, Tolerance, Workpiece, design
 from workhold.geometry.segment import Arc, segment_rows
 from workhold.kernels.base.distance import outline_distances
-from workhold.model.fixture import Fixture
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.own_outlines import outline_diameter
 from workhold.model.quality import (
@@ -27,9 +26,6 @@ from workhold.model.quality import (
     LOCATION_ERROR,
     WRENCH_RADIUS,
 )
-from workhold.model.requirements import Load, Tolerance
-from workhold.model.result import Result
-from workhold.model.workpiece import Workpiece
 from workhold.statics.loads import load_cases
 from workhold.statics.quality import quality_of
 

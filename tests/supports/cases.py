@@ -11,10 +11,8 @@ from typing import Any
 
 from attrs import frozen
 
-from workhold import Result, Vise, Workpiece, circle_zone
+from workhold import Fixture, Query, Result, Vise, Workpiece, circle_zone
 from workhold.files.result.reader import checked_table, collected, measured
-from workhold.model.fixture import Fixture
-from workhold.model.query import Query
 from workhold.model.support_request import SpatialLoad, SupportRequest
 
 TRUTH = Path(__file__).parent / "truth"

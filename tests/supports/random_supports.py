@@ -6,10 +6,8 @@ from collections.abc import Iterator
 from math import cos, pi, sin
 from random import Random
 
-from workhold import Fence, FlatJaw, OpeningVise, Plate, Vise, Workpiece, circle_zone, design
+from workhold import Fence, Fixture, FlatJaw, OpeningVise, Plate, Query, Vise, Workpiece, circle_zone, design
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.fixture import Fixture
-from workhold.model.query import Query
 from workhold.model.support_request import SpatialLoad, SupportRequest
 
 __all__ = ["random_demand", "random_fixtures"]

@@ -14,8 +14,8 @@ from attrs import evolve
 
 from supports.cases import case
 from supports.random_supports import TOOLKITS, random_demand, random_fixtures
+from workhold import Fixture
 from workhold.files.supports_file import write_supports
-from workhold.model.fixture import Fixture
 from workhold.model.support_request import SupportRequest
 from workhold.supports.listing import supports_of
 from workhold.verification.supports import verify_supports_file

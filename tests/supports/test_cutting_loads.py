@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 from attrs import evolve
 
-from workhold import Query, Vise, Workpiece, answer
+from workhold import Program, Query, Vise, Workpiece, answer
 from workhold.model.cutting_forces import forces_on
 from workhold.model.cutting_tool import CuttingData, Cylinder, Tool
 from workhold.model.moves import Moves
-from workhold.model.program import Program
 from workhold.model.support_request import SpatialLoad
 from workhold.supports.program import acting_on, cutting_loads
 

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from supports.random_supports import convex_part
-from workhold import Vise, design
-from workhold.model.fixture import Fixture
+from workhold import Fixture, Vise, design
 from workhold.model.support_request import SupportRequest
 from workhold.supports.faces import TouchableFace
 from workhold.supports.holes import CarrierRoom, holes_under

@@ -7,12 +7,13 @@ from attrs import evolve
 
 import workhold
 from own_heights import BASE, stepped
+from shown_words import last_paragraph
 from workhold import Vise
 from workhold.cli.supports_command import notes_of as notes_of_command
 from workhold.model.support_request import SpatialLoad, SupportRequest
 from workhold.model.support_triples import Supports
 from workhold.supports.listing import supports_of
-from workhold.supports.words import flat_faces_notes, place_notes, why_no_set
+from workhold.supports.words import flat_faces_notes, place_notes
 from workhold.units import unit_named
 from workhold.web.support_tasks import notes_of as notes_of_page
 
@@ -77,9 +78,7 @@ def test_no_pad_stands_under_a_part_that_lies_on_no_face() -> None:
             assert bool(found.triples) is held, asked
         assert result[0].supports(best=1, pad_radius=2, tip_radius=2, bottom=[BASE]).triples
     found = workhold.design(lying, toolkit, best=1)[0].supports(best=1, pad_radius=2)
-    assert "the part lies on no level face under which a pad could stand" in why_no_set(
-        found, unit_named("mm")
-    )
+    assert "the part lies on no level face under which a pad could stand" in last_paragraph(found)
     (note,) = flat_faces_notes(lying, ("a", "b"))
     assert note.endswith("no support can stand under it: turn another side up.")
 

@@ -11,10 +11,11 @@ import pytest
 from attrs import evolve
 from numpy.typing import NDArray
 
+from shown_words import last_paragraph
 from slow_program import OFF, THICKNESS, TOOLS, Row, path, program_of, random_program, walked
-from workhold import Program, Query, Vise, Workpiece, answer
+from workhold import Program, Query, Vise, Workpiece, answer, circle_zone
 from workhold.geometry.loop import loop_segments
-from workhold.model.requirements import circle_zone, zone_of
+from workhold.model.requirements import zone_of
 from workhold.model.support_request import SupportRequest
 from workhold.supports.choosing import WorkLimit
 from workhold.supports.clamp_point import ClampPlaces, point_on
@@ -22,8 +23,6 @@ from workhold.supports.faces import FaceBorders, TouchableFace, offset_curves
 from workhold.supports.forces import Triangles
 from workhold.supports.listing import supports_of, supports_one_by_one
 from workhold.supports.program import FINEST, MOST_ABOVE, capsule, with_program
-from workhold.supports.words import why_no_set
-from workhold.units import MILLIMETRE
 
 Array = NDArray[np.float64]
 PART = Workpiece.from_points("plate", [(0, 0), (60, 0), (60, 40), (0, 40)])
@@ -204,7 +203,7 @@ def test_a_top_that_is_machined_all_over_is_said_to_be() -> None:
     (fixture, *_) = list(answer(query))
     found = supports_of(fixture, query, SupportRequest(THICKNESS, PAD, TIP))
     assert not found.triples
-    sentence = why_no_set(found, MILLIMETRE)
+    sentence = last_paragraph(found)
     assert "the tools of the program and the keep-outs leave no place on the upper face" in sentence
 
 

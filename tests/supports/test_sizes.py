@@ -6,8 +6,8 @@ import pytest
 from attrs import evolve
 
 from supports.cases import case
+from workhold import Query
 from workhold.fixels.support_hardware import SupportPads, TopClamp
-from workhold.model.query import Query
 from workhold.model.support_request import SpatialLoad
 from workhold.model.support_triples import Supports
 from workhold.supports.asking import SMALLER, requests_by_size, supported_by_size

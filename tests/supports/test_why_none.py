@@ -7,14 +7,12 @@ import re
 import pytest
 from attrs import evolve
 
+from shown_words import last_paragraph
 from supports.cases import case
-from workhold import Vise
-from workhold.model.query import Query
+from workhold import Query, Vise
 from workhold.model.support_request import SupportRequest
 from workhold.model.support_triples import Supports
 from workhold.supports.listing import supports_of
-from workhold.supports.words import why_no_set
-from workhold.units import MILLIMETRE
 
 
 def asked(request: SupportRequest, columns: int | None = None) -> Supports:
@@ -29,7 +27,7 @@ def asked(request: SupportRequest, columns: int | None = None) -> Supports:
 def test_smaller_pads_that_are_said_to_help_leave_three_holes() -> None:
     """The radius that is said leaves three holes, and one that is a little larger does not."""
     request = evolve(case("bracketL").request, pad_margin=12.5)
-    sentence = why_no_set(asked(request), MILLIMETRE)
+    sentence = last_paragraph(asked(request))
     said = re.search(r"three have it for pads of radius ([\d.]+) mm", sentence)
     assert said is not None, sentence
     radius = float(said[1])
@@ -40,7 +38,7 @@ def test_smaller_pads_that_are_said_to_help_leave_three_holes() -> None:
 def test_pads_too_small_to_be_any_are_not_said_to_help() -> None:
     """Where three holes have room for less than the least pads only, another pitch or fixture is what helps."""
     request = evolve(case("bracketL").request, pad_margin=14.0)
-    sentence = why_no_set(asked(request), MILLIMETRE)
+    sentence = last_paragraph(asked(request))
     assert "no three have it for pads of radius 2.000 mm; a finer pitch would help, or another" in sentence
     assert asked(evolve(request, pad_radius=0.1)).positions >= 3
 
@@ -57,5 +55,5 @@ def test_pads_too_small_to_be_any_are_not_said_to_help() -> None:
 def test_each_reason_is_said(change: dict[str, object], columns: int | None, words: str) -> None:
     """One sentence with what is in the way."""
     found = asked(evolve(case("bracketL").request, **change), columns)
-    sentence = why_no_set(found, MILLIMETRE)
+    sentence = last_paragraph(found)
     assert not found.triples and words in sentence and not sentence.count(". ")

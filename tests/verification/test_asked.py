@@ -11,14 +11,11 @@ import attrs
 import numpy as np
 import pytest
 
-from workhold import Result, Vise, design, load
+from workhold import Load, Restrictions, Result, Vise, circle_zone, design, load
 from workhold.listing.ranking import order_keys, usual_errors
 from workhold.model.first_choice import figures_ranked_by
 from workhold.model.quality import FIGURES, whole_rows
-from workhold.model.requirements import Load, Restrictions, circle_zone
 from workhold.verification import Verification, verify
-from workhold.verification.placing import broken_restriction
-from workhold.verification.rules.hardware import ToolkitRules
 
 Verify = Callable[[Callable[[dict[str, Any]], object]], Verification]
 
@@ -76,8 +73,9 @@ def test_blocked_holes_and_bodies_are_looked_at(limited: Result) -> None:
     nearest = min(hypot(a.x - b.x, a.y - b.y) for a, b in combinations(limited[0].pegs, 2))
     for radius, words in ((nearest / 2 - 1e-5, ""), (nearest / 2 + 1e-5, "overlap")):
         vise = attrs.evolve(limited.toolkit, body_radius=radius, blocked=[])
-        found = broken_restriction(limited[0], attrs.evolve(free, toolkit=vise), ToolkitRules(vise))
-        assert words in found and bool(found) == bool(words)
+        outcome = verify(attrs.evolve(limited, query=attrs.evolve(free, toolkit=vise)))
+        found = [item.reason for item in outcome.unproven if item.index == 0]
+        assert len(found) == bool(words) and all(words in reason for reason in found)
 
 
 @pytest.mark.parametrize("number", range(len(FIGURES)))

@@ -9,10 +9,7 @@ from attrs import evolve
 
 import workhold
 from own_heights import BASE, HEIGHT, STEM, stepped
-from workhold import Plate, Vise
-from workhold.model.fixture import Fixture
-from workhold.model.query import Query
-from workhold.model.result import Result
+from workhold import Fixture, Plate, Query, Result, Vise
 from workhold.model.support_request import SupportRequest
 from workhold.verification.supports import band_faults
 

@@ -14,15 +14,15 @@ from flint import arb
 from hypothesis import given
 
 from closing_forces import null_vectors
+from judged import posed, rules_in
 from strategies import seeds
 from workhold import Vise
 from workhold.verification.ball_geometry import Point
-from workhold.verification.contacts import Balance, BallPose, closure_findings, minors, span
-from workhold.verification.rules.hardware import ToolkitRules
+from workhold.verification.contacts import Balance, closure_findings, minors, span
 
 # The part as it is drawn.
-HARDWARE = ToolkitRules(Vise(pitch=10, columns=1, peg_radius=0))
-UPRIGHT = BallPose.of(arb(0), arb(0), arb(0), arb(0))
+HARDWARE = rules_in(Vise(pitch=10, columns=1, peg_radius=0))
+UPRIGHT = posed(0)
 
 
 def random_contacts(random: Random) -> tuple[list[tuple[float, float]], list[float]]:

@@ -10,22 +10,19 @@ from typing import Any
 import numpy as np
 import pytest
 from attrs import evolve
-from flint import arb
 from numpy.typing import NDArray
 
 import workhold
+from judged import faults_of, posed
 from toolkit_results import assert_all_proven, part, verify_edited
-from workhold import Fence, Query, Result, Workpiece, answer, design
-from workhold.completeness import verify as verify_completely
-from workhold.model.requirements import Load, Restrictions, circle_zone
+from workhold import Fence, Load, Query, Restrictions, Result, Workpiece, answer, circle_zone, design
+from workhold import verify as verify_completely
 from workhold.model.search_report import AT_AN_EDGE, Undecided
 from workhold.search.wall_contacts import PinContacts
 from workhold.search.wall_search import WallSearch
 from workhold.verification import Verification, verify, verify_fixture
 from workhold.verification.ball_geometry import BallOutline
-from workhold.verification.contacts import BallPose as Balls
 from workhold.verification.rules.wall import flush_findings, wall_contacts
-from workhold.verification.undecided import undecided_faults
 
 Data = dict[str, Any]
 Edit = Callable[[Data], object]
@@ -221,8 +218,8 @@ def test_undecided_entries_must_name_faces_and_reasons() -> None:
     """Their places are not looked at."""
     query = Query(part(KITE), Fence(10, 3, wall_offset=5))
     entry = Undecided("edge -x", (1, 0, 0, 3), (0, 0, 0, 0), (0, 0, 0, 2), 0.0, AT_AN_EDGE, 0.0)
-    assert list(undecided_faults([entry], query)) == []
-    assert len(list(undecided_faults([evolve(entry, faces=(9, 0, 0, 3))], query))) == 1
+    assert faults_of([entry], query) == []
+    assert len(faults_of([evolve(entry, faces=(9, 0, 0, 3))], query)) == 1
     assert answer(query).proof is not None
 
 
@@ -287,7 +284,7 @@ def test_a_foot_beyond_the_ends_that_are_told_is_found() -> None:
         [48, 0, 0],
     ]
     workpiece = part([*feet, [56, 0, 0], [50, 30, 0], [4, 34, 0]])
-    outline, pose = BallOutline.of(workpiece), Balls.of(arb(0), arb(0), arb(0), arb(0))
+    outline, pose = BallOutline.of(workpiece), posed(0)
     left, right = wall_contacts([outline.faces[0], outline.faces[8]], outline, pose)
     inner = evolve(right, piece=evolve(right.piece, center=outline.faces[5].start), faces=(4,))
     pegs = [workhold.Peg("wall", 0, 0, x, 0.0, face, 0.5) for x, face in ((0.0, 0), (56.0, 8), (32.0, 4))]

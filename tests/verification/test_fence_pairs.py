@@ -12,15 +12,12 @@ import pytest
 from attrs import evolve
 
 import workhold
+from judged import faults_of, known_in
 from toolkit_results import assert_all_proven, part, verify_edited
-from workhold import Fence, InputError, Result, design
-from workhold.listing.seats import undecided_pairs
-from workhold.model.requirements import Load, Restrictions, circle_zone
+from undecided_examples import pairs_undecided
+from workhold import Fence, InputError, Load, Restrictions, Result, circle_zone, design
 from workhold.model.search_report import Undecided, no_pair_note
 from workhold.verification import Verification, verify, verify_fixture
-from workhold.verification.repeats import KnownFixtures
-from workhold.verification.rules.hardware import ToolkitRules
-from workhold.verification.undecided import undecided_faults
 
 Data = dict[str, Any]
 Edit = Callable[[Data], object]
@@ -184,7 +181,7 @@ def test_the_account_is_held_to_what_is_listed(results: dict[str, Result], edite
     assert "it has the seat and the directions of fixture 1" in again
     assert "the one before it" in told(edited(lambda content: content["fixtures"].reverse()))
     every = results["all"]
-    seen, less = KnownFixtures(ToolkitRules(every.toolkit)), len(every) - 1
+    seen, less = known_in(every.toolkit), len(every) - 1
     second = next(index for index, fixture in enumerate(every) if seen.add(index, fixture) is not None)
     table = every.table.take(np.delete(np.arange(len(every)), second))
     short = evolve(every, table=table, found={"edge2": less}, distinct={"edge2": less}, pairs=less)
@@ -197,7 +194,7 @@ def test_the_account_is_held_to_what_is_listed(results: dict[str, Result], edite
 def test_another_pair_of_the_seat_is_not_the_best(results: dict[str, Result]) -> None:
     """Each pair of a seat in place of its best: proven just where it is as good."""
     best, every = results["best"], results["all"]
-    seen, refuted = KnownFixtures(ToolkitRules(best.toolkit)), 0
+    seen, refuted = known_in(best.toolkit), 0
     for index, fixture in enumerate(best):
         seen.add(index, fixture)
     for place in range(0, len(every), 3):
@@ -248,10 +245,10 @@ def test_a_tip_keeps_off_the_wall() -> None:
 def test_an_undecided_pair_is_named_as_it_must_be(results: dict[str, Result]) -> None:
     """By its kind, directions and faces."""
     result = results["best"]
-    entries: list[Undecided] = undecided_pairs(result.table.take(np.arange(3)), result.toolkit)
-    assert list(undecided_faults(entries, result.query)) == []
+    entries: list[Undecided] = pairs_undecided(result.table.take(np.arange(3)), result.toolkit)
+    assert faults_of(entries, result.query) == []
     single = f"edge {entries[0].type.split()[1]}"
     four = evolve(entries[0], type=single, faces=entries[0].faces[:4], columns=(0,) * 4, rows=(0,) * 4)
-    assert list(undecided_faults([four], result.query)) == []
+    assert faults_of([four], result.query) == []
     for edit in ({"type": "edge2 -x +x"}, {"type": "clamp2 -x -y"}, {"faces": (99, *entries[0].faces[1:])}):
-        assert len(list(undecided_faults([evolve(entries[0], **edit)], result.query))) == 1, edit
+        assert len(faults_of([evolve(entries[0], **edit)], result.query)) == 1, edit

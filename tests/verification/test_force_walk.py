@@ -13,18 +13,15 @@ import pytest
 from attrs import evolve
 from flint import arb
 
+import workhold
 from slow_program import PEG_HEIGHT, kinds_of_toolkit, random_program
 from strategies import random_outline
-from workhold import Query, Result, answer
-from workhold.files.result.columns import write_columns
-from workhold.files.result.reader import read_result
-from workhold.files.result.writer import write_result
+from workhold import Program, Query, Result, answer, save
 from workhold.model.cutting_forces import forces_on
 from workhold.model.cutting_tool import CuttingData, CuttingDirection
-from workhold.model.program import Program
 from workhold.statics.path_forces import path_forces
+from workhold.verification import verify_file
 from workhold.verification.force_walk import ForceWalk
-from workhold.verification.verify import verify_file
 
 KINDS = tuple(kinds_of_toolkit(10.0))
 
@@ -65,13 +62,13 @@ def test_the_walk_agrees_with_the_closed_form(seed: int, direction: CuttingDirec
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_fixture_of_a_list_with_forces_is_proven(kind: str, tmp_path: Path) -> None:
     result = result_of(kind, best=5, jaw_force=2500.0, direction="feed" if kind == "vise" else "any")
-    write_result(result, tmp_path / "a.json")
-    write_columns(result, tmp_path / "a.npz")
+    save(result, tmp_path / "a.json")
+    save(result, tmp_path / "a.npz")
     for name in ("a.json", "a.npz"):
         found = verify_file(tmp_path / name)
         assert found.proven == len(result) > 0 and not found.faults, [one.reason for one in found.unproven]
-    read = read_result(tmp_path / "a.json")
-    write_result(read, tmp_path / "b.json")
+    read = workhold.open(tmp_path / "a.json")
+    save(read, tmp_path / "b.json")
     assert (tmp_path / "a.json").read_bytes() == (tmp_path / "b.json").read_bytes()
 
 
@@ -97,7 +94,7 @@ CHANGES: list[tuple[Callable[[dict[str, Any]], Any], str]] = [
 def written(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     """A file of three fixtures."""
     path = tmp_path_factory.mktemp("forces") / "a.json"
-    write_result(result_of("vise", best=3, jaw_force=2500.0), path)
+    save(result_of("vise", best=3, jaw_force=2500.0), path)
     data: dict[str, Any] = json.loads(path.read_text())
     return data
 

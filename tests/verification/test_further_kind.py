@@ -17,15 +17,14 @@ import numpy as np
 import pytest
 from attrs import evolve, frozen
 
+from judged import known_in, place_in_order, rules_in
 from workhold import Fixture, InputError, Workpiece
 from workhold.fixels.support_hardware import PinLimits
 from workhold.fixels.toolkit import Arrangement, Carrier, Limit, Symmetry, Toolkit, Travel
 from workhold.geometry.segment import Line, distance_to_segment
 from workhold.verification import Ruling, verify_fixture
-from workhold.verification.judging import rank
 from workhold.verification.reading import fixtures_of
-from workhold.verification.repeats import KnownFixtures, stance
-from workhold.verification.rules.hardware import ToolkitRules
+from workhold.verification.repeats import stance
 from workhold.verification.seating import stop_of
 
 Data = dict[str, Any]
@@ -84,7 +83,7 @@ class Known:
     def read(self, item: Data) -> Fixture:
         """A fixture from its JSON object."""
         (fixture,) = fixtures_of([item], Path("truth"))
-        return ToolkitRules(self.toolkit).taken(fixture)
+        return rules_in(self.toolkit).taken(fixture)
 
     def ruling(self, item: Data, **fields: Any) -> Ruling:
         """What is shown of a fixture, perhaps in a toolkit with other fields."""
@@ -122,12 +121,12 @@ def on_faces(item: Data, workpiece: Workpiece) -> Data:
 
 def test_every_true_fixture_is_proven(known: Known) -> None:
     """At the lowest precision, and no two are the same."""
-    seen = KnownFixtures(ToolkitRules(known.toolkit))
+    seen = known_in(known.toolkit)
     for number, item in enumerate(known.items):
         ruling = known.ruling(item)
         assert (ruling.verdict, ruling.bits) == ("proven", 128), (number, ruling)
         assert seen.add(number, known.read(item)) is None
-    assert ToolkitRules(known.toolkit).names == (
+    assert rules_in(known.toolkit).names == (
         "the fixed jaw at its left end",
         "the fixed jaw at its right end",
         "peg 1",
@@ -271,8 +270,7 @@ def test_the_part_lies_on_the_wall_and_off_the_pegs(known: Known) -> None:
 
 def test_the_same_fixture_is_known_again(known: Known) -> None:
     """With both pegs moved by whole holes, the jaw with them, or their names exchanged; not turned half way round."""
-    hardware, (pitch, _) = ToolkitRules(known.toolkit), known.toolkit.pitch
-    seen = KnownFixtures(hardware)
+    seen, (pitch, _) = known_in(known.toolkit), known.toolkit.pitch
     for number, item in enumerate(known.items):
         seen.add(number, known.read(item))
     for number, item in enumerate(known.items):
@@ -280,7 +278,7 @@ def test_the_same_fixture_is_known_again(known: Known) -> None:
         shifted(other, 2, 3, pitch)
         other["pegs"].reverse()
         assert seen.find(known.read(other)) == number
-        assert rank(known.read(item), hardware)[2] == [
+        assert place_in_order(known.read(item), known.toolkit)[2] == [
             *item["wall"]["segments"],
             *(p["segment"] for p in item["pegs"]),
         ]

@@ -11,8 +11,7 @@ from typing import Any
 import attrs
 import pytest
 
-from workhold import InputError, Result
-from workhold.files.result.writer import write_result
+from workhold import InputError, Result, save
 from workhold.verification import verify_file
 from workhold.verification.listing import read_listing
 
@@ -106,7 +105,7 @@ def test_further_keys_and_other_layouts_do_no_harm(widget_data: Data, tmp_path: 
 def test_a_key_given_twice_is_refused(widget_result: Result, tmp_path: Path) -> None:
     """As in every file that is read: of two values one would be proven and the other one shown."""
     path = tmp_path / "r.json"
-    write_result(widget_result, path)
+    save(widget_result, path)
     text = path.read_text(encoding="utf-8")
     for twice in (
         '"counts": {"I": 0, "II": 0}, "counts"',

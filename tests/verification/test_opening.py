@@ -7,8 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from workhold import Fixture, Peg, Pose, Vise, Workpiece
-from workhold.fixels.vise import OpeningVise
+from workhold import Fixture, OpeningVise, Peg, Pose, Vise, Workpiece
 from workhold.verification import verify_file, verify_fixture
 
 SQUARE = [[-17, -17, 0], [-17, 17, 0], [17, 17, 0], [17, -17, 0]]

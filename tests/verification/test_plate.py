@@ -10,25 +10,31 @@ from typing import Any
 
 import attrs
 import pytest
-from flint import arb
 
 import check_toolkit
 import workhold
+from judged import faults_of, known_in, place_in_order, posed, rules_in
 from strategies import random_outline
 from toolkit_results import assert_all_proven, part, verify_edited
 from undecided_examples import as_undecided
-from workhold import Fixture, InputError, Plate, Pose, Query, Result, answer, design
+from workhold import (
+    Fixture,
+    InputError,
+    Load,
+    Plate,
+    Pose,
+    Query,
+    Restrictions,
+    Result,
+    answer,
+    circle_zone,
+    design,
+)
 from workhold.listing.results import joined_ways
 from workhold.model.quality import FIGURE_RANKING
-from workhold.model.requirements import Load, Restrictions, circle_zone
 from workhold.model.search_report import GIVEN_UP, Undecided, no_fixture_notes, undecided_note
 from workhold.verification import Verification, verify, verify_file, verify_fixture
 from workhold.verification.ball_geometry import BallOutline
-from workhold.verification.contacts import BallPose as Balls
-from workhold.verification.judging import rank
-from workhold.verification.repeats import KnownFixtures
-from workhold.verification.rules.hardware import ToolkitRules
-from workhold.verification.undecided import undecided_faults
 
 Data = dict[str, Any]
 Edit = Callable[[Data], object]
@@ -368,7 +374,7 @@ def loops_of(loop: list[list[float]]) -> list[list[list[float]]]:
 
 def test_the_half_turn_and_other_names_are_the_same(result: Result) -> None:
     """A fixture moved by whole holes, with its locators renamed, or on the plate turned half way round, is the same."""
-    seen = KnownFixtures(ToolkitRules(result.toolkit))
+    seen = known_in(result.toolkit)
     for index, fixture in enumerate(result):
         assert seen.add(index, fixture) is None
     opposite = {"-x": "+x", "+x": "-x", "-y": "+y", "+y": "-y"}
@@ -418,7 +424,7 @@ def test_a_clamp_keeps_its_distance_from_locators(
     column: int, row: int, pitch_y: float, radius: float, meets: bool
 ) -> None:
     """A locator of 2 mm beside the body from hole G1 at x = 60 to the tip at 50, before the tip and behind the hole."""
-    hardware = ToolkitRules(Plate((10, pitch_y), 2, clamp_radius=radius, travel=(0, 30)))
+    hardware = rules_in(Plate((10, pitch_y), 2, clamp_radius=radius, travel=(0, 30)))
     pegs = [workhold.Peg("plate", k, 40, 0.0, 0.0, 0, 1.0) for k in (0, 1)]
     pegs += [
         workhold.Peg("plate", column, row, 0.0, 0.0, 0, 1.0),
@@ -427,7 +433,7 @@ def test_a_clamp_keeps_its_distance_from_locators(
     fixture = Fixture("clamp", tuple(pegs), Pose(0.0, 0.0, 0.0), -10.0, {}, "-x")
     outline = BallOutline.of(part([[x + 500.0, y, b] for x, y, b in NOTCHED]))
     contacts = [hardware.contact(peg, outline.faces[0]) for peg in pegs]
-    at = Balls.of(arb(0), arb(0), arb(0), arb(-10))
+    at = posed(-10)
     said = [found.reason for found in hardware.standing_findings(fixture, contacts, at, outline)]
     # It could be bolted at its tip, in F1.
     assert [reason for reason in said if "locator 3" in reason] == [
@@ -441,7 +447,7 @@ def test_the_order_is_that_of_the_plate_turned_to_the_clamp() -> None:
     workpiece = part(NOTCHED)
     upright, lying = Plate((14, 20), 3, directions="-y"), Plate((20, 14), 3, directions="-x")
     one, other = (
-        [rank(f, ToolkitRules(plate)) for f in design(workpiece, plate, rank_by=FIGURE_RANKING)]
+        [place_in_order(f, plate) for f in design(workpiece, plate, rank_by=FIGURE_RANKING)]
         for plate in (upright, lying)
     )
     assert len(one) == len(other) > 10
@@ -457,7 +463,7 @@ def test_undecided_entries_are_real_places(result: Result) -> None:
     """Where fixtures are there may be undecided ones; not at another orientation, in other holes or of another type."""
 
     def faults(entry: Undecided) -> list[str]:
-        return list(undecided_faults([entry], result.query))
+        return faults_of([entry], result.query)
 
     tried = 0
     for fixture in result:

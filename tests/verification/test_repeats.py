@@ -8,11 +8,10 @@ from math import pi
 import attrs
 import pytest
 
+from judged import known_in, place_in_order, rules_in
 from workhold import Fence, Fixture, Peg, Pose, Result, Vise
 from workhold.verification import repeats
-from workhold.verification.judging import rank
 from workhold.verification.repeats import Key, KnownFixtures, Place
-from workhold.verification.rules.hardware import ToolkitRules
 
 
 def shifted(fixture: Fixture, rows: int) -> Fixture:
@@ -53,7 +52,7 @@ def moved(fixture: Fixture, distance: float) -> Fixture:
 
 @pytest.mark.parametrize("again", [lambda f: f, lambda f: shifted(f, 3), renamed, half_turned])
 def test_the_same(widget_result: Result, again: object) -> None:
-    seen = KnownFixtures(ToolkitRules(widget_result.toolkit))
+    seen = known_in(widget_result.toolkit)
     for index, fixture in enumerate(widget_result):
         assert seen.add(index, fixture) is None
     for index, fixture in enumerate(widget_result):
@@ -62,7 +61,7 @@ def test_the_same(widget_result: Result, again: object) -> None:
 
 def test_not_the_same(widget_result: Result) -> None:
     """Another place of the workpiece, or another opening with the same left pegs and pose."""
-    seen = KnownFixtures(ToolkitRules(widget_result.toolkit))
+    seen = known_in(widget_result.toolkit)
     fixture = widget_result[0]
     right = [attrs.evolve(peg, x=peg.x + 5.0 * (peg.carrier == "right")) for peg in fixture.pegs]
     wider = attrs.evolve(fixture, pegs=tuple(right), jaw_separation=fixture.jaw_separation + 5.0)
@@ -95,7 +94,7 @@ def test_one_set_when_a_rotation_carries_one_to_the_other(
     """The rotation is known to the millionths by which a drawing may miss its symmetry; so much may the fixtures differ
     that it carries into each other."""
     monkeypatch.setattr(repeats, "patterns", one_pattern)
-    seen = KnownFixtures(ToolkitRules(Vise(pitch=10, columns=1, peg_radius=0)), [pi / 2], (10.0, -4.0))
+    seen = KnownFixtures(rules_in(Vise(pitch=10, columns=1, peg_radius=0)), [pi / 2], (10.0, -4.0))
     image = [0.5 + pi / 2, 10.0 + 7.0, -4.0 - 20.0, 33.0]
     image[number] += off
     assert seen.add(0, Placed((0.5, 30.0, 3.0, 33.0))) is None  # type: ignore[arg-type]
@@ -125,7 +124,7 @@ def test_beside_a_wall_only_steps_along_it_leave_a_fixture_as_it_is() -> None:
         pose = Pose(10.0 + 90.0 * (1 - sign), sign * 7.0 + 20.0 * columns, sign * 3.0 + 20.0 * rows)
         return Fixture("edge", tuple(pegs), pose, 0.0, {}, "-x" if sign > 0 else "+x")
 
-    seen = KnownFixtures(ToolkitRules(Fence(20, 3, wall_offset=6)))
+    seen = known_in(Fence(20, 3, wall_offset=6))
     assert seen.add(0, moved_by(0, 0, 1)) is None
     assert seen.find(moved_by(2, 0, 1)) == 0
     assert seen.find(moved_by(0, 1, 1)) is None and seen.find(moved_by(0, 0, -1)) is None
@@ -133,11 +132,11 @@ def test_beside_a_wall_only_steps_along_it_leave_a_fixture_as_it_is() -> None:
 
 def test_a_half_turn_leaves_the_place_in_the_order_as_it_is(widget_result: Result) -> None:
     """Of fixtures with two pegs on each jaw, which are seen as they lie below half a turn."""
-    rules, looked_at = ToolkitRules(widget_result.toolkit), 0
+    toolkit, looked_at = widget_result.toolkit, 0
     for fixture in widget_result:
         if fixture.type == "I":
             (holes, angle, faces), (others, theta, touched) = (
-                rank(f, rules) for f in (fixture, half_turned(fixture))
+                place_in_order(f, toolkit) for f in (fixture, half_turned(fixture))
             )
             assert (holes, faces) == (others, touched) and angle == pytest.approx(theta, abs=1e-9)
             looked_at += len(set(faces[:2]) ^ set(faces[2:])) > 0

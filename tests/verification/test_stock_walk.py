@@ -13,13 +13,12 @@ from attrs import evolve
 
 from slow_program import PEG_HEIGHT, kinds_of_toolkit, random_program
 from strategies import random_outline
-from workhold import Program, Query, Workpiece, answer
-from workhold.files.result.writer import write_result
+from workhold import Program, Query, Workpiece, answer, save
 from workhold.model.cutting_forces import forces_on
 from workhold.model.cutting_tool import CuttingData
 from workhold.model.stock import Stock, StockShape
+from workhold.verification import verify_file
 from workhold.verification.stock_walk import stock_faults
-from workhold.verification.verify import verify_file
 
 
 def asked(seed: int, side: float = 5.0, shape: StockShape = "outline") -> Query:
@@ -94,7 +93,7 @@ def test_a_file_that_says_otherwise_is_refused(
     change: Callable[[dict[str, Any]], Any], said: str, tmp_path: Path
 ) -> None:
     path = tmp_path / "a.json"
-    write_result(answer(milled(tmp_path), threads=1), path)
+    save(answer(milled(tmp_path), threads=1), path)
     assert verify_file(path).holds
     data = json.loads(path.read_text())
     change(data["program"])
@@ -109,7 +108,7 @@ def test_a_file_without_a_stock_is_read_as_it_stands(tmp_path: Path) -> None:
     assert query.program is not None
     bare = evolve(query.program, stock=None, is_placed=False)
     forces = forces_on(bare.moves, bare.tools, CuttingData(cutting_force=400, cut_depth=2))
-    write_result(answer(evolve(query, program=evolve(bare, forces=forces)), threads=1), path)
+    save(answer(evolve(query, program=evolve(bare, forces=forces)), threads=1), path)
     data = json.loads(path.read_text())
     assert "stock" not in data["program"]
     for one in data["program"]["pieces"]:

@@ -14,13 +14,9 @@ from attrs import evolve
 
 from slow_program import OFF, PEG_HEIGHT, kinds_of_toolkit, low_points, random_program, slow_clearance
 from strategies import random_outline
-from workhold import Query, Result, answer
-from workhold.files.result.columns import write_columns
-from workhold.files.result.writer import write_result
-from workhold.model.program import Program
-from workhold.verification.rules.hardware import ToolkitRules
+from workhold import Program, Query, Result, answer, save
+from workhold.verification import Judge, verify, verify_file
 from workhold.verification.tool_walk import Element, elements_of, program_fault, walk_of
-from workhold.verification.verify import verify, verify_file
 
 KINDS = tuple(kinds_of_toolkit(10.0))
 
@@ -44,8 +40,8 @@ def program_of_result(result: Result) -> Program:
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_fixture_of_a_list_is_proven_in_either_form(kind: str, tmp_path: Path) -> None:
     result = result_of(kind, best=6, ranking=["program-clearance", "closure-margin"])
-    write_result(result, tmp_path / "a.json")
-    write_columns(result, tmp_path / "a.npz")
+    save(result, tmp_path / "a.json")
+    save(result, tmp_path / "a.npz")
     for name in ("a.json", "a.npz"):
         found = verify_file(tmp_path / name)
         assert found.proven == len(result) > 0 and not found.faults
@@ -55,7 +51,7 @@ def test_every_fixture_of_a_list_is_proven_in_either_form(kind: str, tmp_path: P
 def test_what_the_program_rules_out_is_refuted_and_nothing_else(kind: str) -> None:
     some, full = result_of(kind), result_of(kind, program=False)
     program = program_of_result(some)
-    low, rules = low_points(program, PEG_HEIGHT), ToolkitRules.of(some.query)
+    low, rules = low_points(program, PEG_HEIGHT), Judge(some.query).hardware
     refused = 0
     for fixture in full[:150]:
         clear = slow_clearance(fixture, full.toolkit, low)
@@ -71,7 +67,7 @@ def test_what_the_program_rules_out_is_refuted_and_nothing_else(kind: str) -> No
 def test_the_walk_is_between_its_bounds_and_they_are_near(rapid: Any) -> None:
     result = result_of("bolted fence")
     program = evolve(program_of_result(result), rapid=rapid)
-    low, rules = low_points(program, PEG_HEIGHT), ToolkitRules.of(result.query)
+    low, rules = low_points(program, PEG_HEIGHT), Judge(result.query).hardware
     for fixture in result[:40]:
         nearest = [walk_of(program).nearest(one) for one in elements_of(fixture, rules, PEG_HEIGHT)]
         least = min(one.low for one in nearest)
@@ -96,7 +92,7 @@ def test_a_helix_is_walked_down_to_the_height_of_an_element() -> None:
 
 def tampered(result: Result, change: Callable[[dict[str, Any]], Any], folder: Path) -> list[str]:
     """What a verification says of a file whose first fixture was changed."""
-    write_result(result, folder / "a.json")
+    save(result, folder / "a.json")
     data = json.loads((folder / "a.json").read_text())
     change(data["fixtures"][0])
     (folder / "b.json").write_text(json.dumps(data))

@@ -15,11 +15,23 @@ import pytest
 from flint import arb
 
 import workhold
+from judged import faults_of, known_in, posed, rules_in
 from toolkit_results import assert_all_proven, part, verify_edited
-from workhold import Fixture, InputError, Plate, Query, Result, Workpiece, design
-from workhold.listing.seats import undecided_pairs
-from workhold.model.fixture import Pair, Peg
-from workhold.model.requirements import Load, Restrictions, circle_zone
+from undecided_examples import pairs_undecided
+from workhold import (
+    Fixture,
+    InputError,
+    Load,
+    Peg,
+    Plate,
+    Query,
+    Restrictions,
+    Result,
+    Workpiece,
+    circle_zone,
+    design,
+)
+from workhold.model.fixture import Pair
 from workhold.model.search_report import AT_AN_EDGE, Undecided, no_pair_note
 from workhold.verification import Verification, verify, verify_fixture
 from workhold.verification.account import too_few_contacts
@@ -27,12 +39,9 @@ from workhold.verification.ball_geometry import BallOutline
 from workhold.verification.contacts import BallContact
 from workhold.verification.contacts import BallPose as Balls
 from workhold.verification.listing import listing_of
-from workhold.verification.repeats import KnownFixtures
-from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.rules.travel import WAYS, Stroke, clamp_place
 from workhold.verification.seat import LocatorWrenches, Push, SeatBalance, closure_margin, ratio_of
 from workhold.verification.seat_clamps import SeatClamp, SeatOnPlate
-from workhold.verification.undecided import undecided_faults
 
 Data = dict[str, Any]
 Edit = Callable[[Data], object]
@@ -245,8 +254,7 @@ def test_the_account_is_held_to_what_is_listed(edited: Any) -> None:
 def test_a_pair_left_out_of_all_is_missed(results: dict[str, Result]) -> None:
     """With all counts adjusted: the pairs of each seat are derived."""
     result = results["all"]
-    rules = ToolkitRules(result.toolkit)
-    seen = KnownFixtures(rules)
+    seen = known_in(result.toolkit)
     again = [index for index, fixture in enumerate(result) if seen.add(index, fixture) is not None]
     kept = np.delete(np.arange(len(result)), again[0])
     less = len(result) - 1
@@ -266,7 +274,7 @@ def test_a_pair_left_out_of_all_is_missed(results: dict[str, Result]) -> None:
 def test_another_pair_of_the_seat_is_not_the_best(results: dict[str, Result]) -> None:
     """Each pair of a seat in place of its best: proven just where it is as good."""
     best, every = results["best"], results["all"]
-    seen = KnownFixtures(ToolkitRules(best.toolkit))
+    seen = known_in(best.toolkit)
     for index, fixture in enumerate(best):
         seen.add(index, fixture)
     refuted = 0
@@ -288,7 +296,7 @@ def test_another_pair_of_the_seat_is_not_the_best(results: dict[str, Result]) ->
 
 def standing(fixture: Fixture, workpiece: Workpiece, toolkit: Plate) -> SeatOnPlate:
     """The seat of a fixture, at its pose as it is written."""
-    rules, outline = ToolkitRules(toolkit), BallOutline.of(workpiece)
+    rules, outline = rules_in(toolkit), BallOutline.of(workpiece)
     pose = Balls.of(
         arb(fixture.pose.theta_deg) * arb.pi() / 180, arb(fixture.pose.x), arb(fixture.pose.y), arb(0)
     )
@@ -368,7 +376,7 @@ def test_clamps_that_touch_each_other_are_none() -> None:
 @pytest.mark.parametrize(("radius", "overlap"), [(4.999, False), (5.001, True)])
 def test_bodies_of_clamps_keep_clear_of_each_other_as_well(radius: float, overlap: bool) -> None:
     """One along a row from its hole at x = 30 to its tip at 0, and a tip 10 mm above the middle of that."""
-    pose = Balls.of(arb(0), arb(0), arb(0), arb(-30), arb(-40))
+    pose = posed(-30, -40)
     side, thick = BallOutline.of(part(BLOCK)).faces[0], arb(radius)
     lying = BallContact((arb(30), arb(0)), (arb(1), arb(0)), side, thick)
     upright = BallContact((arb(20), arb(50)), (arb(0), arb(1)), side, thick, travel=1)
@@ -445,9 +453,9 @@ def test_an_undecided_pair_is_a_place_or_a_fault(results: dict[str, Result]) -> 
     """Its locators with each of its clamps."""
     result = results["best"]
     table = result.table.take(np.arange(3))
-    entries = undecided_pairs(table, result.toolkit)
+    entries = pairs_undecided(table, result.toolkit)
     assert all(entry.reason == AT_AN_EDGE and len(entry.faces) == 5 for entry in entries)
-    assert list(undecided_faults(entries, result.query)) == []
+    assert faults_of(entries, result.query) == []
     for edit in (
         {"theta_deg": (entries[0].theta_deg + 5.0) % 360},
         {"faces": (entries[0].faces[2], *entries[0].faces[1:])},
@@ -456,6 +464,6 @@ def test_an_undecided_pair_is_a_place_or_a_fault(results: dict[str, Result]) -> 
         {"faces": entries[0].faces[:4]},
     ):
         entry: Undecided = attrs.evolve(entries[0], **edit)
-        assert len(list(undecided_faults([entry], result.query))) == 1, edit
+        assert len(faults_of([entry], result.query)) == 1, edit
     assert degrees(table.theta[0]) % 360 == pytest.approx(entries[0].theta_deg)
     assert {peg.carrier for peg in result[0].pegs[:3]} == {"plate"}

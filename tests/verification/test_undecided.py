@@ -7,12 +7,11 @@ from typing import Any
 import attrs
 import pytest
 
+from judged import faults_of
 from undecided_examples import as_undecided
-from workhold import OpeningVise, Query, Result, Workpiece
-from workhold.model.fixture import Fixture
+from workhold import Fixture, OpeningVise, Query, Result, Workpiece
 from workhold.model.search_report import GIVEN_UP, NEARLY_DOUBLE, UNBOUNDED, Undecided, undecided_note
 from workhold.verification import verify
-from workhold.verification.undecided import undecided_faults
 
 
 def as_chords(fixture: Fixture) -> Undecided:
@@ -30,7 +29,7 @@ def as_chords(fixture: Fixture) -> Undecided:
 
 def faults(entry: Undecided, result: Result) -> list[str]:
     """What is wrong with one entry."""
-    return list(undecided_faults([entry], result.query))
+    return faults_of([entry], result.query)
 
 
 def test_places_where_fixtures_are_may_be_undecided(widget_result: Result) -> None:
@@ -127,6 +126,6 @@ def test_what_is_undecided_need_not_be_a_solution(
     part = Workpiece.from_loops("plate", [[[0, 0, 0], [100, 0, 0], [100, 80, 0], [0, 80, 0]], *holes])
     query = Query(part, OpeningVise(pitch=10, columns=4, peg_radius=3))
     entry = Undecided("II", faces, columns, rows, theta, NEARLY_DOUBLE, reach)
-    assert list(undecided_faults([entry], query)) == []
+    assert faults_of([entry], query) == []
     known = attrs.evolve(entry, reach_deg=1e-8)
-    assert "is no place where" in next(undecided_faults([known], query))
+    assert "is no place where" in faults_of([known], query)[0]

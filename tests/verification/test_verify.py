@@ -13,8 +13,7 @@ from hypothesis import given, settings
 
 from fixture_sets import SETS, complete_set
 from strategies import outlines, vises
-from workhold import Fixture, Peg, Pose, Result, Vise, Workpiece, design, load
-from workhold.files.result.writer import write_result
+from workhold import Fixture, Peg, Pose, Result, Vise, Workpiece, design, load, save
 from workhold.verification import verify, verify_file, verify_fixture
 
 RING = [
@@ -57,7 +56,7 @@ def test_everything_a_search_lists_is_proven(
 ) -> None:
     workpiece = load(part) if isinstance(part, str) else Workpiece.from_loops("part", part)
     result = design(workpiece, vise)
-    write_result(result, tmp_path / "result.json")
+    save(result, tmp_path / "result.json")
     outcome = verify_file(tmp_path / "result.json")
     assert len(result) > 0
     assert outcome.proven == outcome.fixtures == len(result)

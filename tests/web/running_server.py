@@ -16,7 +16,7 @@ from attrs import define
 from warm_worker import warm_context
 
 from reading_here import work_reading_here
-from workhold.files.part.load import load
+from workhold import load
 from workhold.web.guard import Hosts, ServerLimits
 from workhold.web.origins import Origins
 from workhold.web.serve import Server, bound_socket, make_server
@@ -113,10 +113,9 @@ def arriving(server: RunningServer) -> int:
 
 @contextmanager
 def running_server(
-    hosts: Hosts | None = None,
     proxies: Collection[str] = (),
     token: str | None = None,
-    origins: Origins | None = None,
+    origins: Collection[str] = (),
     **limits: Any,
 ) -> Iterator[RunningServer]:
     """A server with one worker of each kind, ready for requests; workers are forked, and the desk
@@ -124,17 +123,17 @@ def running_server(
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("workhold.web.pool.work", work_reading_here)
         patch.setattr("workhold.web.pool.get_context", lambda _: warm_context())
-        yield from served(hosts, proxies, token, origins, **limits)
+        yield from served(proxies, token, origins, **limits)
 
 
 def served(
-    hosts: Hosts | None, proxies: Collection[str], token: str | None, origins: Origins | None, **limits: Any
+    proxies: Collection[str], token: str | None, origins: Collection[str], **limits: Any
 ) -> Iterator[RunningServer]:
     """What :func:`running_server` does, with the workers that there are."""
     listening = threading.Event()
     socket = bound_socket("127.0.0.1", 0)
     given = ServerLimits(**{"searches": 1, "desks": 1, "desk_seconds": PATIENCE, **limits})
-    server = make_server(given, hosts or Hosts(), listening.set, proxies, token, origins)
+    server = make_server(given, Hosts(), listening.set, proxies, token, Origins(origins))
     thread = threading.Thread(target=server.run, kwargs={"sockets": [socket]})
     thread.start()
     try:

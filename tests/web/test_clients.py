@@ -18,8 +18,6 @@ from typing import Any, ClassVar
 import pytest
 from running_server import RunningServer, running_server
 
-from workhold.web.origins import Origins
-
 pytestmark = pytest.mark.thorough
 
 ROOT = Path(__file__).parents[2]
@@ -56,7 +54,7 @@ def elsewhere() -> Iterator[str]:
 @pytest.fixture(scope="module")
 def serving(elsewhere: str) -> Iterator[RunningServer]:
     """A server that pages of the other site may use."""
-    with running_server(origins=Origins((elsewhere,))) as running:
+    with running_server(origins=[elsewhere]) as running:
         yield running
 
 

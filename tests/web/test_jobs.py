@@ -14,14 +14,10 @@ import pytest
 from running_server import LONG, PATIENCE, SQUARE, VISE, WIDGET, RunningServer, request
 from test_parts import refused
 
-from workhold.files.part.load import load
+from workhold import Load, Result, Tolerance, Vise, design, load
 from workhold.files.result.fixture_text import result_csv_text
 from workhold.files.result.writer import result_text
-from workhold.fixels.vise import Vise
 from workhold.model.quality import FIGURES, PIN_KEYS
-from workhold.model.requirements import Load, Tolerance
-from workhold.model.result import Result
-from workhold.search.design import design
 from workhold.statics.loads import load_cases
 
 LOAD = {"points": [[10, 5]], "force": 200, "directions": [-30, 30]}

@@ -10,10 +10,7 @@ import pytest
 from attrs import evolve
 
 import workhold.search.design as designing
-from workhold.files.part.load import load
-from workhold.fixels.vise import Vise
-from workhold.model.query import Query
-from workhold.model.result import Result
+from workhold import Query, Result, Vise, load
 from workhold.search import estimate
 from workhold.web.searching import FIRST, mark_of, search, with_best_first
 from workhold.web.worker import Order

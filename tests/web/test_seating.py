@@ -14,8 +14,7 @@ from running_server import RunningServer, request
 from test_parts import refused
 
 import workhold
-from workhold import Plate, Vise, Workpiece
-from workhold.model.result import Result
+from workhold import Plate, Result, Vise, Workpiece
 from workhold.model.search_report import by_hand_note
 from workhold.model.seating import Seating
 from workhold.web.fixture_tasks import ClosingForm, ClosingOrder, close

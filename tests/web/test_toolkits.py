@@ -11,16 +11,14 @@ import pytest
 from attrs import asdict, fields_dict
 from running_server import WIDGET, RunningServer, request
 
-from workhold.files.part.load import load
+from workhold import Plate, design, load
 from workhold.files.toolkit_file import load_toolkit, preset, preset_names
 from workhold.fixels.contacts import DIRECTIONS
 from workhold.fixels.kinds import ALIASES, KINDS, kind_of, toolkit_of
-from workhold.fixels.plate import Plate
 from workhold.fixels.support_hardware import HARDWARE
-from workhold.search.design import design
 from workhold.web.answers import fixture_answer
 from workhold.web.forms import JobForm
-from workhold.web.toolkits import DESCRIBED, Described, kinds_answer, page_kind, toolkit_answer
+from workhold.web.toolkits import DESCRIBED, Described
 
 RECTANGLE = {"name": "plate", "loops": [[[0, 0, 0], [90, 0, 0], [90, 50, 0], [0, 50, 0]]]}
 PLATE = {"kind": "translating-clamp", "pitch": [20, 20], "peg_radius": 3, "directions": ["-x", "-y"]}
@@ -64,9 +62,9 @@ def test_every_choice_can_be_asked_for(one: Described) -> None:
             assert json.loads(json.dumps(getattr(toolkit, field.name))) == json.loads(json.dumps(value))
 
 
-def test_every_figure_of_hardware_is_on_the_page() -> None:
+def test_every_figure_of_hardware_is_on_the_page(server: RunningServer) -> None:
     """Of supports and of the clamp on top, for every kind of toolkit; each can be asked for."""
-    for one in kinds_answer():
+    for one in server.client.get("/api/toolkits").json():
         assert [table["name"] for table in one["hardware"]] == list(HARDWARE)
         for table in one["hardware"]:
             fields = {field["name"]: field for field in table["fields"]}
@@ -87,19 +85,20 @@ def test_the_role_of_every_field_of_heights_is_told(one: Described) -> None:
     assert {one.roles[name]: tuple(ends) for name, ends in named.items()} == made.heights
 
 
-def test_a_preset_is_of_the_kind_that_says_most() -> None:
+def test_a_preset_is_of_the_kind_that_says_most(server: RunningServer) -> None:
     """A vise of one column is a gripper; every preset is asked for as the page shows it."""
-    kinds = {name: page_kind(load_toolkit(name)) for name in preset_names()}
+    presets = {one["name"]: one for one in server.client.get("/api/presets").json()}
+    kinds = {name: one["kind"] for name, one in presets.items()}
+    assert list(presets) == list(preset_names())
     assert kinds["gripper-one-column"] == "gripper" and kinds["gripper-two-columns"] == "vise"
     assert kinds["clamp-plate-20mm"] == "translating-clamp"
     for name, kind in kinds.items():
-        loaded = load_toolkit(name)
-        assert asked({"kind": kind, **toolkit_answer(loaded)["fields"]}) == loaded.toolkit
+        assert asked({"kind": kind, **presets[name]["fields"]}) == load_toolkit(name).toolkit
 
 
-def test_the_words_are_of_the_toolkit() -> None:
+def test_the_words_are_of_the_toolkit(server: RunningServer) -> None:
     """A plate has a clamp that closes, no jaws."""
-    told = {one["name"]: one for one in kinds_answer()}
+    told = {one["name"]: one for one in server.client.get("/api/toolkits").json()}
     plate = json.dumps(told["translating-clamp"])
     assert "jaw" not in plate and "vise" not in plate.lower()
     assert (told["translating-clamp"]["mover"], told["vise"]["mover"]) == ("clamp", "jaw")

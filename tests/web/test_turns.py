@@ -16,8 +16,9 @@ from running_server import LONG, PATIENCE, RunningServer, arriving, request, run
 
 from workhold.cli.main import app
 from workhold.web import serve
-from workhold.web.guard import Hosts, ServerLimits, usual_memory
+from workhold.web.guard import ServerLimits, usual_memory
 from workhold.web.pool import BusyError, Pool, PoolTask
+from workhold.web.serve import hosts_of
 
 T = TypeVar("T")
 OTHER = "127.0.0.2"
@@ -242,4 +243,4 @@ def test_searches_share_the_machines_memory() -> None:
 
 def test_the_names_of_the_server_hold_behind_a_proxy() -> None:
     """A proxy that hands the visitor's Host on needs its name to be allowed."""
-    assert Hosts(frozenset({"plates.example"})).knows("plates.example:443")
+    assert hosts_of("127.0.0.1", ["plates.example"]).knows("plates.example:443")

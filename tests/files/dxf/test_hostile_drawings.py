@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 from attrs import evolve
 
+from workhold import Workpiece
 from workhold.errors import InputError
 from workhold.files.budget import LIMITS
 from workhold.files.dxf.walk import BlockNesting, DxfWalk
@@ -17,7 +18,6 @@ from workhold.files.part.load import read_workpiece
 from workhold.files.part.survey import drawn_layers, survey
 from workhold.geometry import loop as loop_module
 from workhold.geometry.loop import Comparisons, LoopShape, loop_segments, near_segments
-from workhold.model.workpiece import Workpiece
 
 PLATE = [((0, 0), (60, 0)), ((60, 0), (60, 40)), ((60, 40), (0, 35)), ((0, 35), (0, 0))]
 

@@ -9,8 +9,9 @@ from pathlib import Path
 import pytest
 from reading_helpers import area
 
+from workhold import load
 from workhold.errors import InputError
-from workhold.files.part.load import load, read_workpiece
+from workhold.files.part.load import read_workpiece
 from workhold.geometry.loop import signed_area as loop_area
 from workhold.geometry.segment import Arc
 

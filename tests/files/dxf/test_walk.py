@@ -13,10 +13,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from reading_helpers import area, new_dxf, perimeter, read_dxf, rectangle
 
+from workhold import Workpiece, load
 from workhold.errors import InputError
 from workhold.files.budget import LIMITS
-from workhold.files.part.load import load, read_workpiece
-from workhold.model.workpiece import Workpiece
+from workhold.files.part.load import read_workpiece
 
 # A part without any symmetry, of lines, a convex and a concave arc; its arcs bulge by known amounts.
 ROWS = [(0, 0, 0), (30, 0, 0.5), (30, 12, 0), (18, 20, -0.3), (8, 16, 0), (0, 16, 0.2)]

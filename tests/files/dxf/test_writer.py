@@ -17,11 +17,9 @@ from ezdxf import options
 from ezdxf.document import Drawing
 from plate_examples import WAYS, on_plate
 
+from workhold import Fixture, Vise, Workpiece
 from workhold.files.dxf.writer import layers_of, plates_dxf, setup_dxf
-from workhold.fixels.vise import Vise
 from workhold.model.dowels import Bolts, jaw_plates, plate_places
-from workhold.model.fixture import Fixture
-from workhold.model.workpiece import Workpiece
 
 Held = tuple[Fixture, Workpiece, Vise]
 

@@ -12,9 +12,9 @@ from attrs import evolve
 
 from body_examples import BLOCK, TOOLKITS, held
 from glb_reading import ReadBody, fixture_glb, read_glb
+from workhold import Vise
 from workhold.errors import InputError
 from workhold.files.glb import SAGITTA, bodies_glb
-from workhold.fixels.vise import Vise
 from workhold.geometry.segment import Arc, Line
 from workhold.model.bodies import COLOURS, BodyKind, BodySizes, FixtureBody, Slab, fixture_bodies
 from workhold.model.solid import SolidOutline

@@ -20,13 +20,12 @@ from ezdxf.math import (
 from reading_helpers import area, read_dxf, read_svg, rectangle
 
 import workhold
+from workhold import Tolerance, Workpiece
 from workhold.drawing.part_pictures import first_parameter
 from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece
 from workhold.geometry.segment import Arc
-from workhold.model.requirements import Tolerance
 from workhold.model.search_report import fitted_note
-from workhold.model.workpiece import Workpiece
 
 MM = 'width="200mm" height="200mm" viewBox="0 0 200 200"'
 HANDLE = 4 / 3 * tan(pi / 8)

@@ -6,30 +6,24 @@ from math import pi
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from reading_helpers import area, read_dxf, rectangle
+from reading_helpers import area, read_dxf, read_svg, rectangle
 
 from workhold.errors import InputError
-from workhold.files.outline.joining import Loop
-from workhold.files.outline.nesting import nest
+
+PAGE = 'width="200mm" height="200mm" viewBox="-100 -100 200 200"'
 
 
-def ring(x: float, y: float, radius: float) -> Loop:
-    """A circle."""
-    return Loop(np.array([[x + radius, y, 1.0], [x - radius, y, 1.0]]), ("circle", "circle"))
-
-
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(depth=st.integers(1, 9), order=st.randoms(use_true_random=False))
-def test_concentric_circles_alternate(depth: int, order: Any) -> None:
+def test_concentric_circles_alternate(tmp_path: Path, depth: int, order: Any) -> None:
     """Rings 1, 2 ... n: every second pair is a part, an outer loop with one hole, area pi (R² - r²)."""
     radii = [2.0 * k + 1 for k in range(depth)]
-    rings = [ring(3, 4, radius) for radius in radii]
+    rings = [f'<circle cx="3" cy="4" r="{radius}"/>' for radius in radii]
     order.shuffle(rings)
-    parts = nest(rings)
+    parts = read_svg(tmp_path, "".join(rings), PAGE).parts
     outer = radii[::-1][::2]
     inner = [*radii[::-1][1::2], 0.0][: len(outer)]
     expected = sorted((pi * (R * R - r * r) for R, r in zip(outer, inner, strict=True)), reverse=True)
@@ -37,9 +31,14 @@ def test_concentric_circles_alternate(depth: int, order: Any) -> None:
     assert [part.number for part in parts] == list(range(1, len(parts) + 1))
 
 
-def test_holes_belong_to_the_loop_around_them() -> None:
+def test_holes_belong_to_the_loop_around_them(tmp_path: Path) -> None:
     """Two plates side by side, each with its own holes."""
-    parts = nest([ring(0, 0, 10), ring(3, 0, 1), ring(-3, 0, 1), ring(50, 0, 8), ring(52, 0, 2)])
+
+    def draw(space: Any) -> None:
+        for x, radius in ((0, 10), (3, 1), (-3, 1), (50, 8), (52, 2)):
+            space.add_circle((x, 0), radius)
+
+    parts = read_dxf(tmp_path, draw).parts
     assert [len(part.loops) for part in parts] == [3, 2]
     assert str(parts[1]) == "part 2 is 16 x 16 mm at (42, -8) with 1 hole"
 

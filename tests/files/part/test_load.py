@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 from reading_helpers import RECTANGLE, area
 
+from workhold import load
 from workhold.errors import InputError
-from workhold.files.part.load import builtin_parts, load, read_workpiece
+from workhold.files.part.load import builtin_parts, read_workpiece
 
 PLATE: dict[str, Any] = {"name": "plate", "units": "mm", "loops": [[[x, y, 0] for x, y in RECTANGLE]]}
 

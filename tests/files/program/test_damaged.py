@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from program_examples import PROGRAMS
 
+from workhold import Program
 from workhold.errors import InputError
-from workhold.model.program import Program
 
 SOURCES = sorted(path for path in PROGRAMS.iterdir() if path.suffix != ".md")
 TOOLS = dict.fromkeys(range(30), 6.0)

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from program_examples import PROGRAMS
 
+from workhold import Program
 from workhold.errors import InputError
-from workhold.model.program import Program
 from workhold.model.program_figures import tool_figures
 
 # Moves, lines left out, and the cutting length of each tool in mm.

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from program_examples import HEAD, read_text, shapes
 
+from workhold import Program
 from workhold.errors import InputError
 from workhold.files.program.reader import read_program_with_calls
-from workhold.model.program import Program
 
 TOOLS = {1: 10.0, 2: 8.0}
 START = HEAD + "G0 X0. Y0. Z20.\n"

@@ -8,10 +8,10 @@ import pytest
 from attrs import evolve
 from program_examples import HEAD, MILL, read_text
 
+from workhold import Program
 from workhold.errors import InputError
 from workhold.files.budget import LIMITS
 from workhold.files.program.reader import read_program_with_calls
-from workhold.model.program import Program
 
 START = HEAD + "G0 X0 Y0 Z20\n"
 # What stands in line 4 behind a beginning that moves, and a word of the sentence about it.

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from program_examples import HEAD, MILL, read_text, shapes
 
-from workhold.model.program import Program
+from workhold import Program
 
 CUT = "G0 X10 Y5 Z20\nG0 Z2\nG1 Z-3 F200\nX40\nY25.5\nG0 Z20\nM30\n"
 

@@ -5,12 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from program_examples import HEAD, read_text
+from program_examples import HEAD, read_text, read_tools
 
 from workhold.errors import InputError
-from workhold.files.program.tool_tables import commented_tools, read_tools
 from workhold.model.cutting_tool import Tool
-from workhold.units import INCH, MILLIMETRE
 
 TOML = """
 unit = "mm"
@@ -65,7 +63,7 @@ def table(folder: Path, text: str, name: str = "tools.toml") -> Path:
 )
 def test_tables_say_the_same(tmp_path: Path, name: str, text: str) -> None:
     """A flute up to the holder or the shank, the shank, the holder; commas, semicolons and tabs."""
-    found, said = read_tools(table(tmp_path, text, name), MILLIMETRE)
+    found, said = read_tools(tmp_path, table(tmp_path, text, name), 1, 12)
     assert stacks(found) == STACKS and found[1].name == "end mill" and found[12].diameter == 3.0
     assert said == (("unit" in text.split("[tool.12]")[0] and "unit" in text[:20]) or name != "tools.toml")
 
@@ -77,7 +75,7 @@ def test_lengths_are_in_the_unit_that_is_said_or_that_of_the_program(tmp_path: P
         ('unit = "mm"\ntool.1 = {diameter = 0.5}', 0.5),
         ('tool.1 = {diameter = 0.5, unit = "inch"}', 12.7),
     ):
-        found, said = read_tools(table(tmp_path, text), INCH)
+        found, said = read_tools(tmp_path, table(tmp_path, text), 1, unit="G20")
         assert found[1].diameter == diameter and said == ("unit" in text)
     program = HEAD.replace("G21", "G20") + "G0 X0 Y0 Z0\n"
     read = read_text(tmp_path, program, tools=table(tmp_path, "tool.1 = {diameter = 0.5}"))
@@ -103,8 +101,10 @@ def test_the_table_of_linuxcnc(tmp_path: Path) -> None:
     lines = ["T1 P1 D10 Z50.2 ;end mill", "D3.5P2Z+1T7", "P9 T9 Z4 ; probe", "Z-.5 P3 T+12 D+8."]
     for turned in range(len(lines)):
         text = "; my tools\n" + "\n".join(lines[turned:] + lines[:turned]) + "\n\n"
-        found, said = read_tools(table(tmp_path, text, "tool.tbl"), MILLIMETRE)
+        found, said = read_tools(tmp_path, table(tmp_path, text, "tool.tbl"), 1, 7, 12)
         assert not said and set(found) == {1, 7, 12}
+        with pytest.raises(InputError, match="the diameter of T9 is not known"):
+            read_tools(tmp_path, tmp_path / "tool.tbl", 9)
     assert (found[1].name, found[1].diameter, found[7].diameter) == ("end mill", 10.0, 3.5)
     assert stacks(found)[1] == [(0.0, 1000.0, 5.0)]
 
@@ -123,25 +123,27 @@ def test_the_table_of_linuxcnc(tmp_path: Path) -> None:
         ("T3 d=.5 CR=0.", 0.5, ""),
     ],
 )
-def test_comments_describe_tools(text: str, diameter: float, name: str) -> None:
+def test_comments_describe_tools(tmp_path: Path, text: str, diameter: float, name: str) -> None:
     """As Fusion and others write them, whatever stands between."""
-    (tool,) = commented_tools([(2, text)], MILLIMETRE).values()
+    program = f"({text})\n{HEAD.replace('T1', 'T3')}G0 X0 Y0 Z0\n"
+    (tool,) = read_text(tmp_path, program, tools=None).tools.values()
     assert (tool.number, tool.diameter, tool.name) == (3, diameter, name)
 
 
-def test_other_comments_describe_none() -> None:
+def test_other_comments_describe_none(tmp_path: Path) -> None:
     """Tool changes, remarks about other things, and diameters of 0."""
     texts = ["TC: T3 6mm", "M6 T3", "T3", "D=5", "T3 D=0 CR=0", "THICK D=4", "T3 D=abc", "Diameter: 6.0"]
-    assert commented_tools([(1, text) for text in texts], MILLIMETRE) == {}
+    for text in texts:
+        program = f"({text})\nG21 G90\nT3 M6\nG0 X0 Y0 Z0\n"
+        with pytest.raises(InputError, match="the diameter of T3 is not known"):
+            read_text(tmp_path, program, tools=None)
 
 
 def test_comments_of_other_posts(tmp_path: Path) -> None:
     """OpenBuilds says the unit; FreeCAD speaks of the tool in the spindle, in mm whatever the program's unit."""
-    texts = [
-        (1, "Tool 5: Spot Drill 3 Flutes, Diam = 5mm, Len = 20.00mm"),
-        (2, "Tool 6: mill, Diam = 0.25in"),
-    ]
-    found = commented_tools(texts, INCH)
+    said = "(Tool 5: Spot Drill 3 Flutes, Diam = 5mm, Len = 20.00mm)\n(Tool 6: mill, Diam = 0.25in)\n"
+    calls = "".join(f"T{number} M6\nG0 X0 Y0 Z9\n" for number in (5, 6))
+    found = read_text(tmp_path, f"{said}G20 G90\n{calls}", tools=None).tools
     assert (found[5].diameter, found[5].name, found[6].diameter) == (5.0, "Spot Drill 3 Flutes", 6.35)
     text = (
         "(Compensated Tool Path. Diameter: 6.35)\nG0 X0 Y0 Z9\nT2 M6\n(Compensated Tool Path. Diameter: 3)\n"
@@ -221,5 +223,5 @@ def test_a_tool_before_any_call(tmp_path: Path) -> None:
 def test_tables_that_are_none_are_refused(tmp_path: Path, name: str, text: str, words: str) -> None:
     """Naming the file and the tool."""
     with pytest.raises(InputError, match=words) as caught:
-        read_tools(table(tmp_path, text, name), MILLIMETRE)
+        read_tools(tmp_path, table(tmp_path, text, name), 1)
     assert str(caught.value).startswith(f"{tmp_path / name} is not a table of tools: ")

@@ -12,6 +12,7 @@ import pytest
 
 import workhold
 from fakes import fake_proof, fake_result
+from workhold import Result
 from workhold.archive import ArchiveWriter, mapped_archive
 from workhold.errors import InputError
 from workhold.files.result import columns as in_columns
@@ -21,7 +22,6 @@ from workhold.files.result.reader import read_result
 from workhold.files.result.writer import write_result
 from workhold.listing.identity import entries
 from workhold.model.fixture_table import FixtureTable
-from workhold.model.result import Result
 from workhold.verification.listing import read_listing
 
 

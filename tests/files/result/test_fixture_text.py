@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from fakes import fake_result
-from workhold.files.result.save import save
+from workhold import save
 
 
 def test_every_row_is_a_fixture(tmp_path: Path) -> None:

@@ -14,8 +14,7 @@ from attrs import evolve
 import workhold
 from slow_program import END_MILL, PEG_HEIGHT, kinds_of_toolkit, path, program_of, random_program
 from strategies import random_outline
-from workhold import InputError, Query, Result, answer
-from workhold.files.result.columns import answer_to_file
+from workhold import InputError, Query, Result, answer, answer_to_file
 from workhold.files.result.fixture_text import result_csv_text
 from workhold.files.result.reader import read_result
 from workhold.model.quality import FIGURES

@@ -16,14 +16,13 @@ import pytest
 
 import check_toolkit
 from fakes import fake_proof, fake_result
-from workhold import Vise, design, load
+from workhold import Tolerance, Vise, design, load
 from workhold.errors import InputError
 from workhold.files.result import fixture_text
 from workhold.files.result.reader import read_result
 from workhold.files.result.writer import result_text, write_result
 from workhold.files.toolkit_file import preset
 from workhold.model.fixture_table import FixtureTable
-from workhold.model.requirements import Tolerance
 from workhold.model.search_report import Undecided
 
 

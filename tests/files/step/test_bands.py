@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from workhold import load
+
 pytest.importorskip("OCP", reason="the extra 'step' is not installed")
 
 from OCP.BRep import BRep_Builder
@@ -25,11 +27,10 @@ from typer.testing import CliRunner
 
 from band_truth import band_faults, mirrored, placed, runs_beside, unlike
 from solid_examples import cone, cross_drilled, polygon, tilted
-from workhold import Vise, design, load
+from workhold import Vise, design
 from workhold.cli.main import app
 from workhold.errors import InputError
 from workhold.files.step.bands import branches_of
-from workhold.files.step.by_height import HeightView, shapes_by_height
 from workhold.files.step.heights import HeightOutline, height_table, longest, measures, standing
 from workhold.files.step.library import along, occ, sub_shapes
 from workhold.files.step.projected import OtherCurveError, ProjectedCurves
@@ -501,9 +502,9 @@ def test_a_slot_that_all_but_touches_a_hole(aside: float) -> None:
     body = cut(box(20, 16, 4, (-10, -8, 0)), cylinder(1.7, 10, (0, 0, -1)))
     for degrees in (0.0, 45.0):
         slot = box(2 * (1.7 + aside), 6, 2.5, (-1.7 - aside, -3, -1))
-        drawing = shapes_by_height([placed(cut(body, slot), degrees)], HeightView(peg_height=5.0))
-        assert len(drawing.loops) == 2
-        hole = loop_segments(drawing.loops[1])
+        part = load(placed(cut(body, slot), degrees), peg_height=5.0)
+        assert len(part.loops) == 2
+        hole = part.loop_segments[1]
         assert all(segment.radius == pytest.approx(1.7, abs=1e-6) for segment in hole)
         assert sum(segment.length for segment in hole) == pytest.approx(2 * pi * 1.7, abs=1e-3)
 

@@ -11,6 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from workhold import load
+
 pytest.importorskip("OCP", reason="the extra 'step' is not installed")
 
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
@@ -23,12 +25,11 @@ from step_shapes import at_height, box, chamfered, cut, cylinder, filleted, fuse
 from typer.testing import CliRunner
 
 from solid_examples import EXAMPLES
-from workhold import Fence, Plate, Restrictions, Vise, Workpiece, design, load, save, verify
+from workhold import Fence, Plate, Restrictions, Vise, Workpiece, design, save, verify
 from workhold import open as workhold_open
 from workhold.cli.main import app
 from workhold.errors import InputError
 from workhold.files.part.survey import survey
-from workhold.files.step.by_height import HeightView, shapes_by_height
 from workhold.files.step.heights import StandingSolid, standing
 from workhold.files.step.library import along, bounding_box, sub_shapes
 from workhold.files.step.regions import area_of, section
@@ -36,7 +37,14 @@ from workhold.files.toolkit_file import load_toolkit
 from workhold.geometry.loop import loop_segments, signed_area
 from workhold.geometry.segment import Line, segment_rows
 from workhold.kernels.base.distance import is_inside
-from workhold.model.solid import Band
+from workhold.model.solid import Band, SolidOutline
+
+
+def standing_as_read(shape: Any) -> SolidOutline:
+    """How a solid stands, with pegs as high as it."""
+    solid = load(shape, axis="z").solid
+    assert solid is not None
+    return solid
 
 
 def strips(shape: Any, *heights: float, **more: float) -> list[tuple[tuple[float, ...], Band | None]]:
@@ -233,13 +241,12 @@ def test_axes_are_right_handed() -> None:
     """The six axes turn the part and never mirror it: the corner cut off stays on the same side."""
     marked = cut(box(30, 20, 10), box(5, 4, 3))
     for axis in ("x", "y", "z", "-x", "-y", "-z"):
-        drawing = shapes_by_height([marked], HeightView(axis=axis, head_room=0.0))
-        assert drawing.solid.axis == axis
-        low = drawing.solid.height
-        assert low == pytest.approx({"x": 30, "y": 20, "z": 10}[axis[-1]])
-    over = shapes_by_height([marked], HeightView(axis="-z", peg_height=3.0, head_room=0.0)).loops[0]
+        solid = load(marked, axis=axis, head_room=0.0).solid
+        assert solid is not None and solid.axis == axis
+        assert solid.height == pytest.approx({"x": 30, "y": 20, "z": 10}[axis[-1]])
+    over = load(marked, axis="-z", peg_height=3.0, head_room=0.0).loops[0]
     assert over[:, 0].min() == pytest.approx(-30)
-    under = shapes_by_height([marked], HeightView(axis="z", peg_height=3.0, head_room=0.0)).loops[0]
+    under = load(marked, axis="z", peg_height=3.0, head_room=0.0).loops[0]
     assert [5.0, 4.0] in np.round(under[:, :2], 6).tolist()
 
 
@@ -547,21 +554,20 @@ def test_level_faces_below_and_on_top() -> None:
     """Pads touch what the part lies on, without fillets and pockets; the tip what nothing stands over."""
     shape = fused(box(60, 40, 10), box(20, 40, 10, (0, 0, 10)), box(10, 40, 4, (20, 0, 16)))
     shape = cut(shape, box(10, 10, 3, (40, 15, -1)))
-    drawing = shapes_by_height(
-        [filleted(shape, 2.0, lambda low, high: at_height(0.0)(low, high) and low[0] > 59)], HeightView()
-    )
-    assert rounded_loops(drawing.solid.bottom) == [
+    rounded = filleted(shape, 2.0, lambda low, high: at_height(0.0)(low, high) and low[0] > 59)
+    solid = standing_as_read(rounded)
+    assert rounded_loops(solid.bottom) == [
         [(0, 0, 0), (58, 0, 0), (58, 40, 0), (0, 40, 0)],
         [(40, 15, 0), (40, 25, 0), (50, 25, 0), (50, 15, 0)],
     ]
     # What stands over the lower step from x = 20 to 30 takes that much of the face away.
     # Two faces side by side at one height are one.
-    assert sorted(rounded_loops(drawing.solid.top)) == [
+    assert sorted(rounded_loops(solid.top)) == [
         [(0, 0, 0), (30, 0, 0), (30, 40, 0), (0, 40, 0)],
         [(30, 0, 0), (60, 0, 0), (60, 40, 0), (30, 40, 0)],
     ]
     feet = fused(box(10, 40, 10), box(10, 40, 10, (50, 0, 0)), box(60, 40, 5, (0, 0, 10)))
-    assert len(shapes_by_height([feet], HeightView()).solid.bottom) == 2
+    assert len(standing_as_read(feet).bottom) == 2
 
 
 def split(shape: Any, z: float, *ends: tuple[float, float]) -> Any:
@@ -578,21 +584,21 @@ def test_faces_split_by_an_imprinted_line_are_one() -> None:
     """Faces of one height that lie side by side are one for pads and tip; those of other heights are not."""
     disc = cut(cylinder(20, 10, (0, 0, 0)), cylinder(5, 30, (0, 0, -1)))
     halves = split(split(PLATE, 0.0, (30, 0), (30, 40)), 20.0, (0, 20), (60, 20))
-    drawing = shapes_by_height([halves], HeightView())
+    solid = standing_as_read(halves)
     whole = [[(0, 0, 0), (60, 0, 0), (60, 40, 0), (0, 40, 0)]]
-    assert rounded_loops(drawing.solid.bottom) == rounded_loops(drawing.solid.top) == whole
+    assert rounded_loops(solid.bottom) == rounded_loops(solid.top) == whole
     lying = split(disc, 0.0, (0, 5), (0, 20))
     lying = split(lying, 0.0, (0, -20), (0, -5))
     assert len([f for f in standing(lying).faces if f.lie == "level" and not f.upward]) == 2
-    found = shapes_by_height([lying], HeightView()).solid.bottom
+    found = standing_as_read(lying).bottom
     areas = sorted(signed_area(loop_segments(np.array(loop))) for loop in found)
     assert areas == pytest.approx([-25 * pi, 400 * pi])
     # A step beside a face of another height stays a face of its own.
-    stepped = shapes_by_height([fused(PLATE, box(20, 40, 4, (0, 0, 20)))], HeightView())
-    assert len(stepped.solid.top) == 2
+    stepped = standing_as_read(fused(PLATE, box(20, 40, 4, (0, 0, 20))))
+    assert len(stepped.top) == 2
     widths = {
         height: max(x for x, *_ in loop)
-        for loop, height in zip(stepped.solid.top, stepped.solid.top_heights, strict=True)
+        for loop, height in zip(stepped.top, stepped.top_heights, strict=True)
     }
     assert widths == {20.0: 60.0, 24.0: 20.0}
 

@@ -12,6 +12,8 @@ import numpy as np
 import pytest
 from attrs import evolve
 
+from shown_words import last_paragraph
+
 pytest.importorskip("OCP", reason="the extra 'step' is not installed")
 
 from OCP.BRepAdaptor import BRepAdaptor_Curve
@@ -36,8 +38,7 @@ from workhold.geometry.loop import loop_segments, signed_area
 from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.distance import is_inside
 from workhold.supports.faces import TouchableFace
-from workhold.supports.words import flat_faces_notes, why_no_set
-from workhold.units import unit_named
+from workhold.supports.words import flat_faces_notes
 from workhold.verification.supports import verify_supports_file
 from workhold.web.request_forms import WorkpieceForm
 
@@ -155,7 +156,7 @@ def test_no_level_face_on_top_is_no_top_clamp(tmp_path: Path) -> None:
     result = workhold.design(part, Plate(pitch=10, peg_radius=3), best=1)
     found = result[0].supports(best=3, pad_radius=2, tip_radius=2)
     assert found.request.top == () and found.triples == () and found.positions > 2
-    why = why_no_set(found, unit_named("mm"))
+    why = last_paragraph(found)
     assert "there is no top clamp" in why and "another side up would help" in why
     (note,) = flat_faces_notes(part, ("a", "b"))
     assert "no clamp can press on it from above" in note

@@ -8,10 +8,10 @@ import pytest
 
 pytest.importorskip("OCP", reason="the extra 'step' is not installed")
 
+from workhold import Vise
 from workhold.errors import InputError
 from workhold.files.step.solids import read_solids
 from workhold.files.step.writer import plates_step
-from workhold.fixels.vise import Vise
 from workhold.model.dowels import Bolts, jaw_plates
 
 PLATES = jaw_plates(

@@ -36,6 +36,7 @@ from step_shapes import (
     write_step,
 )
 
+from workhold import Workpiece
 from workhold.errors import InputError
 from workhold.files.outline.curves import CurveReader
 from workhold.files.part.load import Loaded, read_workpiece
@@ -43,7 +44,6 @@ from workhold.files.part.loaded import from_drawing
 from workhold.files.step.reader import read_step_apart, refuse_missing_volume
 from workhold.files.step.regions import edge_piece
 from workhold.geometry.segment import Arc, Line
-from workhold.model.workpiece import Workpiece
 
 
 def read(tmp_path: Path, *shapes: Any, **options: Any) -> Loaded:

@@ -25,15 +25,11 @@ from OCP.TopoDS import TopoDS
 from plate_examples import WAYS, on_plate
 
 from files.step_bodies import named_bodies
-from workhold import design
+from workhold import Fixture, Peg, Pose, Vise, Workpiece, design
 from workhold.errors import InputError
 from workhold.files.step.solids import Solid, read_solids
 from workhold.files.step.writer import setup_step, write_setup_step
-from workhold.fixels.vise import Vise
-from workhold.model.fixture import Fixture, Peg
-from workhold.model.pose import Pose
 from workhold.model.setup import part_zero
-from workhold.model.workpiece import Workpiece
 
 VISE = Vise(pitch=(10, 12), columns=2, peg_radius=3, row_offset=2.5)
 # A part about pegs in L-A1 and L-A3 (on a side and on a quarter circle), R-B1 and R-B3, as it lies in the vise; with a

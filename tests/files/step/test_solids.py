@@ -17,8 +17,6 @@ from step_shapes import cut, cylinder, filleted, upright, write_step
 from solid_examples import EXAMPLES, SolidExample, polygon
 from solid_truth import border_faults, fixture_faults, off_region, section_faults, segments_of
 from workhold import Fence, FlatJaw, Plate, Vise, Workpiece, design, load
-from workhold.files.part.loaded import from_heights
-from workhold.files.step.by_height import HeightView, shapes_by_height
 from workhold.files.step.heights import StandingSolid, standing
 from workhold.files.step.library import along
 from workhold.geometry.segment import segment_rows
@@ -73,8 +71,7 @@ def test_pegs_touch_over_their_bands_and_enter_nowhere(example: SolidExample) ->
     """Of every kind of toolkit, the pegs, tips and walls of each fixture as bodies against the solid."""
     solid = standing(example.make())
     for high in example.heights:
-        drawing = shapes_by_height([solid.shape], HeightView(peg_height=high))
-        part = from_heights(example.name, drawing).workpiece
+        part = load(solid.shape, name=example.name, peg_height=high)
         for toolkit in KITS:
             if not touchable(part, toolkit):
                 continue
@@ -174,8 +171,7 @@ def test_list_is_what_hand_made_rules_leave_of_the_outline(toolkit: Any) -> None
     """Of all fixtures on the outline of a solid, those stay whose every contact is where a band is."""
     body = polygon([(0, 0), (72, 0), (60, 40), (10, 52)], 16)
     body = cut(body, along_box(24, 60, 30, (30, -10, 8)), along_box(20, 80, 30, (48, 20, 4)))
-    drawing = shapes_by_height([body], HeightView(peg_height=12.0, least_band=6.0))
-    part = from_heights("part", drawing).workpiece
+    part = load(body, name="part", peg_height=12.0, least_band=6.0)
     assert part.solid is not None
     own = design(part, toolkit)
     flat = design(Workpiece.from_loops("part", part.loops), toolkit)

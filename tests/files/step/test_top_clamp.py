@@ -11,6 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from shown_words import last_paragraph
+
 pytest.importorskip("OCP", reason="the extra 'step' is not installed")
 
 from attrs import evolve
@@ -36,7 +38,7 @@ from top_examples import (
     webbed_cover,
 )
 from workhold import Plate, load
-from workhold.drawing.sheet_facts import SheetDetails
+from workhold.drawing import SheetDetails
 from workhold.drawing.sheet_writing import heights_of
 from workhold.files.step.heights import standing
 from workhold.files.step.level_faces import LevelTop, level_tops
@@ -47,7 +49,7 @@ from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.distance import is_inside, outline_distances
 from workhold.model.support_request import pressed_by
 from workhold.model.support_triples import ChosenSupports, Supports
-from workhold.supports.words import listing_notes, why_no_set
+from workhold.supports.words import listing_notes
 from workhold.units import MILLIMETRE
 from workhold.verification.supports import verify_supports_file
 
@@ -218,7 +220,7 @@ def test_a_pillow_block_is_clamped_on_its_feet_or_nowhere() -> None:
         assert found.request.clamped_height(triple.clamp.at) == 14.0 and abs(x) >= 36 + 7.5 - 1e-6
     part = load(pillow_block(12.0), name="pillow block", peg_height=13)
     none = workhold.design(part, TOOLKIT, best=1)[0].supports(best=3)
-    words = why_no_set(none, MILLIMETRE)
+    words = last_paragraph(none)
     assert not none.triples and none.count == 0 and "there is no top clamp" in words and "7.500 mm" in words
 
 

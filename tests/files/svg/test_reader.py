@@ -11,9 +11,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from reading_helpers import area, perimeter, read_svg
 
+from workhold import load
 from workhold.errors import InputError
 from workhold.files.budget import LIMITS
-from workhold.files.part.load import load
 
 MM = 'width="100mm" height="50mm" viewBox="0 0 100 50"'
 D = '<path id="d" d="M 0 0 h 40 a 10 10 0 0 1 0 20 h -40 z"/>'

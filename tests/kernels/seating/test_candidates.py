@@ -7,7 +7,7 @@ from math import inf
 import numpy as np
 import pytest
 
-from seating_examples import solved
+from seating_examples import solved, two_contacts_of
 from workhold.kernels.seating.candidates import (
     DOUBTFUL,
     IN_BALANCE,
@@ -32,7 +32,6 @@ from workhold.kernels.seating.columns import (
 from workhold.kernels.seating.gathering import GATHERED_LENGTH, SUBSET, gathered
 from workhold.seating.closing import filled
 from workhold.seating.pattern import Pattern, subsets_of
-from workhold.seating.two_contact_curves import TwoContactCurves
 
 STOP, WIDEST = -20.0, 60.0
 
@@ -42,7 +41,7 @@ def given():
     """What kernels are given of a pattern, and its groups."""
     solver, fixture, _ = solved(0)
     pattern = Pattern.of(fixture, solver.toolkit)
-    return TwoContactCurves.of(solver.closing(pattern, False).boundary, pattern).given, subsets_of(pattern)
+    return two_contacts_of(solver.closing(pattern, False)).given, subsets_of(pattern)
 
 
 def rows_of(random, count, pegs):

@@ -8,7 +8,7 @@ from math import cos, hypot, sin
 import numpy as np
 import pytest
 
-from seating_examples import cells_by_pair, solved
+from seating_examples import cells_by_pair, solved, two_contacts_of
 from workhold.kernels.base.feature import IS_ARC
 from workhold.kernels.base.tables import HEAD, TAIL
 from workhold.kernels.seating.columns import DEPTH, FIRST_PEG, HIGH, KIND, LOW, PAIR, SOURCE, VAGUE
@@ -25,7 +25,6 @@ from workhold.kernels.seating.three_contacts import (
 from workhold.kernels.seating.two_contact_curves import pair_at, pair_in, ray_in
 from workhold.seating.closing import filled
 from workhold.seating.pattern import Pattern
-from workhold.seating.two_contact_curves import TwoContactCurves
 
 # mm, and a share. Rounding of an instant centre, which may be a kilometre off.
 ROUNDING, SHARE = 1e-6, 1e-6
@@ -36,8 +35,8 @@ def cells_of(number):
     """An example's part and curves, and every cell over which its ray is known, with its middle."""
     solver, fixture, _ = solved(number)
     pattern = Pattern.of(fixture, solver.toolkit)
-    boundary = solver.closing(pattern, False).boundary
-    curves = TwoContactCurves.of(boundary, pattern)
+    closing = solver.closing(pattern, False)
+    boundary, curves = closing.boundary, two_contacts_of(closing)
     kinds = curves.given.pairs[:, KIND]
     kept = [
         (cell, middle)

@@ -13,7 +13,7 @@ import pytest
 from running_server import RunningServer
 from walking import EXAMPLES, Walk
 
-from workhold.files.part.load import load
+from workhold import load
 
 PHONE, DESK = {"width": 390, "height": 800}, {"width": 1280, "height": 800}
 OVERLAPS = """(svg) => {

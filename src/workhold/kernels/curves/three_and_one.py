@@ -230,11 +230,6 @@ def add_limb_pairs(out: Array, count: int, limbs: Array, pieces: Array, work: Bl
                     continue
             if limb[LIMB_LOW] >= other[LIMB_HIGH] or other[LIMB_LOW] >= limb[LIMB_HIGH]:
                 continue
-            if asks_spots and (
-                not are_near(limb, other, near)
-                or limbs_beyond(limb, other, work.features.precision, work.triple[:4])
-            ):
-                continue
             first = pieces[int(max(limb[LIMB_PIECE], other[LIMB_PIECE]))]
             second = pieces[int(min(limb[LIMB_PIECE], other[LIMB_PIECE]))]
             one, two = int(first[CURVE]), int(second[CURVE])
@@ -244,6 +239,11 @@ def add_limb_pairs(out: Array, count: int, limbs: Array, pieces: Array, work: Bl
                 continue
             steady = first[STEADY] * second[STEADY] == 1.0
             if steady and not may_meet(first, second, 0.0, period):
+                continue
+            if asks_spots and (
+                not are_near(limb, other, near)
+                or limbs_beyond(limb, other, work.features.precision, work.triple[:4])
+            ):
                 continue
             if not work.counting and heads_share_a_line(integers[one], integers[two], loose, lattice):
                 continue
