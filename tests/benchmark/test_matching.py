@@ -113,6 +113,7 @@ def test_another_jaw_or_a_quarter_turn_is_another_fixture(content: Content) -> N
     assert compare("bar-plate", [turned], content).extra == (0,)
 
 
+@pytest.mark.thorough
 def test_one_stands_for_its_images_where_that_is_asked(content: Content) -> None:
     """A third of the triangle's fixtures finds all of them under its rotations, and else a third."""
     theirs = content("triangle-vise")["fixtures"]

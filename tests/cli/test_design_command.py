@@ -194,6 +194,7 @@ def test_an_incomplete_result_is_written_and_marked(
     assert not (tmp_path / "d").exists()
 
 
+@pytest.mark.thorough
 def test_the_best_twelve_are_drawn(run: Any, searched: dict[str, Any], tmp_path: Path) -> None:
     folder = tmp_path / "new" / "d"
     searched["result"] = fake_result(60)

@@ -185,6 +185,7 @@ def test_supports_of_a_result_in_python() -> None:
         result.supports()
 
 
+@pytest.mark.thorough
 def test_friction_is_a_line_of_its_own_and_ranks_nothing(result_file: Path, run: Run) -> None:
     """The table stays as it is; without loads, and for what is no coefficient, a sentence says so."""
     words = ("supports", result_file, "1", "--thickness", "20", "--load", "at=40,25 force=200 axial=-30..60")
@@ -224,6 +225,7 @@ def test_forces_are_pounds_with_inches(result_file: Path, run: Run) -> None:
     assert not re.search(r"\bN\b(?!\))", pounds)
 
 
+@pytest.mark.thorough
 def test_no_pad_stands_under_a_solid_that_lies_on_no_face(tmp_path: Path, run: Run) -> None:
     """Nor where other places are kept out too; smaller sizes have their own distance inside the triangle."""
     loop = [(0.0, 0.0, 0.0), (90.0, 2.0, 0.0), (88.0, 21.0, 0.0), (1.0, 20.0, 0.0)]

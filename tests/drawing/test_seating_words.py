@@ -199,6 +199,7 @@ def test_what_cannot_be_told_is_left_out_with_its_sentence() -> None:
     assert str(refusal.value)[1:] in words
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(
     "toolkit",
     [Plate(pitch=20, peg_radius=3, clamps=2), Fence(pitch=20, peg_radius=3, wall_offset=10, clamps=2)],

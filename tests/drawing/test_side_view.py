@@ -56,6 +56,7 @@ def boxes(page: str, name: str) -> list[Box]:
     return found
 
 
+@pytest.mark.thinned(7)
 @pytest.mark.parametrize("name", NAMES)
 def test_view_is_true_to_the_scale_that_is_written(name: str) -> None:
     """What is drawn of part, pegs and bands is as large as their heights and places, at the scale of the title."""
@@ -95,6 +96,7 @@ def test_view_is_true_to_the_scale_that_is_written(name: str) -> None:
     assert sorted(boxes(page, "band")) == [pytest.approx(one, abs=2e-3) for one in sorted(expected)]
 
 
+@pytest.mark.thinned(7)
 @pytest.mark.parametrize("name", NAMES)
 def test_pegs_stand_from_the_plate_to_their_height(name: str) -> None:
     """Each peg is as wide as it is, ends at the peg height, and sits in the plate as deep as a dowel that is sold."""
@@ -122,6 +124,7 @@ def test_pegs_stand_from_the_plate_to_their_height(name: str) -> None:
         assert (low, high) == pytest.approx((-lifted - deep, -lifted), abs=2e-3)
 
 
+@pytest.mark.thinned(7)
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize(("paper", "unit"), [("a4", MILLIMETRE), ("letter", INCH)], ids=["a4", "letter"])
 @pytest.mark.parametrize("name", NAMES)

@@ -63,6 +63,7 @@ def test_content_and_options_go_there_and_plain_data_come_back(work: str) -> Non
     assert run_apart(work, b"noise", {}, "the file") == [5, {}]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("content", "said"),
     [

@@ -83,6 +83,7 @@ def test_the_fuzzer_finds_a_misreading(tmp_path: Path, monkeypatch: pytest.Monke
         hostile_batch.check_one(path, with_commands=False)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("work", "told"),
     [

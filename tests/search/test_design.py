@@ -39,6 +39,7 @@ def test_rows_limit_the_span_of_rows(free: Result, rows: int) -> None:
     assert ((high - low >= 0) & (high - low <= 1)).all()
 
 
+@pytest.mark.thorough
 def test_max_opening_moves_pegs_outward_or_forbids(free: Result) -> None:
     """With a largest opening a fixture remains exactly when some columns bring the separation below it; no listed
     separation exceeds it or falls below the smallest gap, and pegs move outward no farther than needed."""
@@ -69,6 +70,7 @@ def test_row_offset_of_whole_pitches_renumbers_rows(free: Result) -> None:
     assert np.allclose(np.sort(shifted.table.theta), np.sort(free.table.theta))
 
 
+@pytest.mark.thorough
 def test_contact_margin_drops_contacts_near_ends(free: Result) -> None:
     """Each margin keeps a subset, and a margin longer than every feature keeps nothing."""
     before = set(map(str, keys(free)))
@@ -162,6 +164,7 @@ def test_bad_options(free: Result, options: dict[str, object], words: str) -> No
         design(free.workpiece, free.toolkit, **options)
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("name", ["small4Handle", "thin4Handle", "widget"])
 def test_distinct_counts_by_brute_force(name: str) -> None:
     """The number of sets under the part's rotations equals a count by carrying every fixture around by hand.

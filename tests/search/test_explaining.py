@@ -57,6 +57,7 @@ CASES: list[tuple[str, Vise, dict[str, Any]]] = [
 ]
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(("rule", "vise", "asked"), CASES, ids=[case[0] for case in CASES])
 def test_the_rules_take_all_away(rule: str, vise: Vise, asked: dict[str, Any]) -> None:
     """Each rule begins with what the one before it left, the last leaves nothing, and what was asked for is among them."""

@@ -46,6 +46,7 @@ def seen(result: Result, mirrored: bool = False) -> set[Identity]:
     return found
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("path", TRUTHS, ids=lambda path: path.stem)
 def test_complete_set_is_reproduced(path: Path, tmp_path: Path) -> None:
     """None missing, none extra, as the independent checker says, and each proven by the verification."""
@@ -153,6 +154,7 @@ def places(result: Result) -> list[tuple[float, int, int, float, float]]:
     return found
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("loop", [KITE, ROCKER, NOTCHED], ids=["kite", "rocker", "notched"])
 def test_a_slow_search_of_sampled_curves_finds_the_same(loop: list[tuple[float, ...]]) -> None:
     """Apart from pairs at the very ends of curves, which sampling may see or not."""

@@ -374,6 +374,7 @@ def compare(seed: int, path: Path) -> None:
     checked(one, path)
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("seed", range(3))
 def test_the_algebra_lists_the_same(seed: int, tmp_path: Path) -> None:

@@ -57,6 +57,7 @@ def assert_first(query: Query, kept: Sequence[int]) -> int:
     return len(whole)
 
 
+@pytest.mark.thinned(11)
 @pytest.mark.parametrize("kind", TOOLKITS)
 @pytest.mark.parametrize("number", [0, pytest.param(3, marks=pytest.mark.prove), 5])
 def test_the_best_are_the_first_of_all(kind: str, number: int) -> None:

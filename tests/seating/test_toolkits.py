@@ -59,6 +59,7 @@ def told_of(name: str, rank: int) -> Seating:
     return solver.of(result[rank])
 
 
+@pytest.mark.thinned(7)
 @pytest.mark.parametrize("name", KITS)
 def test_all_fixtures_of_a_pattern_are_among_its_seats(name):
     """With S to 1e-6, each in its own pose; and no seat on four faces is missing from the complete list."""

@@ -29,6 +29,7 @@ from workhold.statics.quality import main_direction, quality_of, tilts
 SHEET = {"number": 1, "count": 1, "day": None, "result_hash": "", "version": ""}
 
 
+@pytest.mark.thinned(7)
 def test_the_sheet_warns_as_often_as_the_table_counts(result: Result) -> None:
     """Of every kind, with a load and a jaw force that some fixtures need more than."""
     loads = [Load(((5.0, 5.0),), 100.0), Load((), 0.0, moment=500.0)]

@@ -65,6 +65,7 @@ def test_the_best_few_are_the_first_of_all(name, is_fixed, is_loaded):
         assert not best.complete
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", NAMES)
 def test_a_file_is_read_back_and_both_judges_find_nothing(name, tmp_path):
@@ -95,6 +96,7 @@ def test_a_wrong_figure_is_refuted(key, tmp_path):
     assert key in outcome.unproven[0].reason
 
 
+@pytest.mark.thorough
 def test_the_command_judges_a_file_of_supports(tmp_path):
     one = case("bracketL")
     found = supports_of(one.fixture, one.query, one.request, one.loads, one.jaw_force, best=2)

@@ -173,6 +173,7 @@ BROKEN: list[tuple[Callable[[Data], object], str]] = [
 ]
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(
     ("edit", "words"), BROKEN, ids=[f"{n} {words}" for n, (_, words) in enumerate(BROKEN)]
 )

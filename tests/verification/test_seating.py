@@ -85,6 +85,7 @@ def told(fields: Fields, fixture: Any) -> Any:
     return type(fixture.seating.seating).of_fields(fields, fixture.pose)
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("form", ["json", "npz"])
 @pytest.mark.parametrize(
     ("part", "toolkit"),
@@ -119,6 +120,7 @@ def leaves(value: Any, place: tuple[Any, ...] = ()) -> Iterator[tuple[tuple[Any,
 BOUNDED = ("way_out", "cage", "cage_short", "placing", "depth")
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(
     ("part", "toolkit"), [(WEDGE, VISE), (WEDGE, PLATE), (BOWED, FENCE)], ids=["vise", "plate", "fence"]
 )
@@ -258,6 +260,7 @@ def test_the_order_is_that_of_the_seating(listing: Listing) -> None:
     assert "not that of all before it" in fault_with(untold)
 
 
+@pytest.mark.thorough
 def test_a_search_compares_what_a_file_alone_cannot_show(result: Result, tmp_path: Path) -> None:
     path = tmp_path / "r.json"
     workhold.save(result, path)

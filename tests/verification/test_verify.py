@@ -73,6 +73,7 @@ def test_contact_margins_are_proven() -> None:
     assert outcome.bits == 128
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("wide", [0.01, 1.25])
 @pytest.mark.parametrize("loops", [None, NOTCHED])
 def test_a_margin_that_was_not_asked_for(loops: list[list[list[float]]] | None, wide: float) -> None:
@@ -87,6 +88,7 @@ def test_a_margin_that_was_not_asked_for(loops: list[list[list[float]]] | None, 
     assert outcome.proven == len(design(part, vise, contact_margin=wide))
 
 
+@pytest.mark.thorough
 def test_a_separation_of_exactly_the_smallest_gap_is_proven() -> None:
     """A rectangle aligned with the lattice: two faces are as far apart as two holes, whatever the precision."""
     vise = Vise(pitch=10, columns=2, peg_radius=3)
@@ -114,6 +116,7 @@ def test_complete_sets_are_proven(name: str) -> None:
     assert (outcome.refuted, outcome.undecided, outcome.faults) == (0, 0, ())
 
 
+@pytest.mark.thorough
 @settings(max_examples=15)
 @given(outlines(max_faces=6), vises(max_columns=2))
 def test_nothing_found_on_a_random_part_is_refuted(workpiece: Workpiece, vise: Vise) -> None:

@@ -202,6 +202,7 @@ def test_locators_and_clamp_of_a_plate_touch_the_part(way: str, bolted: bool) ->
     assert len(used) == 3 + bolted
 
 
+@pytest.mark.thorough
 def test_bytes_do_not_depend_on_the_process() -> None:
     """Two processes that order sets in different ways write the same file."""
     code = (

@@ -327,6 +327,7 @@ def test_close_pairs_are_those_of_brute_force(seed: int, count: int, tolerance: 
                 assert group[i] == group[j]
 
 
+@pytest.mark.thorough
 def test_two_hundred_thousand_ends_pair_quickly() -> None:
     """Near-linear time: a column of points with equal x must not be compared all with all."""
     points = np.column_stack((np.zeros(200_000), np.arange(200_000) * 1.0))

@@ -202,6 +202,7 @@ def test_pieces_of_random_parts_bound_what_they_tell(seed):
     check_table(*random_table(random), random, 12)
 
 
+@pytest.mark.thinned(5)
 @pytest.mark.parametrize("make", SPECIAL)
 def test_pieces_in_special_positions_bound_what_they_tell(make):
     """The same for nearly parallel lines, coincidences, tangent joints, unlike arcs, narrow ranges and the like."""
@@ -210,6 +211,7 @@ def test_pieces_in_special_positions_bound_what_they_tell(make):
         checked += check_table(*special_table(random, make), random, 40)
 
 
+@pytest.mark.thinned(5)
 @pytest.mark.parametrize("make", SPECIAL)
 def test_pieces_next_to_the_ends_of_a_curve_bound_what_they_tell(make):
     """The same in cells that begin or end at any small distance from the end of a curve, where tangencies are."""
@@ -348,6 +350,7 @@ def turning_edges(random: Random) -> list[tuple[np.ndarray, float, float]]:
     return out
 
 
+@pytest.mark.thorough
 @given(seeds)
 def test_pushes_of_a_piece_hold_those_at_every_orientation_between(seed):
     """Where both normals turn evenly, the directions told from the two ends hold every direction on the way; none are told
