@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from chord_examples import arc_row, line_row, overshoot, solutions
-from workhold import Query, Vise, Workpiece, count_contacts
+from workhold import Plate, Query, Vise, Workpiece, count_contacts, load
 from workhold.contact.curves import curve_table, loosened
 from workhold.contact.problem import Problem
 from workhold.conventions import LOOSE
-from workhold.kernels.base.tables import BRANCH, FROM, HEAD, LENGTH, TAIL, TO
+from workhold.kernels.base.tables import BRANCH, FIRST_STRETCH, FROM, HEAD, LENGTH, SHIFT, TAIL, TO
 from workhold.kernels.chord.intervals import NARROW, chord_intervals
 from workhold.search.toolkit_search import lattice_steps
 
@@ -76,3 +76,30 @@ def test_a_chord_that_just_touches_a_circle_is_of_those_of_its_arcs_that_it_meet
     assert left_out > 100
     assert len(kept) < 0.5 * (len(kept) + left_out)
     assert count_contacts(gear(8, 28.0, 34.0), vise) == 0
+
+
+@pytest.mark.parametrize("ranges", [[(-0.01, 0.02)], [(1.5, 1.6), (3.1, 3.2)], [(-3.3, -3.0), (6.2, 6.3)]])
+def test_a_table_for_some_orientations_has_all_curves_that_come_there(
+    ranges: list[tuple[float, float]],
+) -> None:
+    """It has each curve of the whole table that is at an orientation within a range, and no other."""
+    problem = Problem.of(Query(load("flange"), Plate(pitch=12, peg_radius=3)))
+    rows = loosened(problem.rows[:, :10])
+    steps = lattice_steps(problem.frame.carriers, problem.diameter)
+    whole, some = (
+        {
+            tuple(kept[:FIRST_STRETCH].tolist()) + tuple(real.tolist())
+            for kept, real in zip(*table.curves[:2], strict=True)
+        }
+        for table in (curve_table(rows, steps), curve_table(rows, steps, within=np.array(ranges)))
+    )
+    assert some <= whole and 0 < len(some) < 0.6 * len(whole)
+    for row in whole:
+        real = np.array(row[FIRST_STRETCH:])
+        low, high = real[FROM] - real[SHIFT], real[TO] - real[SHIFT]
+        is_there = any(
+            np.ceil((low - end - 1e-7) / tau) * tau + begin <= high + 1e-7 for begin, end in ranges
+        )
+        surely = any(np.ceil((low - end + 1e-7) / tau) * tau + begin <= high - 1e-7 for begin, end in ranges)
+        assert not surely or row in some
+        assert is_there or row not in some

@@ -13,6 +13,7 @@ from cad_parts import cad_part
 from workhold import OpeningVise, Plate, Query, Result, Tolerance, Vise, Workpiece, answer, load
 from workhold.contact.problem import Problem
 from workhold.fixels.toolkit import Toolkit
+from workhold.kernels.base.feature import IS_ARC, X, Y
 from workhold.listing.bounds import preferred_angles
 from workhold.listing.canonical_form import listed_once
 from workhold.listing.collector import Needed, listed_form
@@ -23,9 +24,11 @@ from workhold.search import design as designing
 from workhold.search.error_limits import (
     LocatorSpots,
     can_limit_errors,
+    give_of,
     is_enough,
     keys_beyond,
     next_limit,
+    outermost,
     precision_of,
 )
 from workhold.search.shares import one_clamp
@@ -146,11 +149,11 @@ def test_a_limit_loses_nothing_below_it(part: str, kit: str, times: float) -> No
         limit = LocatorSpots.of(problem).limit(most)
         parts = [
             found_errors(
-                ToolkitSearch.of(problem, near=near, precision=limit.precision),
+                ToolkitSearch.of(problem, near=near, precision=limit.precision, only=only),
                 first=preferred_angles(query),
-                rest=rest,
+                rest=not only,
             )
-            for near, rest in ((limit.square, False), (limit.aslant, True))
+            for near, only in ((limit.square, preferred_angles(query)), (limit.aslant, []))
         ]
         # What lies between two shares may be found in both.
         assert sum(((one <= most) & ok).sum() for one, ok in parts) >= (errors[fine] <= most).sum()
@@ -177,6 +180,23 @@ def test_spots_join_what_fixtures_touch() -> None:
     assert (near.joined == near.joined.T).all()
     marked = np.argwhere(near.triples)
     assert {tuple(row) for row in marked.tolist()} == {tuple(row) for row in marked[:, [2, 0, 1]].tolist()}
+
+
+@pytest.mark.parametrize("part", ["bores", "arcs", "flange"])
+def test_no_centre_moves_farther_than_its_give_says(part: str) -> None:
+    """Where no point of the silhouette moves by more than 1, no centre of an arc does by more than that."""
+    problem = Problem.of(Query(PARTS[part], KITS["plate"], tolerance=TOLERANCE, best=5))
+    points, rows = outermost(problem), problem.rows[problem.rows[:, IS_ARC] != 0.0]
+    gives, nearest = np.array([give_of(row, points) for row in rows]), np.zeros(len(rows))
+    for seed in range(2000):
+        x, y, turn = np.random.default_rng(seed).normal(size=3) * (1.0, 1.0, 1.0 / problem.wrench_length)
+        moved, centers = (
+            np.hypot(x - turn * at[:, 1], y + turn * at[:, 0]) for at in (points, rows[:, [X, Y]])
+        )
+        nearest = np.maximum(nearest, centers / moved.max())
+    assert (nearest <= gives + 1e-9).all()
+    inside = gives == 1.0
+    assert inside.any() and (nearest[inside] > 0.6).all()
 
 
 def test_the_next_limit_is_no_larger_than_it_must_be() -> None:
