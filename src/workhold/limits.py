@@ -104,6 +104,8 @@ MOST_WAYS = 1e8
 MOST_PEG_PAIRS = 500_000
 # Threads of one search.
 MOST_THREADS = 1_000
+# Bytes of address space that each takes, with its stack.
+THREAD_SPACE = 8 << 20
 
 
 def refuse_little_space(needed: int, what: str, remedy: str) -> None:
@@ -181,13 +183,14 @@ def thread_count(threads: int | None) -> int:
     Raises
     ------
     InputError
-        For more than ``MOST_THREADS``.
+        For more than ``MOST_THREADS``, or more than there is room for in this process.
     """
     if threads is not None:
         if threads > MOST_THREADS:
             raise InputError(
                 f"{threads:,} threads are more than the {MOST_THREADS:,} this program starts: leave them out."
             )
+        refuse_little_space(threads * THREAD_SPACE, f"a search in {threads:,} threads", "ask for fewer")
         return threads
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
