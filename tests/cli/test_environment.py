@@ -17,6 +17,7 @@ import pytest
 import workhold
 from fakes import fake_result
 from workhold import Workpiece, save
+from workhold.cli.main import exit_code
 
 pytestmark = pytest.mark.thorough
 
@@ -100,6 +101,20 @@ def test_more_threads_than_there_is_memory_for_is_one_sentence(tmp_path: Path) -
     )
     assert (done.returncode, done.stderr.splitlines()) == (2, [sentence])
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("error", [MemoryError(), RuntimeError("can't start new thread"), OSError(12, "no")])
+def test_where_memory_runs_out_it_is_one_sentence(
+    error: Exception, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def command() -> int:
+        raise error
+
+    assert exit_code(command) == 2
+    assert capsys.readouterr().err == (
+        "workhold: error: this needs more memory than there is: close other programs, use fewer threads, or raise "
+        "the limit.\n"
+    )
 
 
 def test_interrupted_while_it_is_loaded_it_leaves_no_traceback() -> None:
