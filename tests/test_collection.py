@@ -71,6 +71,7 @@ def imported_first(text: str) -> set[str]:
     return found & OPTIONAL
 
 
+@pytest.mark.thorough
 def test_no_test_needs_an_extra_to_be_collected() -> None:
     every = {path: imported_first(path.read_text(encoding="utf-8")) for path in TESTS.rglob("*.py")}
     assert {str(path.relative_to(TESTS)): found for path, found in every.items() if found} == {}

@@ -62,12 +62,14 @@ def compared(result: Result, folder: Path, edit: Callable[[dict[str, Any]], obje
     return verify(path, complete=True)
 
 
+@pytest.mark.thorough
 def test_an_interrupted_search_is_a_part_of_the_whole(interrupted: Result, tmp_path: Path) -> None:
     assert 0 < len(interrupted) < 505 and not interrupted.complete
     outcome = compared(interrupted, tmp_path)
     assert outcome.is_compared and outcome.holds and outcome.proven == len(interrupted)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("kept", [10, 40, 168])
 def test_what_a_server_cut_short_is_a_part_of_the_whole(whole: Result, tmp_path: Path, kept: int) -> None:
     """The best of a part need not be among the best of all."""
@@ -86,6 +88,7 @@ def test_the_best_that_a_server_kept_are_the_best_of_all(whole: Result, tmp_path
     )
 
 
+@pytest.mark.thorough
 def test_a_fixture_that_is_none_is_found_in_a_part(interrupted: Result, tmp_path: Path) -> None:
     """Those of a wider query: what a larger contact margin rules out."""
 
@@ -121,6 +124,7 @@ def test_undecided_orientations_go_round(whole: Result) -> None:
     assert len(list(other_entries(named(0.5), named(0.6)))) == 1
 
 
+@pytest.mark.thorough
 def test_the_best_of_the_algebra_are_chosen_by_their_seating_again() -> None:
     """The search of their query is that of the algebra, and orders the first by their seating, too."""
     wedge, vise = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]]), Vise(20, 2, 3)

@@ -56,7 +56,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return made
 
 
-@pytest.mark.thinned(4)
+@pytest.mark.sampled(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize("first", ORDERS)
 def test_every_method_works_whatever_was_imported_first(first: str, folder: Path) -> None:
     """Of a process that imports some modules first, each method answers."""

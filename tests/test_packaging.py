@@ -98,6 +98,7 @@ def test_one_wheel_of_a_platform_is_built_with_the_oldest_python() -> None:
     assert set(constraints) == {"constraints.txt"}
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("number", range(2))
 def test_what_a_wheel_is_tried_with_ends_well(number: int, tmp_path: Path) -> None:
     """The commands that cibuildwheel runs once a wheel is installed."""

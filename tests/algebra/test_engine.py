@@ -43,6 +43,7 @@ def rounded(width: float, height: float, radius: float, angle: float) -> Workpie
     return Workpiece.from_loops("rounded", [turned])
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "name",
     [
@@ -69,6 +70,7 @@ def test_complete_sets(name: str) -> None:
     assert len(ours) > 0
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_random_parts(seed: int) -> None:
     """Parts of three and four faces, lines and arcs, jaws with rows at different heights."""
@@ -82,6 +84,7 @@ def test_random_parts(seed: int) -> None:
     )
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("angle", [0.0, 0.3])
 def test_equal_arcs_one_step_apart_and_parallel_lines(angle: float) -> None:
     """Fillets whose centres are lattice steps apart slide: that orientation is found apart from the resultants."""
@@ -90,6 +93,7 @@ def test_equal_arcs_one_step_apart_and_parallel_lines(angle: float) -> None:
     )
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("miss", [1e-3, 1e-6])
 def test_nearly_equal_steps(miss: float) -> None:
     """Centres almost a step apart crowd up to eight roots together; ball arithmetic takes them apart."""
@@ -115,6 +119,7 @@ def bumps(width: float, smaller: float, tilt: float) -> Workpiece:
     return Workpiece.from_loops("bumps", [[*loop, [-6, 27 + 37 * tilt, 0]]])
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("misfit", "smaller"),
     [
@@ -134,6 +139,7 @@ def test_pairs_that_nearly_slide(misfit: float, smaller: float) -> None:
     assert assert_engines_agree(part, Vise(pitch=10.0, columns=2, peg_radius=2.0)) > 0
 
 
+@pytest.mark.thorough
 def test_three_equal_arcs_that_all_slide() -> None:
     """Three left pegs on three equal arcs, each pair of centres one step apart."""
     radius, half = 20.0 / sqrt(3.0), pi / 3
@@ -148,6 +154,7 @@ def test_three_equal_arcs_that_all_slide() -> None:
     assert assert_engines_agree(part, Vise(pitch=(10.0, 10.0 * sqrt(3.0)), columns=3, peg_radius=2.0)) > 0
 
 
+@pytest.mark.thorough
 def test_concentric_arcs_and_a_whole_circle() -> None:
     """Three normals through one point never close: a disc has no fixture, a disc with a flat has."""
     vise = Vise(pitch=10.0, columns=2, peg_radius=2.0)
@@ -155,6 +162,7 @@ def test_concentric_arcs_and_a_whole_circle() -> None:
     assert assert_engines_agree(Workpiece.from_loops("half", [[[-20, 0, 0], [20, 0, 1]]]), vise) > 0
 
 
+@pytest.mark.thorough
 def test_options() -> None:
     """One type alone, a margin at the ends, and a cancelled search."""
     part, vise = rounded(30.0, 20.0, 6.0, 0.2), Vise(pitch=10.0, columns=2, peg_radius=2.0)

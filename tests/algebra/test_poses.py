@@ -14,6 +14,7 @@ from workhold.algebra.resultants import PAPER_DEGREES, TRUE_DEGREES, coefficient
 from workhold.algebra.table_two import random_contacts, table_two
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("case", [case for case in PAPER_DEGREES if case[0] > 0])
 def test_no_real_root_is_lost_to_rounding(case: tuple[int, int]) -> None:
     """Every real root isolated in ball arithmetic is met again, to the last digits, by a pose from double precision."""
@@ -40,6 +41,7 @@ def test_degrees_are_the_numbers_of_solutions_of_general_systems() -> None:
         assert row.roots == row.systems * row.general
 
 
+@pytest.mark.thorough
 def test_every_real_root_is_a_pose() -> None:
     """On random data each real root of a resultant belongs to exactly one pose that meets all contacts."""
     for row in table_two(count=100, seed=7):

@@ -42,6 +42,7 @@ def test_there_are_workpieces_and_sets_enough() -> None:
     assert len({one.name for one in sets()}) == len(sets())
 
 
+@pytest.mark.thorough
 def test_the_workpieces_are_those_of_the_manifest() -> None:
     """Every file has its checksum, and is read."""
     for name, part in manifest()["workpieces"].items():
@@ -56,6 +57,7 @@ def test_the_data_are_small() -> None:
     assert sum(path.stat().st_size for path in home.rglob("*.json")) < 1_000_000
 
 
+@pytest.mark.thinned(5)
 @pytest.mark.parametrize(
     "name", ["kite-vise", "bar-plate", "bar-pair", "el-fence", "el-fence-pair", "house-flat-opening"]
 )
@@ -73,6 +75,7 @@ def test_the_schemas_describe_the_files(name: str, content: Content) -> None:
             jsonschema.validate(made, one)
 
 
+@pytest.mark.thorough
 def test_a_set_made_today_is_the_one_of_the_manifest() -> None:
     """Counts of some sets of every family are those of a search."""
     for entry in sets()[::16]:
@@ -101,6 +104,7 @@ def test_the_datasheet_counts_what_there_is() -> None:
         assert f"| {len(of)} | {total:,} | {empty} |" in page
 
 
+@pytest.mark.thorough
 def test_the_share_of_a_grid_is_what_its_program_finds(tmp_path: Path, content: Content) -> None:
     """The naive program of the examples finds just as many as are worked out for its grid."""
     path = tmp_path / "bar-plate.json"

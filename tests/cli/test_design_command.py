@@ -266,6 +266,7 @@ BAD = [
 ]
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(("arguments", "message"), BAD)
 def test_bad_requests_are_refused_before_the_search(
     run: Any,

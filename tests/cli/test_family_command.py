@@ -78,6 +78,7 @@ def test_without_a_choice_it_is_told_how_to_choose(run: Any, drawings: Path) -> 
     assert "Set-up" not in outcome.stdout
 
 
+@pytest.mark.thorough
 def test_curve_and_sheets_are_drawn(run: Any, drawings: Path, tmp_path: Path) -> None:
     curve, sheets = tmp_path / "c.png", tmp_path / "s.pdf"
     part = drawings / "ell-1.json"

@@ -42,6 +42,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, searched: Any) -> Pa
     return tmp_path
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(
     ("command", "read"),
     [
@@ -70,7 +71,7 @@ def test_what_is_read_is_not_written_over(run: Any, folder: Path, command: str, 
     assert (folder / read).read_bytes() == before
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("command", "name"),
     [
@@ -112,6 +113,7 @@ def test_an_empty_file_may_be_replaced(run: Any, folder: Path) -> None:
     assert run(*COMMANDS["features"], "o.svg").exit_code == 0
 
 
+@pytest.mark.thorough
 def test_a_folder_of_pictures_keeps_what_is_not_a_picture_of_workhold(
     run: Any, folder: Path, searched: dict[str, Any]
 ) -> None:

@@ -31,6 +31,7 @@ def result_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@pytest.mark.thorough
 def test_a_result_keeps_them_and_supports_sheet_and_bodies_use_them(
     result_file: Path, tmp_path: Path, run: Run
 ) -> None:

@@ -96,6 +96,7 @@ def test_the_sheet_names_a_dowel_that_is_sold(run: Any, part: str) -> None:
         assert words in text, words
 
 
+@pytest.mark.thorough
 def test_numbers_of_faces_are_asked_about(run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A stepped solid has other numbers with other pegs: both heights are named, and either is taken."""
     pytest.importorskip("OCP", reason="the extra 'step' is not installed")

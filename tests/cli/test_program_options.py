@@ -49,7 +49,7 @@ def test_the_program_reaches_the_search_as_it_was_typed(
     assert query.ranking[1] == "program_clearance"
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize("place", ["corner", "centre", "hole 1"])
 def test_its_zero_is_named_as_on_the_sheet(
     run: Any, searched: dict[str, Any], file: Path, place: str

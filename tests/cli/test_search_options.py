@@ -196,6 +196,7 @@ def test_explore_refuses_in_a_sentence(run: Any, words: tuple[str, ...], message
 
 
 # ``--load``: what a user may type, and what is said when it cannot be used.
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(
     ("text", "load"),
     [

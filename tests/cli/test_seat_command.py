@@ -80,6 +80,7 @@ def test_it_tells_what_to_do_and_what_to_read(
     assert f"in {len(told.wrong_within())} wrong places" in text
 
 
+@pytest.mark.thorough
 def test_a_design_tells_it_of_the_first_and_lists_what_is_as_asked(
     run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -112,6 +113,7 @@ def test_a_design_tells_it_of_the_first_and_lists_what_is_as_asked(
     assert alone.exit_code == 2 and "need --seating K" in alone.stderr
 
 
+@pytest.mark.thorough
 def test_one_side_and_one_opening_leave_seats_out(run: Any, result_file: Path) -> None:
     drawn = run("seat", result_file, 1, "--side", "drawn").stdout
     over = run("seat", result_file, 1, "--side", "turned-over").stdout
@@ -165,6 +167,7 @@ def test_refusals_are_one_sentence(
     assert message in outcome.stderr and outcome.stderr.count("\n") == 1
 
 
+@pytest.mark.thorough
 def test_with_two_clamps_it_says_what_to_do_by_hand(
     run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -238,6 +241,7 @@ def test_a_search_for_seating_with_two_clamps_is_told_by_show(run: Any, tmp_path
     assert refused.exit_code == 2 and "ask for the seating alone" in refused.stderr
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("travel", "words"),
     [
@@ -280,6 +284,7 @@ def test_a_clamp_is_drawn_back(
     assert f"reads {right:.3f} mm" in (tmp_path / "seats.svg").read_text()
 
 
+@pytest.mark.thorough
 def test_an_opening_vise_is_closed_to_put_the_part_in(run: Any, tmp_path: Path) -> None:
     holed = Workpiece.from_loops(
         "holed",

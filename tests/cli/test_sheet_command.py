@@ -57,7 +57,7 @@ def words_in(path: Path) -> str:
     return " ".join(" ".join(page.get_textpage().get_text_bounded() for page in document).split())
 
 
-@pytest.mark.thinned(4)
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("name", "start"),
     [("a.pdf", b"%PDF-"), ("a.SVG", b"<?xml"), ("a.png", b"\x89PNG"), ("a.dxf", b"  0\nSECTION")],
@@ -183,6 +183,7 @@ def test_pins_are_listed(run: Any, folder: Path) -> None:
         }
 
 
+@pytest.mark.thorough
 def test_a_force_may_carry_its_unit(run: Any, folder: Path) -> None:
     """450 lbf are 2001.7 N, 2 kN are 2000 N."""
     for given, told in (("450lbf", "at 2002 N"), ("2kN", "at 2000 N")):
@@ -196,6 +197,7 @@ def test_fixtures_in_the_same_holes_are_warned_of(run: Any, folder: Path) -> Non
     assert "The same four holes hold this part in one other way" in words_in(folder / "a.pdf")
 
 
+@pytest.mark.thorough
 def test_where_the_part_ends_up_is_told_when_asked(run: Any, folder: Path) -> None:
     """How far to open, and the reading when it is right, which is what a diamond on four sides always gives."""
     run("sheet", "r.json", 1, "-o", "plain.pdf")

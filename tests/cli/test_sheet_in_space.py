@@ -53,6 +53,7 @@ def words_in(path: str) -> str:
     return " ".join(" ".join(page.get_textpage().get_text_bounded() for page in document).split())
 
 
+@pytest.mark.thorough
 def test_from_a_part_to_its_sheet_in_one_command(run: Run, folder: Path) -> None:
     """The first choice is on paper, on its supports; the sheet names the result file by its hash."""
     words = ("design", "plate.json", *KIT, "--best", 5, "--supports", "--thickness", 14)
@@ -77,6 +78,7 @@ def test_sheet_without_supports_or_result_file(run: Run, folder: Path) -> None:
     assert "sheet" not in json.loads(run("design", "plate.json", *KIT, "--best", 2, "--json").stdout)
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
@@ -99,6 +101,7 @@ def test_what_cannot_be_written_is_refused_before_the_search(
     assert searched["asked"] is None and Path("mine.pdf").read_text() == "my own"
 
 
+@pytest.mark.thorough
 def test_no_fixture_leaves_no_file(run: Run, folder: Path) -> None:
     """In words; a sheet of an earlier run stays as it was."""
     shown = run("design", "plate.json", *KIT, "--avoid", "0,1,2", "--sheet", "a.pdf")
@@ -108,6 +111,7 @@ def test_no_fixture_leaves_no_file(run: Run, folder: Path) -> None:
     assert not Path("a.pdf").exists()
 
 
+@pytest.mark.thorough
 def test_sheet_of_the_second_side(run: Run, folder: Path) -> None:
     """It says how the part is turned, what the first side cuts, and which faces both touch."""
     shown = run("sheet", "op20.json", 1, "-o", "op20.pdf", "--first-setup", "op10.json", "--supports")
@@ -131,6 +135,7 @@ def words_in_sheet(run: Run, result: str) -> str:
     return words_in("again.pdf")
 
 
+@pytest.mark.thorough
 def test_sheet_of_a_set_of_supports(run: Run, folder: Path) -> None:
     """Of a file of supports, N is the set of three; loads and sizes are those of the file."""
     load = ("--load", "force=90 at=30,20 z=4..18 axial=-30..60")
@@ -152,6 +157,7 @@ def test_sheet_of_a_set_of_supports(run: Run, folder: Path) -> None:
         assert shown.exit_code == 2 and sentence in shown.stderr and not Path("t.pdf").exists()
 
 
+@pytest.mark.thinned(6)
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
@@ -174,6 +180,7 @@ def test_what_a_sheet_in_space_cannot_be(
     assert not list(folder.glob("a.*"))
 
 
+@pytest.mark.thorough
 def test_no_supports_are_said_to_be_none(run: Run, folder: Path) -> None:
     """A part too small for three pads has a sheet without them from design, and a sentence from sheet."""
     Path("small.json").write_text(
@@ -198,6 +205,7 @@ def test_no_supports_are_said_to_be_none(run: Run, folder: Path) -> None:
     )
 
 
+@pytest.mark.thorough
 def test_smaller_pads_stand_where_the_usual_ones_do_not(run: Run, folder: Path) -> None:
     """The table says which sizes and why; the sheets of design and of the fixture have the same."""
     loop = [[0, 0, 0], [90, 2, 0], [88, 21, 0], [1, 20, 0]]
@@ -215,6 +223,7 @@ def test_smaller_pads_stand_where_the_usual_ones_do_not(run: Run, folder: Path) 
     assert words_in("b.pdf") == words_in("a.pdf")
 
 
+@pytest.mark.thorough
 def test_pegs_of_a_program_are_as_high_above_the_part_as_on_its_supports(run: Run, folder: Path) -> None:
     """Heights of a query are above where the part lies; the sheet's are above the plate, 10 mm lower."""
     (folder / "high.nc").write_text("(T1 D=6)\nT1 M6\nG90 G17 G21\nG0 X20 Y20 Z5\nG1 Z-2 F100\nG1 X40\nM30\n")

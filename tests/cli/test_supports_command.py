@@ -26,6 +26,7 @@ def result_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@pytest.mark.thorough
 def test_best_sets_and_a_file_that_verify_accepts(result_file: Path, tmp_path: Path, run: Run) -> None:
     """The table has the first sets of all; the file has all, and every one is proven."""
     out = tmp_path / "supports.json"
@@ -206,6 +207,7 @@ def test_friction_is_a_line_of_its_own_and_ranks_nothing(result_file: Path, run:
     assert bare.exit_code == 2 and "--friction is asked of loads, of which there are none" in bare.stderr
 
 
+@pytest.mark.thorough
 def test_forces_are_pounds_with_inches(result_file: Path, run: Run) -> None:
     """In the columns alone, in sentences with newtons beside them; the numbers are the same forces."""
     words = ("supports", result_file, "1", "--thickness", "20mm", "--friction", "0.2")

@@ -69,6 +69,7 @@ def test_a_drawing_in_pixels_is_asked_for_and_told_how_many_make_an_inch(
     assert "give --unit px72, px90 or px96" in remarked.stderr
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("unit", [None, "inch"])
 def test_pictures_are_in_the_unit_asked(
     run: Any, searched: dict[str, Any], tmp_path: Path, unit: str | None

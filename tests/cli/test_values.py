@@ -12,6 +12,7 @@ from workhold import Plate
 VISE = ("design", "widget", "--pitch", "10", "--columns", "2", "--peg-radius", "3")
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(
     ("text", "millimetres", "inches"),
     [

@@ -135,6 +135,7 @@ def test_undecided_fixtures_are_no_fault(run: Any, tmp_path: Path, hair: float, 
     assert (told in outcome.stdout) == (verdict != "proven")
 
 
+@pytest.mark.thorough
 def test_a_rectangle_on_the_lattice_is_proven_throughout(run: Any, tmp_path: Path) -> None:
     """Two faces exactly as far apart as two holes: the edges of the rules stand off what drawings meet exactly."""
     rectangle = Workpiece.from_loops("rectangle", [[[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]]])
@@ -206,6 +207,7 @@ def test_help(run: Any) -> None:
     assert "Example: workhold verify" in outcome.stdout
 
 
+@pytest.mark.thorough
 def test_nothing_of_the_search_is_loaded(result_file: Path, tmp_path: Path, process: Any) -> None:
     """The proof shares no arithmetic with the search, and the command loads none: only what reading a drawing needs."""
     code = (

@@ -23,6 +23,7 @@ from workhold.statics.contact_matrix import outward_normals
 from workhold.verification.ball_geometry import BallOutline
 
 
+@pytest.mark.thorough
 @given(outlines(), vises())
 def test_a_peg_on_a_feature_touches_its_face_and_nothing_else(part, vise):
     """At every point of a feature the face is at distance rho, along the feature's normal, and no face is nearer."""
@@ -39,6 +40,7 @@ def test_a_peg_on_a_feature_touches_its_face_and_nothing_else(part, vise):
             assert segment_distance(*foot, row) < 2e-9
 
 
+@pytest.mark.thorough
 @given(outlines(), vises())
 def test_features_are_ordered_by_face_and_carry_outward_normals(part, vise):
     """Faces ascend; a feature is of its face's kind; its row gives the same normals as the segment."""
@@ -56,6 +58,7 @@ def test_features_are_ordered_by_face_and_carry_outward_normals(part, vise):
         assert normal == pytest.approx(feature.segment.normal(t), abs=1e-9)
 
 
+@pytest.mark.thorough
 @settings(max_examples=80)
 @given(outlines())
 def test_the_diameter_is_the_largest_distance_of_a_sampling(part):

@@ -47,6 +47,7 @@ def slow_reach(pieces: list[SweptPiece], x: float, y: float) -> float:
     return out
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("count", [0, 1, 3, 4, 5, 9, 200])
 def test_the_nearest_piece_is_that_of_all(count: int) -> None:
     pieces = random_pieces(count, count)
@@ -73,6 +74,7 @@ def test_a_capsule_is_as_near_as_the_nearest_of_its_points() -> None:
         assert reach <= points + 1e-9 and points - reach < np.hypot(*(end - start)) / 8000 + 1e-9
 
 
+@pytest.mark.thorough
 def test_the_least_height_over_a_line_is_that_of_a_walk() -> None:
     pieces = random_pieces(4, 25)
     swept = Swept.of(tuple(pieces))

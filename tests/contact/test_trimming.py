@@ -51,6 +51,7 @@ def parameter_range(part: Segment, whole: Segment) -> tuple[float, float]:
     return middle - part.half_extent, middle + part.half_extent
 
 
+@pytest.mark.thinned(6)
 @pytest.mark.parametrize("seed", range(60))
 def test_what_is_left_is_what_a_walk_finds_clear(seed: int) -> None:
     feature, swept = random_case(seed)

@@ -37,6 +37,7 @@ def held(loop: list[list[float]], **fields: object) -> Result:
     return design(Workpiece.from_loops("part", [loop]), Fence(10, 3, wall_offset=5, **fields))  # type: ignore[arg-type]
 
 
+@pytest.mark.thinned(6)
 @pytest.mark.parametrize("travel", [(4, 30), None], ids=["bolted", "line"])
 @pytest.mark.parametrize("direction", ["-x", "+x", "-y", "+y"])
 def test_pictures_and_sheets_show_the_fence_and_cover_nothing(direction: str, travel: object) -> None:

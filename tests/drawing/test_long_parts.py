@@ -7,6 +7,7 @@ import xml.etree.ElementTree as ET
 from datetime import date
 
 import numpy as np
+import pytest
 from sheet_reading import page_of, words_of
 from svg_reading import NAMESPACE, by_class, texts
 
@@ -37,6 +38,7 @@ def struck(svg: str) -> list[str]:
     return found
 
 
+@pytest.mark.thorough
 def test_no_leader_goes_through_a_name() -> None:
     """Along a strip between jaws that all but meet, names of pegs find places without crossing column letters."""
     strip = Workpiece.from_points("strip", [(0, 0), (240, 0), (240, 6), (0, 6)])

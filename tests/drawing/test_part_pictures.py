@@ -58,6 +58,7 @@ def test_numbers_do_not_cover_each_other(teeth: int) -> None:
     assert not overlapping.any()
 
 
+@pytest.mark.thorough
 def test_sheet_grows_with_the_number_of_faces() -> None:
     """More than eighty faces are drawn on A3, more than twice that on A2, with letters of the same size."""
     assert ['width="297mm"' in draw_features(gear(20)), 'width="420mm"' in draw_features(gear(21))] == [

@@ -60,6 +60,7 @@ def ends_of(d: str) -> np.ndarray:
     return np.array([[float(x), float(y)] for x, y in re.findall(r"(-?[\d.]+) (-?[\d.]+)(?=[MLA]|$)", d)])
 
 
+@pytest.mark.thorough
 def test_path_lies_where_the_pose_puts_the_part(result: Result) -> None:
     """The slot's ends on the page, taken back by the pose, are those that the program names."""
     path = planned_path(result, 0)
@@ -91,6 +92,7 @@ def test_nearest_move_is_marked_at_its_distance(result: Result) -> None:
     assert f"line {near.line}, T{near.tool}: {near.distance:.3f} mm" in words
 
 
+@pytest.mark.thorough
 def test_sheet_names_the_program_with_its_tools_and_zero(result: Result) -> None:
     """The sheet's part zero is the program's, and every tool stands on it with its lines."""
     pages = result_sheet(result, 1)

@@ -50,6 +50,7 @@ def test_sheet_holds_its_words_as_text() -> None:
     assert document.get_metadata_value("CreationDate").startswith("D:20260331")
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("paper", ["a4", "letter"])
 def test_page_has_the_size_of_the_paper(paper: str) -> None:
     """A4 is 595.3 by 841.9 points, Letter 612 by 792."""
@@ -65,6 +66,7 @@ def test_typefaces_are_embedded() -> None:
     assert content.count(b"/FontFile2") == 2 and b"/Helvetica" not in content
 
 
+@pytest.mark.thorough
 def test_bytes_depend_on_picture_and_day_only() -> None:
     """Twice the same; another day gives another file."""
     pages = draw_sheet(*example(), DETAILS)
@@ -72,6 +74,7 @@ def test_bytes_depend_on_picture_and_day_only() -> None:
     assert svg_to_pdf(pages, DAY) != svg_to_pdf(pages, date(2026, 4, 1))
 
 
+@pytest.mark.thorough
 def test_all_pictures_can_be_printed() -> None:
     """Whatever the pictures are made of is understood."""
     fixture, workpiece, vise = example()

@@ -60,6 +60,7 @@ def read(svg: str) -> tuple[list[float], list[str]]:
     return [float(length.replace("−", "-")) for length in lengths], others
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(("drawn", "count"), [*zip(PICTURES, (15, 5, 2), strict=True)])
 def test_lengths_in_inches_are_those_in_millimetres_over_25_4(drawn: Drawn, count: int, held: Held) -> None:
     """All of them, to what is lost by rounding; angles, forces, names and all else stay."""
@@ -77,6 +78,7 @@ def test_pictures_in_inches_name_no_other_unit(drawn: Drawn, held: Held) -> None
     assert [word for word in words if re.search(r"\bmm\b", word)] == []
 
 
+@pytest.mark.thinned(2)
 def test_pictures_are_in_millimetres_where_nothing_is_said(held: Held) -> None:
     """To the byte."""
     fixture, workpiece, vise = held
@@ -85,6 +87,7 @@ def test_pictures_are_in_millimetres_where_nothing_is_said(held: Held) -> None:
     assert draw_thumbnails([fixture] * 2, workpiece, vise, ["1", "2"]) == thumbnails(held, MILLIMETRE)
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("drawn", PICTURES)
 @pytest.mark.parametrize("unit", [MILLIMETRE, INCH], ids=lambda unit: unit.name)
 def test_the_scale_is_as_long_as_it_says(drawn: Drawn, unit: Unit, held: Held) -> None:

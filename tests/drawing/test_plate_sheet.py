@@ -68,6 +68,7 @@ def test_nothing_is_covered_or_cut_off(
     ] == []
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("way", WAYS)
 @BOLTED
 def test_the_clamp_can_be_set_up_from_the_sheet(way: str, bolted: bool) -> None:

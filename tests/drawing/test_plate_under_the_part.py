@@ -75,6 +75,7 @@ def test_a_plate_with_limits_ends_there(held: Held) -> None:
             assert each.plate.x0 == pytest.approx(-0.5 * PITCH[0]) and "left" not in each.broken
 
 
+@pytest.mark.thinned(3)
 @EACH
 def test_holes_keep_their_names(held: Held) -> None:
     """Column A and row 1 are named at hole A1, in the picture and in a drawing for a CAM system; none before them is."""

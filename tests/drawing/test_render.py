@@ -55,6 +55,7 @@ def test_text_is_drawn_with_the_bundled_font() -> None:
     assert len({blank, plain, bold}) == 3
 
 
+@pytest.mark.thorough
 def test_endings_choose_the_kind() -> None:
     """.svg is the text itself, .png a picture of it, anything else is refused naming both."""
     svg = draw_features(example()[1])

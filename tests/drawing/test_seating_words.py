@@ -51,6 +51,7 @@ def with_seats(told: Seating, wrong: int) -> Seating:
     return evolve(told, seats=tuple(own + [seat for seat in told.seats if seat.is_wrong][:wrong]))
 
 
+@pytest.mark.thinned(6)
 @pytest.mark.parametrize(("paper", "unit"), [("a4", MILLIMETRE), ("letter", INCH)])
 @pytest.mark.parametrize("wrong", [0, 1, 2, 23])
 def test_nothing_is_covered_or_cut_off(
@@ -175,6 +176,7 @@ def test_a_part_that_is_hardly_caught_is_warned_of(result: Result, told: list[Se
     assert caution[0] == "reading" and "no different" in caution[1]
 
 
+@pytest.mark.thorough
 def test_it_is_told_where_it_is_known_or_asked_for(result: Result, told: list[Seating]) -> None:
     """A sheet of a result that has it is the one that is asked for; without, neither page nor sheet tell anything of it."""
     sheets = {seating: result_sheet(result, 1, seating=seating) for seating in (True, None)}
@@ -199,7 +201,7 @@ def test_what_cannot_be_told_is_left_out_with_its_sentence() -> None:
     assert str(refusal.value)[1:] in words
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "toolkit",
     [Plate(pitch=20, peg_radius=3, clamps=2), Fence(pitch=20, peg_radius=3, wall_offset=10, clamps=2)],

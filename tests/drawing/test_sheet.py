@@ -48,6 +48,7 @@ def joined(pages: tuple[str, ...]) -> str:
     return " ".join(word for page in pages for word in texts(page))
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("size", [0.01, 1.0, 40.0], ids=["tiny", "usual", "huge"])
 @pytest.mark.parametrize(("paper", "unit"), [("a4", MILLIMETRE), ("letter", INCH)])
@@ -71,7 +72,7 @@ def test_nothing_is_covered_or_cut_off(
 
 
 # The last ones are crowds in which the opening lay under a peg's name, or the letters of two jaws ran together.
-@pytest.mark.thinned(8)
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("seed", [*range(60), 64, 148, 184, 190, 232])
 def test_no_two_labels_overlap_on_any_sheet(seed: int) -> None:
@@ -124,6 +125,7 @@ def test_distances_on_paper_times_the_scale_are_those_of_the_model(held: Held) -
     }
 
 
+@pytest.mark.thorough
 def test_scale_bar_is_as_long_as_it_says(held: Held) -> None:
     """The four pieces of the bar together measure the length beside it, in inches too."""
     for unit, size in ((MILLIMETRE, 1.0), (INCH, 25.4)):

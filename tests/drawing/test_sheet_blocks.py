@@ -54,6 +54,7 @@ def test_known_mirror_images(loops: list[list[list[float]]], same: bool) -> None
     assert ("is its own mirror image" in words) is same
 
 
+@pytest.mark.thorough
 @given(outlines())
 @settings(max_examples=60)
 def test_marks_run_round_the_other_way_in_a_part_turned_over(part: Workpiece) -> None:

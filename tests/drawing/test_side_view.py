@@ -96,7 +96,8 @@ def test_view_is_true_to_the_scale_that_is_written(name: str) -> None:
     assert sorted(boxes(page, "band")) == [pytest.approx(one, abs=2e-3) for one in sorted(expected)]
 
 
-@pytest.mark.thinned(7)
+@pytest.mark.sampled(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", NAMES)
 def test_pegs_stand_from_the_plate_to_their_height(name: str) -> None:
     """Each peg is as wide as it is, ends at the peg height, and sits in the plate as deep as a dowel that is sold."""
@@ -124,7 +125,7 @@ def test_pegs_stand_from_the_plate_to_their_height(name: str) -> None:
         assert (low, high) == pytest.approx((-lifted - deep, -lifted), abs=2e-3)
 
 
-@pytest.mark.thinned(7)
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize(("paper", "unit"), [("a4", MILLIMETRE), ("letter", INCH)], ids=["a4", "letter"])
 @pytest.mark.parametrize("name", NAMES)
@@ -137,6 +138,7 @@ def test_nothing_is_covered_or_cut_off(name: str, paper: str, unit: Unit) -> Non
         assert faults(pages) == []
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("unit", "size"), [(MILLIMETRE, "{:.3f}"), (INCH, "{:.4f}")])
 def test_every_height_is_in_the_pdf(unit: object, size: str) -> None:
     """Levels, dimensions and the table of the bands say the heights that went in."""
@@ -169,6 +171,7 @@ def test_every_height_is_in_the_pdf(unit: object, size: str) -> None:
         assert band is not None and f"{peg.hole} {told(band[0])} {told(band[1])}" in words
 
 
+@pytest.mark.thorough
 def test_supports_lift_everything() -> None:
     """With supports of 6 mm the plate is 6 mm lower, and pegs as much longer."""
     lift = chosen("plate")
@@ -194,6 +197,7 @@ def test_supports_lift_everything() -> None:
         sheet(result_of("plate", False), thickness=HEIGHT, peg_height=6.0, supports=lift, support_height=6.0)
 
 
+@pytest.mark.thorough
 def test_a_drawing_without_thickness_has_no_view() -> None:
     """Nobody knows the heights; with a thickness the part is a prism, and what was assumed is said to be."""
     result = result_of("vise", False)

@@ -64,7 +64,7 @@ def test_supports_stand_on_the_plan_in_the_holes_that_are_named(name: str) -> No
         assert any(place == pytest.approx(peg, abs=2e-3) for peg in pegs)
 
 
-@pytest.mark.thinned(6)
+@pytest.mark.thorough
 @pytest.mark.parametrize("unit", [MILLIMETRE, INCH])
 @pytest.mark.parametrize("zero", [None, "centre", "hole 1"])
 def test_clamp_is_told_from_the_zero_that_the_sheet_uses(zero: str | None, unit: object) -> None:
@@ -232,6 +232,7 @@ FIRST = FirstSide(
 )
 
 
+@pytest.mark.thorough
 def test_second_side_says_what_the_first_did() -> None:
     """Which side is up, how it was turned, which faces are cut and which are touched in both."""
     words = printed(sheet(result_of("plate"), first_side=FIRST))

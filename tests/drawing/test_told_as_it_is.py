@@ -119,7 +119,7 @@ def touched(peg: Peg) -> str:
     return f"{peg.face}" if peg.beside is None else f"{peg.face}/{peg.beside}"
 
 
-@pytest.mark.thinned(8)
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @EVERY
 def test_a_picture_tells_the_fixture(held: Held) -> None:
@@ -213,7 +213,7 @@ def numbers(path: str) -> list[tuple[float, float]]:
     return list(zip(found[::2], found[1::2], strict=True))
 
 
-@pytest.mark.thinned(8)
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @EVERY
 def test_a_sheet_tells_what_stands_where(held: Held) -> None:
@@ -272,6 +272,7 @@ def above(force: float) -> str:
     return f"{-(-force // 1):.0f}"
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.thinned(8)
 @EVERY
 def test_a_sheet_tells_pose_calipers_and_figures(held: Held) -> None:

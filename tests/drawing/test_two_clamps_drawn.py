@@ -46,6 +46,7 @@ def held(pair: str = "across", bolted: bool = True) -> Result:
     return design(RECTANGLE, plate, restrictions=Restrictions(angles=angles), best=20)
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("bolted", [True, False])
 @pytest.mark.parametrize("pair", list(PAIRS))
 def test_each_clamp_has_its_own_length(pair: str, bolted: bool) -> None:
@@ -78,6 +79,7 @@ def sheet_words(result: Result, **details: object) -> str:
     return " ".join(" ".join(texts(page)) for page in pages)
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("pair", list(PAIRS))
 def test_the_sheet_tells_both_clamps_and_their_order(pair: str) -> None:
     """Where each is bolted, how to tighten them, and forces that make up the one given."""
@@ -136,6 +138,7 @@ EXAMPLES = {
 }
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", list(EXAMPLES))
 def test_a_machinist_would_set_it_so(name: str) -> None:
     """Of each example the long side lies on two dowels, a side square to it on one, the clamps push against both, and no
@@ -158,6 +161,7 @@ def test_a_machinist_would_set_it_so(name: str) -> None:
     assert ways == ["clamp -x", "clamp -y"] and len(set(faces) & {peg.face for peg in fixture.pegs[3:]}) == 0
 
 
+@pytest.mark.thorough
 def test_no_label_hides_a_dimension() -> None:
     """No framed name and no number of a face covers a length to set: neither its line nor its arrows."""
     strip = Workpiece.from_loops("strip", [[[0, 0, 0], [200, 0, 0], [200, 12, 0], [0, 12, 0]]])

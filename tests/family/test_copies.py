@@ -58,6 +58,7 @@ def shapes(fixture: Fixture, part: Workpiece, toolkit: Plate) -> tuple[Any, Any]
     return shapely.Polygon(loops[0], loops[1:]), shapely.union_all(bodies)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", HELD)
 @pytest.mark.parametrize("gap", [0.5, 7.0])
 def test_what_is_too_near_is_so_by_another_library(results: dict[str, Result], name: str, gap: float) -> None:
@@ -106,6 +107,7 @@ def most_by_trying(places: list[tuple[int, int]], near: set[tuple[int, int]]) ->
     return max(1 + most_by_trying(free, near), most_by_trying(rest, near))
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(
     ("name", "size"),
     [("strokes", (12, 7)), ("two clamps", (9, 8)), ("fence", (16, 6)), ("tips alone", (11, 8))],
@@ -140,6 +142,7 @@ def test_copies_stand_on_the_plate(results: dict[str, Result]) -> None:
     assert {j for _, j in packing_of(fence[0], fence.workpiece, fence.toolkit, 20, 9).shifts} == {0}
 
 
+@pytest.mark.thorough
 def test_where_time_is_over_what_is_known_is_told(
     results: dict[str, Result], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -161,6 +164,7 @@ def test_refusals(results: dict[str, Result]) -> None:
         packing_of(vise[0], LEVER, vise.toolkit, 9, 9)
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("name", HELD)
 def test_the_plate_is_drawn_with_every_copy(results: dict[str, Result], name: str) -> None:
     result = results[name]

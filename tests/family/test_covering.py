@@ -177,6 +177,7 @@ def worst_loss(losses: NDArray[np.float64], point: Point) -> float:
     return float(np.nanmin(losses[list(point.patterns)], axis=0).max())
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("seed", range(30))
 def test_families_of_six_by_trying_everything(seed: int) -> None:
     random = Random(seed)

@@ -79,6 +79,7 @@ def prove(family: Family) -> None:
                     assert holes_of(one.row, family.toolkit) == holes_of(setup.standing.row, family.toolkit)
 
 
+@pytest.mark.thorough
 def test_the_curve_of_twenty_parts(twenty: Family) -> None:
     assert len(twenty.members) == 20 and not twenty.left_out
     within = {
@@ -92,10 +93,12 @@ def test_the_curve_of_twenty_parts(twenty: Family) -> None:
     assert all(point.is_least and point.at_least == point.setups for point in twenty.points)
 
 
+@pytest.mark.thorough
 def test_every_plan_of_twenty_parts_is_proven(twenty: Family) -> None:
     prove(twenty)
 
 
+@pytest.mark.thorough
 def test_numbers_are_those_of_the_list(twenty: Family) -> None:
     for one in (one for setup in twenty.plans[0].setups for one in setup.holdings):
         result = answer(one.member.query, threads=1)
@@ -114,6 +117,7 @@ def measured_again(table: FixtureTable, one: Holding) -> FixtureTable:
     return measured(table, Problem.of(one.member.query))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("first", [0, 7])
 def test_the_fewest_of_six_parts_by_trying_everything(first: int) -> None:
     parts = TWENTY[first : first + 6]
@@ -180,6 +184,7 @@ def test_what_no_pattern_holds_is_named() -> None:
         nothing.plan(2)
 
 
+@pytest.mark.thorough
 def test_rules_restrict_what_is_used() -> None:
     parts = TWENTY[:4]
     free = family_of(asked(parts, VISE), threads=1)

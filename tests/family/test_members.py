@@ -34,6 +34,7 @@ def lever_query(restrictions: Restrictions) -> Query:
     return Query(LEVER, vise, restrictions=restrictions, ranking=["location_error"], loads=[LOAD])
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(
     "restrictions",
     [Restrictions(), Restrictions(avoid=(4,)), Restrictions(zones=[circle_zone(70.0, 11.0, 5.0)])],
@@ -133,6 +134,7 @@ def test_both_sides_share_pins() -> None:
     assert len(family.plans[0].setups) == 1
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "toolkit", [Plate(pitch=20, peg_radius=3, clamps=2), Vise(pitch=10, columns=2, peg_radius=3)]
 )

@@ -48,7 +48,8 @@ def on_page(svg: str) -> bool:
     return all(page_of(svg).contains(box) for _, box in words_of(svg))
 
 
-@pytest.mark.thinned(4)
+@pytest.mark.sampled(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("name", "place", "unit"),
     [("vise", 0, MILLIMETRE), ("vise", 3, INCH), ("largest opening", 0, MILLIMETRE), ("two clamps", 0, INCH)],
@@ -189,6 +190,7 @@ def test_what_is_not_proven_is_told_in_the_curve(families: dict[str, Family]) ->
     assert "No number of set-ups" in " ".join(texts(draw_curve(nothing)))
 
 
+@pytest.mark.thorough
 def test_heights_of_their_own_are_told_where_solids_are_held() -> None:
     """Of every set-up, in the unit of the sheet; nothing of them where nothing is a solid."""
     toolkit = Plate(pitch=10, peg_radius=3, columns=8, rows=8, clamp_heights=(12.7, 25.4))

@@ -57,6 +57,7 @@ def work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.Fixtur
     return "foreign_work"
 
 
+@pytest.mark.thorough
 def test_content_and_options_go_there_and_plain_data_come_back(work: str) -> None:
     """A megabyte passes through the pipes, and what a library prints does not mix with the answer."""
     assert run_apart(work, b"x" * 1_000_000, {"axis": None}, "the file") == [1_000_000, {"axis": None}]
@@ -120,6 +121,7 @@ def test_a_mistake_of_the_program_stays_one(work: str) -> None:
         run_apart(work, b"fault", {}, "the file")
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_the_process_ends_with_its_starter(work: str, tmp_path: Path, number: int) -> None:

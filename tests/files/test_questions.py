@@ -35,6 +35,7 @@ TWO_SQUARES = b"""<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="4
 <path d="M0 0h40v40h-40z"/><path d="M60 0h20v20h-20z"/></svg>"""
 
 
+@pytest.mark.thorough
 def test_nothing_but_the_command_line_names_a_flag() -> None:
     """No text outside the commands holds one, but for descriptions of code."""
     for path in SOURCE.rglob("*.py"):

@@ -73,7 +73,8 @@ WRITERS: dict[str, Callable[[Result, Any], Write]] = {
 }
 
 
-@pytest.mark.thinned(6)
+@pytest.mark.sampled(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", WRITERS)
 def test_foreign_files_are_kept_until_it_is_asked_for_and_own_ones_replaced(
     result: Result, supports: Any, tmp_path: Path, name: str
@@ -93,6 +94,7 @@ def test_foreign_files_are_kept_until_it_is_asked_for_and_own_ones_replaced(
     assert [one.name for one in tmp_path.iterdir()] == [name]
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.thinned(6)
 @pytest.mark.parametrize("name", WRITERS)
 def test_where_nothing_can_be_written_a_sentence_says_so(
@@ -112,6 +114,7 @@ def test_where_nothing_can_be_written_a_sentence_says_so(
     assert sorted(one.name for one in tmp_path.iterdir()) == sorted(["circle", full.name, name])
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("name", WRITERS)
 def test_no_writer_takes_the_name_of_another_kind_of_file(
     result: Result, supports: Any, tmp_path: Path, name: str
@@ -191,6 +194,7 @@ def test_an_error_while_it_is_written_leaves_the_earlier_file(
     assert list(tmp_path.iterdir()) == [path]
 
 
+@pytest.mark.thorough
 def test_the_hash_of_another_result_does_not_get_on_a_sheet(result: Result, tmp_path: Path) -> None:
     other: Fixture = workhold.design(PLATE, workhold.Vise(pitch=10, columns=5, peg_radius=3), best=1)[0]
     for name in ("r.json", "r.npz"):

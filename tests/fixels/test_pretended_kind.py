@@ -38,6 +38,7 @@ def outcomes(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, 
     return folder, json.loads(done.stdout)
 
 
+@pytest.mark.thorough
 def test_every_command_takes_it(outcomes: tuple[Path, dict[str, Any]]) -> None:
     """Each ends as it does for a vise, without a fault."""
     for name, (code, words) in outcomes[1].items():

@@ -238,6 +238,7 @@ def edge(segment: Segment, end: int) -> float:
     return end * (segment.sign if isinstance(segment, Arc) else 1.0) * segment.half_extent
 
 
+@pytest.mark.thorough
 def test_a_finer_fit_takes_more_arcs() -> None:
     """Biarcs are of third order: an eighth of the tolerance takes twice as many."""
     counts = []

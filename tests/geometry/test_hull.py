@@ -100,6 +100,7 @@ def test_edges_shorter_than_a_micrometre_fraction_do_not_count() -> None:
         assert len(edges_of([(0, 0, 0), (20, 0, 0), (20, 10, 0), (size, 10, 0), (0, 10 - size, 0)])) == count
 
 
+@pytest.mark.thorough
 @given(st.integers(3, 9), st.integers(0, 2**32 - 1), st.floats(0.0, 6.2))
 def test_they_are_where_the_lowest_point_jumps_as_the_part_turns(count: int, seed: int, turn: float) -> None:
     """Of random outlines about a point, with arcs bent in and out: the slow search finds the same orientations and ends."""

@@ -33,6 +33,7 @@ def polygon_area(segments, steps: int) -> float:
     return float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2
 
 
+@pytest.mark.thorough
 @given(outlines())
 def test_area_is_the_limit_of_inscribed_polygons(part):
     """The shoelace sum plus circular segments is the limit of polygon areas, which converge with the square of the step."""
@@ -68,6 +69,7 @@ def test_known_areas():
     assert signed_area(obround) == pytest.approx(200 + 25 * pi)
 
 
+@pytest.mark.thorough
 @settings(max_examples=200)
 @given(
     places, places, st.sampled_from([0.0, 0.4, -1.5, 1.0]), places, places, st.sampled_from([0.0, -0.3, 2.0])
@@ -95,6 +97,7 @@ def test_intersections_of_carriers_lie_on_both(p, q, bulge, r, s, other_bulge):
             assert len(common_points(a, b, 1e-7)) == 1
 
 
+@pytest.mark.thorough
 def test_arcs_meet_where_a_sampling_says_so():
     """The number of common points of two arcs is the number of sign changes of one's circle equation along the other."""
     random = np.random.default_rng(5)

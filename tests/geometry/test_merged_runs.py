@@ -28,6 +28,7 @@ def slot(ends: int, sides: int = 1, digits: int = 6) -> NDArray[np.float64]:
     return np.round(half + [(40 - x, 20 - y) for x, y in half], digits)
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(("ends", "sides"), [(120, 1), (700, 1), (300, 50), (300, 7)])
 @pytest.mark.parametrize("start", [0, 1, 40, 200])
 def test_a_slot_of_chords_is_two_lines_and_two_arcs(ends: int, sides: int, start: int) -> None:

@@ -21,6 +21,7 @@ def points_of(segment, count: int) -> np.ndarray:
     return np.array([segment.at(t) for t in np.linspace(-1, 1, count) * segment.half_extent])
 
 
+@pytest.mark.thorough
 @settings(max_examples=120)
 @given(outlines(), radii)
 def test_every_kept_point_is_at_exactly_the_radius(part, radius):
@@ -34,6 +35,7 @@ def test_every_kept_point_is_at_exactly_the_radius(part, radius):
             assert not any(is_inside(x, y, rows) for x, y in points)
 
 
+@pytest.mark.thorough
 @settings(max_examples=120)
 @given(outlines(), radii)
 def test_every_point_at_the_radius_is_kept(part, radius):

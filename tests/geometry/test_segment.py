@@ -87,6 +87,7 @@ def test_a_part_is_the_segment_between_two_parameters(start, end, bulge, one, tw
     assert part.length == pytest.approx((high - low) / (2 * segment.half_extent) * segment.length)
 
 
+@pytest.mark.thorough
 @given(places, places, st.one_of(st.just(0.0), bulges))
 def test_the_bounding_box_is_the_range_of_the_points(start, end, bulge):
     """No point of the segment lies outside its box, and each side of the box is reached."""

@@ -190,6 +190,7 @@ def test_cuts_beside_a_corner_leave_one_loop(side: int, apart: float) -> None:
 GAPS = [0.0, *(sign * 3.3 * 10.0**-power for power in range(3, 13) for sign in (1.0, -1.0))]
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("gap", GAPS)
 @pytest.mark.parametrize("corners", [4, 6])
 def test_a_circle_that_nearly_touches_a_polygon(corners: int, gap: float) -> None:

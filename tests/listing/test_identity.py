@@ -46,7 +46,7 @@ def carried(table: FixtureTable, angle: float) -> FixtureTable:
     return evolve(table, theta=(table.theta - angle) % tau)
 
 
-@pytest.mark.thinned(5)
+@pytest.mark.thorough
 @pytest.mark.parametrize("corners", [3, 4, 5, 6])
 @pytest.mark.parametrize("name", TOOLKITS)
 def test_what_is_turned_has_the_same_smallest_image(name: str, corners: int) -> None:
@@ -179,6 +179,7 @@ def test_clamps_keep_their_faces(clamps: int) -> None:
     assert 1 < len(seen) < len(result)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("corners", [5, 12])
 def test_the_first_image_is_the_first_of_all(corners: int) -> None:
     """Of a regular polygon, of whose many symmetries few are tried, as of one of which all are: no image comes before it,

@@ -60,6 +60,7 @@ def holes(result: Result) -> set[tuple[Any, ...]]:
     }
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "toolkit",
     [

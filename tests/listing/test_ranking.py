@@ -195,6 +195,7 @@ class Drawn:
         self.keys = keys(quality, DEFAULT_RANKING, LOOSE, np.array(some([0, 1, 2]), np.int64))
 
 
+@pytest.mark.thorough
 @given(st.data(), st.integers(1, 5), st.integers(0, 13))
 def test_what_is_kept_holds_the_best_whatever_comes_later(data: st.DataObject, most: int, cut: int) -> None:
     """Kept of a part and then of all: the first so many of all are among it, and the least error stays."""
@@ -207,6 +208,7 @@ def test_what_is_kept_holds_the_best_whatever_comes_later(data: st.DataObject, m
     assert whole.take(kept).least == whole.least
 
 
+@pytest.mark.thorough
 @given(st.data(), st.integers(1, 4))
 def test_what_is_beaten_is_not_among_the_best(data: st.DataObject, most: int) -> None:
     """With an error known to be the least of all, and without; and a bound is never beaten by itself."""

@@ -84,6 +84,7 @@ def assert_first(few: Result, whole: Result) -> None:
         assert few.proof.undecided == whole.proof.undecided and few.proof.cells >= whole.proof.cells
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "seed", [31, *(pytest.param(seed, marks=pytest.mark.prove) for seed in range(200) if seed != 31)]
 )
@@ -94,6 +95,7 @@ def test_the_best_are_the_first_of_the_whole_list(seed: int) -> None:
             assert_first(answer(evolve(query, best=best), threads=1), whole)
 
 
+@pytest.mark.thorough
 def test_most_contacts_are_not_even_proven() -> None:
     query = Query(part(NOTCHED), Plate((16, 12), 3, clamps=2))
     few, whole = answer(evolve(query, best=5)), answer(query)
@@ -102,6 +104,7 @@ def test_most_contacts_are_not_even_proven() -> None:
     assert few.proof.candidates == whole.proof.candidates
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("listing", ["best", "all"])
 def test_what_is_left_out_does_not_depend_on_threads_and_verifies(listing: str, tmp_path: Any) -> None:
     query = Query(cad_part(9), Plate(pitch=25, peg_radius=3, clamps=2), best=6, listing=listing)
@@ -120,6 +123,7 @@ def test_what_is_left_out_does_not_depend_on_threads_and_verifies(listing: str, 
     assert any("how many pairs" in fault for fault in verify_file(tmp_path / "without.json").faults)
 
 
+@pytest.mark.thorough
 def test_ranges_of_orientation_do_not_show(monkeypatch: pytest.MonkeyPatch) -> None:
     query = Query(part(NOTCHED), Plate((20, 16), 3, columns=4, rows=4, clamps=2), best=9)
     whole = answer(evolve(query, best=None))
@@ -127,6 +131,7 @@ def test_ranges_of_orientation_do_not_show(monkeypatch: pytest.MonkeyPatch) -> N
     assert_first(answer(query), whole)
 
 
+@pytest.mark.thorough
 def test_no_fixture_ranks_before_the_bound_of_its_locators(monkeypatch: pytest.MonkeyPatch) -> None:
     """The lemma on which the search stops."""
     seen: list[int] = []
@@ -177,6 +182,7 @@ def contacts_of(query: Query, monkeypatch: pytest.MonkeyPatch) -> tuple[list[Any
     return [part.take(slice(None)) for part in records], problems
 
 
+@pytest.mark.thorough
 def test_locators_are_known_where_a_clamp_grazes_an_arc(monkeypatch: pytest.MonkeyPatch) -> None:
     """Parts moved by less than contacts are said to be off are off by no more than their locators tell."""
     query = Query(cad_part(5), Plate(pitch=20, peg_radius=3, clamps=2), best=5)
@@ -198,6 +204,7 @@ def test_locators_are_known_where_a_clamp_grazes_an_arc(monkeypatch: pytest.Monk
             assert (seat_order.places_off(moved, problem) >= size).all()
 
 
+@pytest.mark.thorough
 def test_no_contact_stands_for_two_seats(monkeypatch: pytest.MonkeyPatch) -> None:
     """Seats nearer than places and orientations are told apart share a group, which has no bound then."""
     query = Query(cad_part(5), Plate(pitch=20, peg_radius=3, clamps=2), best=5)
@@ -234,6 +241,7 @@ def test_packed_contacts_are_the_records_in_their_order(large: float) -> None:
     assert [part.shape for part in PackedContacts.of([]).parts()] == [(0, 19)]
 
 
+@pytest.mark.thorough
 def test_numbers_of_seats_are_those_of_their_definition(monkeypatch: pytest.MonkeyPatch) -> None:
     """Holes agree wherever they are on the plate and in which order; places are those beside the lowest."""
     query = Query(cad_part(9), Plate(pitch=(25, 20), peg_radius=3, clamps=2), best=5)
@@ -261,6 +269,7 @@ def test_a_group_holds_several_places_and_is_bounded_by_the_best() -> None:
     assert seat_order.best_known(order, off, np.array([0, 3])).tolist() == [1, 2]
 
 
+@pytest.mark.thorough
 def test_no_two_heads_push_along_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     """Locators across a slot as wide as a pitch, and on a diameter, fix no pose with a third."""
     for seed, pitch in ((11, 20.0), (6, 20.0)):

@@ -36,6 +36,7 @@ def share_an_arc(result: Result) -> np.ndarray[Any, np.dtype[np.bool_]]:
     return np.array([any((row == arc).sum() > 1 for arc in arcs) for row in faces], np.bool_)
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("toolkit", TOOLKITS, ids=["vise", "opening", "plate", "two clamps"])
 @pytest.mark.parametrize("tolerance", TOLERANCES, ids=str)
@@ -59,6 +60,7 @@ RANKINGS: dict[str, Mapping[str, Any]] = {
 }
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("toolkit", TOOLKITS, ids=["vise", "opening", "plate", "two clamps"])
 @pytest.mark.parametrize("ranking", RANKINGS)

@@ -33,6 +33,7 @@ def held(toolkit: Toolkit) -> Result:
     return workhold.design(part(LOOP), toolkit, best=5)
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("kind", KINDS)
 def test_all_stands_in_the_middle_and_nothing_changes_among_itself(kind: str) -> None:
     """No other place is nearer to the middle; pegs, part and strokes keep to one another; holes have names."""

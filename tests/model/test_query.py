@@ -94,6 +94,7 @@ def test_a_result_survives_pickling() -> None:
     assert np.array_equal(again.table.null_vector, result.table.null_vector)
 
 
+@pytest.mark.thorough
 def test_a_query_is_answered_in_another_process() -> None:
     """A process started anew gives the answer that this one gives."""
     query = full(restrictions=None, arrangements=None)

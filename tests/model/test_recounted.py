@@ -66,6 +66,7 @@ def refuse_moved(fixture: Fixture, toolkit: Toolkit, triple: Triple, found: Reco
         assert not plate.is_blocked(pad.column, pad.row)
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", list(CASES))
 def test_everything_has_a_hole_and_keeps_its_place(name: str) -> None:
@@ -86,6 +87,7 @@ def test_everything_has_a_hole_and_keeps_its_place(name: str) -> None:
         assert moved > 0
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("way", ["-x", "-y", "+x", "+y"])
 def test_a_clamp_on_a_line_moves_along(way: str) -> None:
     """Where only the clamp's line is known, the tip is measured from the new first column or row."""
@@ -116,6 +118,7 @@ def test_a_set_that_stands_as_listed_is_not_moved() -> None:
     assert again.move == (0, 0) and again.fixture == fixture and again.supports == pads
 
 
+@pytest.mark.thorough
 def test_sets_that_there_are_not_are_refused() -> None:
     """A number beyond the list, and supports that fit nowhere, are sentences."""
     toolkit = CASES["endless plate"]

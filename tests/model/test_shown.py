@@ -141,6 +141,7 @@ def test_of_many_holes_those_near_the_pegs_are_left() -> None:
             assert min(away) <= 3
 
 
+@pytest.mark.thorough
 @given(theta=st.floats(0.0, 2 * pi), x=st.floats(-50.0, 50.0), y=st.floats(-50.0, 50.0))
 def test_extents_are_those_of_the_placed_part(theta: float, x: float, y: float) -> None:
     """A half disc with a bitten edge: the box found is that of a thousand points of every placed segment."""

@@ -63,6 +63,7 @@ def meets_by_hand(points: Array, loop: Array, reach: float) -> NDArray[np.bool_]
     return (np.abs(turned.sum(axis=1)) > pi) | (away < reach)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("loop", [PLATE, ELL, DISC, BOWS, BOWS[::-1] * [1, 1, -1]])
 @given(places, places, st.floats(-5.5, 5.5), st.sampled_from([0.0, 5.0, 17.0]))
 def test_stretches_are_those_of_a_walk(

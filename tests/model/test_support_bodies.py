@@ -46,6 +46,7 @@ def circles(body: FixtureBody) -> list[tuple[tuple[float, float], float, float, 
     return out
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("part", "toolkit"), CASES, ids=lambda one: getattr(one, "kind", one.__class__.__name__)
 )

@@ -47,6 +47,7 @@ def rounded_rectangle(width, height, radius, digits=6):
     return [[round(v, digits) for v in corner] for corner in corners]
 
 
+@pytest.mark.thorough
 @given(outlines())
 def test_loops_are_turned_so_that_material_lies_on_the_left(piece):
     """Given either way round, the outer loop comes out counter-clockwise and holes clockwise, same vertices."""

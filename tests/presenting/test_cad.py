@@ -105,6 +105,7 @@ def test_a_direction_along_no_axis_is_refused(up: Any, words: str) -> None:
         workhold.from_build123d(None, up=up)
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(("up", "vise"), [("z", VISE), ((0, -1, 0), VISE), ("-x", FINE), ("-z", FINE)])
 def test_bodies_stand_about_the_part_where_it_lies(up: Any, vise: workhold.Vise, cadquery: None) -> None:
     """Each peg touches the part's own solid and enters nothing, and the plates lie under it."""
@@ -118,6 +119,7 @@ def test_bodies_stand_about_the_part_where_it_lies(up: Any, vise: workhold.Vise,
     assert [distance(part.shape, one.shape) for one in others] == pytest.approx([0.0] * len(others), abs=1e-6)
 
 
+@pytest.mark.thorough
 def test_supports_stand_under_the_part(cadquery: None) -> None:
     shape = stepped()
     first = first_choice(shape, "z", FINE)
@@ -159,6 +161,7 @@ def test_a_library_that_is_missing_is_named(monkeypatch: pytest.MonkeyPatch) -> 
         first_choice(stepped(), "z").to_cadquery()
 
 
+@pytest.mark.thorough
 def test_build123d_has_an_assembly_with_names_and_colours() -> None:
     build123d = pytest.importorskip("build123d", reason="the extra 'build123d' is not installed")
     part = build123d.Pos(5, -7, 33) * (build123d.Box(60, 40, 10) - build123d.Cylinder(6, 10))

@@ -105,6 +105,7 @@ def test_names_stay_on_the_page() -> None:
             assert 10 < float(text.get("x", "")) < 630 and 0 < float(text.get("y", "")) < 480
 
 
+@pytest.mark.thorough
 def test_a_closing_comes_home() -> None:
     """It ends in the fixture's place with nothing open, begins off it, and what is read is said."""
     shown = 0

@@ -97,6 +97,7 @@ def every_kind() -> list[Any]:
     ]
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("thing", every_kind(), ids=lambda thing: repr(thing)[:28])
 def test_only_plain_html_is_shown(thing: Any) -> None:
     """No script, style or address elsewhere; pictures are SVG that is well formed; plain text stays short."""

@@ -29,6 +29,7 @@ def result_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("ending", ["svg", "pdf", "dxf", "csv"])
 def test_papers_are_those_of_the_command(ending: str, result_file: Path, tmp_path: Path) -> None:
     """Byte for byte, with the same wishes; a fixture that went through pickle has the same."""

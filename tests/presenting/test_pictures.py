@@ -18,6 +18,7 @@ from workhold.units import unit_named
 RESULT = fake_result(4)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("thing", [plate(), RESULT, RESULT[1]], ids=["part", "result", "fixture"])
 def test_a_picture_shows_itself(thing: Any, tmp_path: Path) -> None:
     """What ``draw`` gives is what a notebook shows and what is written."""

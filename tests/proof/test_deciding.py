@@ -192,6 +192,7 @@ def test_overlapping_boxes_of_the_same_pegs_are_one(
     assert together[14] + together[18] >= near[14] + 1e-6
 
 
+@pytest.mark.thorough
 def test_one_thread_at_a_time_works_with_balls(monkeypatch: pytest.MonkeyPatch) -> None:
     """The precision of ball arithmetic belongs to the whole process: with every open record sent there, from small blocks
     on many threads, no two boxes are decided at the same time, and the outcome is the same as on one thread."""
@@ -262,6 +263,7 @@ def test_a_wide_box_is_decided_in_doubles() -> None:
     assert len(proven) == len(still_open) == 0
 
 
+@pytest.mark.thorough
 def test_an_ordinary_part_leaves_nothing_to_balls(monkeypatch: pytest.MonkeyPatch) -> None:
     """Boxes that are not flat are contracted in the frame of the Jacobian alone; weighed, some of them stay open, and the
     search loads ball arithmetic for them."""

@@ -253,6 +253,7 @@ TEE = Workpiece.from_loops(
 )
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("part", "toolkit"),
     [

@@ -31,6 +31,7 @@ def searched(
     return search, set(zip(*(column.tolist() for column in columns), strict=True))
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("loop", [KITE, ARCH, SLOT], ids=["kite", "arch", "slot"])
 @pytest.mark.parametrize("direction", ["-x", "+x", "-y"])
 @pytest.mark.parametrize("margin", [0.0, 3.0])

@@ -103,6 +103,7 @@ def test_every_point_of_the_curve_is_in_its_taylor_forms(frame: SingularFrame, s
     assert curve.slope(arb(t).union(arb(beside))).overlaps(chord)
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("rest", [1e-3, 1e-6, 1e-9, 1e-11])
 @pytest.mark.parametrize("turn", [0.0, 1e-4, -3e-3])
 def test_both_roots_of_a_fold_are_found_once(

@@ -29,6 +29,7 @@ CASES = [
 MARGIN = ["closure-margin"]
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize(("name", "vise", "most"), CASES)
 @pytest.mark.parametrize(
@@ -46,6 +47,7 @@ def test_the_best_are_the_first_of_all(
     assert best.proof is not None and not best.proof.undecided
 
 
+@pytest.mark.thorough
 def test_what_is_left_out_does_not_depend_on_threads(tmp_path: Path) -> None:
     """The file of a search for the best, counts of its work included, is the same byte for byte."""
     files = []
@@ -71,6 +73,7 @@ def test_more_than_there_are_is_all_of_them() -> None:
     assert best.found == full.found and best.notes == full.notes
 
 
+@pytest.mark.thorough
 def test_work_is_left_out() -> None:
     """Fewer contacts are examined, and fewer crossings sought, for the very best than for all."""
     part, vise = load("oblongPart"), Vise(pitch=4, columns=6, peg_radius=1.5)
@@ -112,6 +115,7 @@ def test_only_what_is_kept_stays_in_memory(monkeypatch: pytest.MonkeyPatch) -> N
     assert len(held) > 3 and max(held) < 50 * 8
 
 
+@pytest.mark.thorough
 def test_a_cancelled_search_keeps_the_best_so_far() -> None:
     """It is incomplete, and what it lists are fixtures."""
     part, vise = load("large4Handle"), Vise(pitch=10, columns=10, peg_radius=3)

@@ -143,6 +143,7 @@ def assert_kept(vertices: Loop, kit: str, restriction: tuple[dict[str, Any], Kee
     return result, sum(chosen) - sum(keeps(fixture, full, -WITHIN) for fixture in full)
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("loop", "kit", "restriction", "at_edge"),
@@ -187,6 +188,7 @@ def lollipop(short: float) -> Workpiece:
     return Workpiece.from_loops("lollipop", [[*foot, (10.0, neck, turn), (-10.0, neck, 0.0)]])
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("short", "grazes"), [(9.604e-12, False), (1.0404e-11, True)])
 def test_a_clamp_that_grazes_an_arc_is_none(short: float, grazes: bool) -> None:
     """A tip beside the top of the disc pushes with a share of sqrt(short / 10), 9.8e-7 and 1.02e-6: above 1e-6 it is one."""
@@ -245,6 +247,7 @@ def test_parts_of_whole_numbers_under_every_restriction(seed: int, kit: str) -> 
         assert_kept(loop, kit, restriction)
 
 
+@pytest.mark.thorough
 def test_the_algebra_takes_the_same_bounds() -> None:
     """A margin that is met exactly, in the second engine."""
     query = Query(drawn(L), Vise(pitch=20, columns=2, peg_radius=3), contact_margin=1.0)
@@ -252,6 +255,7 @@ def test_the_algebra_takes_the_same_bounds() -> None:
     assert len(fast) > 0 and identities(fast) == identities(slow)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("kit", ["vise", "plate"])
 def test_a_margin_counts_at_the_far_end_of_what_a_zone_leaves(kit: str) -> None:
     """A zone leaves a millimetre of a side at its corner: no contact there is a millimetre inside, however near the cut."""

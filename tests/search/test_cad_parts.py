@@ -49,6 +49,7 @@ def assert_sound(part: Workpiece, preset: str) -> None:
 
 
 # Each shape once, each with another preset.
+@pytest.mark.thinned(10)
 @pytest.mark.parametrize("seed", range(len(SHAPES)))
 def test_every_shape_is_held_without_fault_or_doubt(seed: int) -> None:
     assert_sound(cad_part(seed), PRESETS[seed % len(PRESETS)])
@@ -61,6 +62,7 @@ def test_hundreds_of_parts_on_every_preset(seed: int) -> None:
         assert_sound(cad_part(seed), preset)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("seed", "pitch"),
     [(6, 22.0), *(pytest.param(seed, 25.0, marks=pytest.mark.prove) for seed in (4, 5, 10, 17, 22, 24))],
@@ -78,6 +80,7 @@ TWO: dict[str, Any] = {"directions": [("-x", "-y")], "clamps": 2}
 LONG = ((seed, 40.0, 3, fields) for seed in (4, 5, 6, 7, 16) for fields in (ONE, TWO))
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled(12)
 @pytest.mark.parametrize(
     ("seed", "pitch", "columns", "fields"), [(6, 30.0, 2, ONE), (6, 30.0, 2, TWO), *LONG]
@@ -93,6 +96,7 @@ def test_plates_agree_with_a_slow_search(
     assert seen(result) == slow_plate(part, plate)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "seed", [7, *(pytest.param(seed, marks=pytest.mark.prove) for seed in (1, 2, 4, 5, 6, 8, 9, 10))]
 )
@@ -130,6 +134,7 @@ def rod(digits: int) -> Workpiece:
 
 
 # The ends are then 7e-11 to 1e-9 mm from as far apart as seven holes of 20 mm.
+@pytest.mark.thorough
 @pytest.mark.parametrize("digits", [9, 10, 11])
 def test_three_locators_on_ends_nearly_as_far_apart_as_holes_have_sharp_places(digits: int) -> None:
     """The third locator says where the part lies, which the two on both ends hardly do: there were 10,000 boxes of
@@ -140,6 +145,7 @@ def test_three_locators_on_ends_nearly_as_far_apart_as_holes_have_sharp_places(d
     assert result.counts == {"clamp": 38600}
 
 
+@pytest.mark.thorough
 def test_flat_boxes_of_turn_and_place_are_contracted_as_they_are() -> None:
     """The orientation is known to 1e-11, the place to some mm: a frame that mixes both never gets small."""
     result = design(rod(11), Vise(pitch=20, columns=2, peg_radius=3))

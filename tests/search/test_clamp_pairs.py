@@ -41,7 +41,7 @@ def test_complete_set_is_reproduced(path: Path, tmp_path: Path) -> None:
     assert ": 0 missing, 0 extra" in checked(result, tmp_path / "result.json", path)
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("listing", ["best", "all"])
 @pytest.mark.parametrize(
@@ -73,7 +73,7 @@ def counted(n: int) -> int:
     return (n - 1) * n * (2 * n - 1) // 6
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thorough
 @pytest.mark.parametrize(("size", "pitch"), [((100.0, 60.0), (20, 20)), ((57.0, 45.0), (16, 14))])
 def test_a_square_rectangle_is_counted_by_hand(size: tuple[float, float], pitch: tuple[float, float]) -> None:
     """Two locators below, one beside, clamps opposite, and every other way; without limits of the plate."""
@@ -156,6 +156,7 @@ def test_a_quarter_turn_swaps_pitch_limits_and_the_usual_pairs() -> None:
     assert in_part(one) == in_part(other) and len(one) > 10
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("pair", [("-x", "-y"), ("-x", "+x"), ("-y", "-y")])
 def test_half_a_turn_of_the_plate_lists_nothing_twice(pair: tuple[str, str]) -> None:
     """A pair of directions and what half a turn makes of it are the same fixtures; naming both is naming one."""
@@ -201,6 +202,7 @@ def seat_key(fixture: workhold.Fixture) -> tuple[Any, ...]:
     return fixture.direction, round(pose.theta_deg, 5), place, seat_of(fixture)
 
 
+@pytest.mark.thorough
 def test_larger_plates_longer_strokes_and_more_directions_hold_all_that_smaller_ones_hold() -> None:
     """A superset each time."""
     small = Plate(16, 3, columns=4, rows=4, clamps=2, directions=[("-x", "-y")], travel=(4, 22))
@@ -395,6 +397,7 @@ def add_pairs(
             counts[pair] += 1
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("seed", [1, *(pytest.param(seed, marks=pytest.mark.prove) for seed in range(2, 14))])
 def test_random_polygons_against_a_slow_enumeration(seed: int) -> None:
     """As many pairs as are found by trying every three holes on every three sides."""
@@ -411,6 +414,7 @@ def test_random_polygons_against_a_slow_enumeration(seed: int) -> None:
     assert seed > 1 or sum(found.values()) > 5
 
 
+@pytest.mark.thorough
 def test_the_best_are_those_of_the_whole_list_and_threads_change_nothing(tmp_path: Path) -> None:
     """Any ranking; counts stay whole."""
     workpiece, plate = part(NOTCHED), Plate((20, 16), 3, columns=4, rows=4, clamps=2)
@@ -425,6 +429,7 @@ def test_the_best_are_those_of_the_whole_list_and_threads_change_nothing(tmp_pat
     assert texts[0] == texts[1]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("limit", [{"BLOCKS_TOGETHER": 3}, {"WAYS_TOGETHER": 2e4}], ids=str)
 def test_ranges_of_orientation_do_not_show(limit: dict[str, float], monkeypatch: pytest.MonkeyPatch) -> None:
     """However many ranges are worked through one after the other, the list is the same."""
@@ -439,6 +444,7 @@ def test_ranges_of_orientation_do_not_show(limit: dict[str, float], monkeypatch:
     assert (again.pairs, again.seats) == (whole.pairs, whole.seats)
 
 
+@pytest.mark.thorough
 def test_a_part_far_too_large_for_the_pitch_is_refused_with_one_that_does() -> None:
     """The refusal comes before the search; one pitch is named, and it is not refused."""
     large = rectangle(1500, 1400)

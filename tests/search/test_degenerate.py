@@ -58,6 +58,7 @@ def test_equal_arcs_one_peg_step_apart() -> None:
     assert missing(listed(design(part, vise)), [planted], judge) == []
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("turn", [0.0, 1e-13, 1e-7, 0.3])
 def test_a_bar_with_parallel_faces_at_any_angle(turn: float) -> None:
     """A rectangle is held the same however it is drawn: its sliding pair chords do not depend on being aligned."""
@@ -74,6 +75,7 @@ def test_a_bar_with_parallel_faces_at_any_angle(turn: float) -> None:
     )
 
 
+@pytest.mark.thorough
 def test_pegs_in_round_holes_a_whole_number_of_steps_apart() -> None:
     """A plate with four equal holes on the vise's own lattice: every listed fixture stands up to the checker."""
     holes = [disc(6.0, x, y) for x in (15.0, 35.0) for y in (15.0, 35.0)]
@@ -103,6 +105,7 @@ def test_a_contact_exactly_at_a_tangent_joint_is_listed_once() -> None:
     assert {peg.face for peg in straight[0].pegs[:2]} <= {4, 5}
 
 
+@pytest.mark.thorough
 def test_a_seam_of_a_whole_circle_is_nowhere() -> None:
     """Where the angle of a whole circle begins to count is nobody's business: turned holes have the same fixtures."""
     plate = [[-40, -30, 0], [40, -28, 0.2], [38, 30, 0], [-42, 25, 0]]
@@ -130,6 +133,7 @@ def test_antipodal_pegs_in_a_hole_hold_nothing() -> None:
     assert result.proof.undecided == ()
 
 
+@pytest.mark.thorough
 def test_a_circle_drawn_in_many_pieces_is_one_face() -> None:
     """Joints inside a face are nothing a peg could notice: a slot drawn with split sides has the same fixtures."""
     whole = Workpiece.from_loops("slot", [[[0, 0, 0], [40, 0, 1], [40, 20, 0], [5, 21, 0.8]]])
@@ -153,6 +157,7 @@ def test_a_peg_that_fits_nowhere_is_refused() -> None:
         design(part, Vise(pitch=100, columns=1, peg_radius=40))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("shift", [0.0, 1e4])
 @pytest.mark.parametrize("scale", [0.01, 1.0])
 def test_far_from_the_origin_and_very_small(shift: float, scale: float) -> None:
@@ -171,6 +176,7 @@ def test_far_from_the_origin_and_very_small(shift: float, scale: float) -> None:
     assert_same(there, here, Judge(near, vise))
 
 
+@pytest.mark.thorough
 def test_slots_on_the_lattice_of_the_vise() -> None:
     """A plate and a bar whose sizes are whole pitches make chords run through coincidences (equal arcs a step apart, a chord
     square to a line at an arc's far side): the counts are those of the paper's algebra, an engine without chords."""

@@ -97,6 +97,7 @@ def test_best_are_the_first_of_all(free: Result) -> None:
     assert np.array_equal(best.table.theta, free.table.theta[:7])
 
 
+@pytest.mark.thorough
 def test_ranked_by_closure_margin(free: Result) -> None:
     """The closure margin falls along the list, but for what is no fixture for a workshop, which comes last."""
     ranked = design(free.workpiece, free.toolkit, rank_by=["closure margin"])
@@ -126,6 +127,7 @@ def test_cancelled_before_it_begins(free: Result) -> None:
     assert len(result) == 0
 
 
+@pytest.mark.thorough
 def test_cancelled_half_way_keeps_valid_fixtures(free: Result) -> None:
     """What was found before the cancel is kept: each fixture is one of the full list."""
     cancel = Event()

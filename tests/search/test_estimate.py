@@ -31,6 +31,8 @@ def unasked(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(estimate, "CONTACTS_DECIDED", 400)
 
 
+@pytest.mark.sampled(8)
+@pytest.mark.thorough
 @pytest.mark.usefixtures("unasked")
 @pytest.mark.parametrize("kit", KITS)
 @pytest.mark.parametrize("part", PARTS)
@@ -46,6 +48,7 @@ def test_an_estimate_is_right_within_a_factor_of_two(part: str, kit: str) -> Non
     assert estimate.estimated_fixtures(query, 3) == about
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("unasked")
 def test_every_pair_of_two_clamps_counts_where_all_are_listed() -> None:
     """There are many more pairs than seats."""
@@ -85,6 +88,7 @@ def test_the_best_are_asked_for_where_there_are_many(monkeypatch: pytest.MonkeyP
     assert estimate.best_where_many(few, 1) == (few, None)
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("unasked")
 def test_what_is_thinned_counts_as_often(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where cells hold too much, one chord curve in some is looked at, and what is found stands for all."""
@@ -120,6 +124,7 @@ def test_all_ways_of_a_toolkit_count() -> None:
     assert all(ways) and estimate.estimated_fixtures(query, 2) == sum(way or 0 for way in ways)
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("unasked")
 def test_a_comparison_counts_about_and_seeks_the_first_choice(monkeypatch: pytest.MonkeyPatch) -> None:
     """Its figures are those of the first of all; where nothing is found, that is counted."""

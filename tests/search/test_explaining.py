@@ -57,7 +57,7 @@ CASES: list[tuple[str, Vise, dict[str, Any]]] = [
 ]
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize(("rule", "vise", "asked"), CASES, ids=[case[0] for case in CASES])
 def test_the_rules_take_all_away(rule: str, vise: Vise, asked: dict[str, Any]) -> None:
     """Each rule begins with what the one before it left, the last leaves nothing, and what was asked for is among them."""
@@ -75,6 +75,7 @@ def test_the_rules_take_all_away(rule: str, vise: Vise, asked: dict[str, Any]) -
     )
 
 
+@pytest.mark.thorough
 def test_help_helps() -> None:
     """Each change that is named has as many fixtures as it says, the most first."""
     explanation = explained(PLAIN, avoid=(0, 1, 2, 3, 4))
@@ -136,6 +137,7 @@ def test_contacts_are_among_those_counted() -> None:
 RECTANGLE = Workpiece.from_loops("rectangle", [[[0, 0, 0], [100, 0, 0], [100, 60, 0], [0, 60, 0]]])
 
 
+@pytest.mark.thorough
 def test_why_two_clamps_hold_nothing() -> None:
     """Counts add up and end with the second clamp; no nearest miss, as each lacks a clamp; changes help as they say."""
     plate = Plate(pitch=20, peg_radius=3, clamp_radius=5, travel=(10, 40), columns=3, rows=3, clamps=2)
@@ -214,6 +216,7 @@ def test_nothing_that_was_asked_for_is_named_where_it_takes_nothing() -> None:
     assert (explanation.taken_by, explanation.asked_words) == ((), "")
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("vise", "asked", "margin", "needed"),
     [

@@ -21,6 +21,7 @@ COMPLETE = Path(__file__).parent.parent / "data" / "toolkits" / "edge2_saddle_10
 ALL = ["-x", "+x", "-y", "+y"]
 
 
+@pytest.mark.thorough
 def test_complete_set_is_reproduced(tmp_path: Path) -> None:
     """Every fixture of the set and no other, each by itself beyond reproach; and nothing undecided."""
     truth = json.loads(COMPLETE.read_text())
@@ -60,6 +61,7 @@ def test_a_rectangle_is_counted_by_hand(
         assert fixture.pair is not None and fixture.pair.ratio[1] == float("inf")
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("listing", ["best", "all"])
 @pytest.mark.parametrize(
     ("loop", "fields"),

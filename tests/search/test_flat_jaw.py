@@ -188,6 +188,7 @@ def assert_alike(
     assert len(lost) <= len(near) // 10, lost
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("limited", [True, pytest.param(False, marks=pytest.mark.prove)])
 def test_planted_fixtures_are_found(limited: bool) -> None:
     """Two points of offset curves on a hull edge, with a pitch that makes their difference a step of the lattice.
@@ -357,6 +358,7 @@ def seen_where(result: Result, keeps: object) -> set[Identity]:
     return set(every)
 
 
+@pytest.mark.thorough
 def test_files_say_the_same_again(tmp_path: Path) -> None:
     """In JSON and in columns, with limits; with flats, of which the checker knows nothing, all are proven."""
     limited = FlatJaw(pitch=10, peg_radius=3, columns=6, rows=5, max_opening=60)

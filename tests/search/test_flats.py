@@ -60,6 +60,7 @@ def body_is_clear(fixture: Fixture, loop: list[list[float]]) -> bool:
     return True
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("loop", [TRIANGLE, TOOTH])
 @pytest.mark.parametrize(
@@ -104,6 +105,7 @@ def test_a_flat_at_the_radius_is_none() -> None:
     assert all(peg.flat_deg is None for fixture in round_one for peg in fixture.pegs)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("loop", [pytest.param(NOTCHED, marks=pytest.mark.prove), EAR])
 def test_both_engines_agree(loop: Any) -> None:
     """The curves and the paper's algebra, which share no solver, on lines and arcs."""
@@ -121,6 +123,7 @@ TOOLKITS = [
 ]
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("toolkit", TOOLKITS, ids=lambda one: f"{one.kind}-{getattr(one, 'clamps', 0)}")
 def test_everything_listed_is_proven_and_written(toolkit: Toolkit, tmp_path: Path) -> None:

@@ -35,6 +35,7 @@ def moved(workpiece: Workpiece, change: Callable[[np.ndarray], np.ndarray], flip
     return Workpiece.from_loops(workpiece.name, loops)
 
 
+@pytest.mark.thorough
 @settings(max_examples=EXAMPLES)
 @given(
     outlines(), pitches, columns, offsets, st.floats(-3.0, 3.0), st.floats(-500, 500), st.floats(-500, 500)
@@ -57,6 +58,7 @@ def test_turning_and_moving_the_part(
     assert_same(listed(design(redrawn, vise)), expected, Judge(redrawn, vise))
 
 
+@pytest.mark.thorough
 @settings(max_examples=EXAMPLES)
 @given(outlines(), pitches, columns, offsets)
 def test_mirroring_part_and_vise(workpiece: Workpiece, pitch: float, count: int, offset: float) -> None:
@@ -74,6 +76,7 @@ def test_mirroring_part_and_vise(workpiece: Workpiece, pitch: float, count: int,
     assert_same(listed(there), here, Judge(redrawn, there.toolkit))
 
 
+@pytest.mark.thorough
 @settings(max_examples=EXAMPLES)
 @given(outlines(), pitches, columns, st.integers(1, 7))
 def test_renumbering_the_segments(workpiece: Workpiece, pitch: float, count: int, shift: int) -> None:
@@ -87,6 +90,7 @@ def test_renumbering_the_segments(workpiece: Workpiece, pitch: float, count: int
     assert_same(listed(design(redrawn, vise)), here, Judge(redrawn, vise))
 
 
+@pytest.mark.thorough
 @settings(max_examples=EXAMPLES)
 @given(outlines(), pitches, columns, offsets)
 def test_swapping_the_jaws(workpiece: Workpiece, pitch: float, count: int, offset: float) -> None:
@@ -122,6 +126,7 @@ def test_swapping_the_jaws(workpiece: Workpiece, pitch: float, count: int, offse
             assert Judge(workpiece, vise).check(swapped)[0] == []
 
 
+@pytest.mark.thorough
 @settings(max_examples=EXAMPLES)
 @given(outlines(), pitches, columns, st.sampled_from([0.01, 0.1, 25.4, 100.0]))
 def test_scaling_part_pitch_and_peg_together(
@@ -147,6 +152,7 @@ def test_scaling_part_pitch_and_peg_together(
         assert np.allclose(*margins, atol=1e-6)
 
 
+@pytest.mark.thorough
 @settings(max_examples=4)
 @given(outlines(), pitches)
 def test_every_listed_fixture_passes_the_independent_checker(workpiece: Workpiece, pitch: float) -> None:

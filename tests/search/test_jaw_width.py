@@ -156,6 +156,7 @@ def compare(workpiece: Workpiece, endless: FlatJaw, width: float) -> tuple[int, 
     return stayed, went, result
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", PARTS)
 def test_what_a_jaw_with_ends_holds_is_what_some_column_holds(name: str, tmp_path: Path) -> None:
     """Jaws narrower and wider than the part; each fixture is proven, and a search of the file finds the same."""
@@ -170,6 +171,7 @@ def test_what_a_jaw_with_ends_holds_is_what_some_column_holds(name: str, tmp_pat
     assert went > 10
 
 
+@pytest.mark.thorough
 def test_random_parts_with_gaps_and_arcs() -> None:
     """Hull edges that bridge hollows, arcs that touch in a point, jaws of any width."""
     random, stayed, went, looked_at = Random(11), 0, 0, 0
@@ -258,6 +260,7 @@ def moved(data: dict[str, Any], columns: int) -> None:
         fixture["wall"][end][0] += columns * pitch
 
 
+@pytest.mark.thorough
 def test_verify_refutes_what_the_jaw_does_not_reach_and_other_columns(tmp_path: Path) -> None:
     """Ends beside the jaw's, a force that acts beyond them, columns that another place beats, and wrong figures."""
     vise = FlatJaw(pitch=10, peg_radius=3, columns=8, jaw_width=50)

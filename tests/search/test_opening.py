@@ -24,6 +24,7 @@ RING = Workpiece.from_loops(
 )
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("part", "vise"),
     [

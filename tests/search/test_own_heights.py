@@ -75,7 +75,7 @@ def held(name: str) -> Result:
     return design(stepped(own), toolkit)
 
 
-@pytest.mark.thinned(5)
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @HELD
 def test_every_fixture_is_proven_against_the_outline_of_each_carrier(name: str, tmp_path: Path) -> None:
@@ -86,6 +86,7 @@ def test_every_fixture_is_proven_against_the_outline_of_each_carrier(name: str, 
     assert_all_proven(result, tmp_path)
 
 
+@pytest.mark.thinned(3)
 @HELD
 def test_pegs_touch_faces_of_their_own_outline(name: str) -> None:
     """Their numbers are those of it, counted on after the part's."""
@@ -138,6 +139,7 @@ def test_a_prism_gives_the_same_list_whatever_the_heights(name: str) -> None:
         assert len(found) == len(usual) + more
 
 
+@pytest.mark.prove
 @pytest.mark.thorough
 @pytest.mark.sampled(5)
 @pytest.mark.parametrize(
@@ -218,6 +220,7 @@ def lattice_pairs(vise: Vise, part: Any) -> Iterable[tuple[tuple[int, int], Any,
     return product(steps, faces, faces, (0, 1))
 
 
+@pytest.mark.prove
 @pytest.mark.thorough
 def test_two_left_pegs_and_two_right_ones_are_found_by_a_slow_search() -> None:
     """Chords of the left pegs' outline and of the right pegs', whose rows differ by whole pitches.
@@ -317,6 +320,7 @@ def type_one(result: Result) -> set[tuple[Any, ...]]:
     return out
 
 
+@pytest.mark.thorough
 def test_jaws_of_the_same_heights_meet_one_outline() -> None:
     """It has one set of numbers, half a turn swaps the jaws, and the list is that of a prism over it."""
     vise = attrs.evolve(VISE, left_heights=LEFT, right_heights=LEFT)
@@ -335,6 +339,7 @@ def test_the_algebra_does_without_them_in_a_sentence(name: str) -> None:
         answer_by_algebra(Query(stepped(own), toolkit))
 
 
+@pytest.mark.thorough
 def test_a_peg_on_a_face_of_another_outline_is_refuted() -> None:
     """And a clamp that enters its own outline, though it is clear of the part's."""
     result = held("plate")

@@ -38,6 +38,7 @@ def assert_found(first_seed: int, plants: int) -> set[str]:
     return kinds
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("plants", [7, pytest.param(12, marks=pytest.mark.prove)])
 def test_planted_fixtures_are_found(plants: int) -> None:
     """Each of some planted fixtures is listed, over lines, convex and concave arcs and both types."""
@@ -167,6 +168,7 @@ def is_planted(fixture: Fixture, planted: OnFence) -> bool:
     )
 
 
+@pytest.mark.thorough
 def test_planted_fixtures_on_fences_are_found() -> None:
     """Each of a hundred."""
     assert_found_on_fences(0, 100)

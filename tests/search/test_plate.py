@@ -47,6 +47,7 @@ def test_complete_set_is_reproduced(path: Path, tmp_path: Path) -> None:
     assert "0 missing, 0 extra" in checked(result, tmp_path / "result.json", path)
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     "loop", [NOTCHED, pytest.param(MOUTH, marks=pytest.mark.prove)], ids=["notched", "mouth"]
@@ -290,6 +291,7 @@ def test_plates_that_cannot_be_are_refused_in_one_sentence(fields: dict[str, Any
         Plate(**fields)
 
 
+@pytest.mark.thorough
 def test_restrictions_leave_what_filtering_the_whole_list_leaves() -> None:
     """Faces to avoid and angles, with both directions."""
     plate = Plate((20, 16), 3, directions=["-x", "-y"])
@@ -324,6 +326,7 @@ def test_both_engines_list_the_same_fixtures(loop: list[tuple[float, ...]]) -> N
         answer_by_algebra(attrs.evolve(query, toolkit=Plate(20, 3, clamp_radius=4)))
 
 
+@pytest.mark.thorough
 def test_why_there_is_none_is_told_in_the_words_of_a_plate() -> None:
     """Over both directions together; no jaw is spoken of."""
     query = Query(

@@ -93,7 +93,8 @@ def differences(seed: int, kind: str) -> tuple[list[str], int, int]:
     return wrong, len(some), len(full)
 
 
-@pytest.mark.thinned(6)
+@pytest.mark.sampled(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize("kind", KINDS)
 def test_what_is_listed_is_what_a_slow_walk_leaves(kind: str) -> None:
     wrong, some, full = differences(5 if kind != "opening" else 2, kind)
@@ -216,7 +217,7 @@ def test_both_engines_list_the_same() -> None:
     assert keys(answer(query, threads=1)) == keys(answer_by_algebra(query))
 
 
-@pytest.mark.thinned(5)
+@pytest.mark.thorough
 @pytest.mark.parametrize("kind", ["vise", "bolted", "bolted pair", "fence pair", "flat"])
 def test_the_best_are_the_first_of_all(kind: str) -> None:
     part, toolkit, program = random_case(5, kind)
@@ -242,7 +243,7 @@ def test_a_shoulder_below_the_part_keeps_clear_of_what_is_swept_there() -> None:
     assert keys(listed(asked(part, shouldered, below))) < plain_below & free
 
 
-@pytest.mark.thinned(4)
+@pytest.mark.thorough
 @pytest.mark.parametrize("kind", ["fence", "bolted fence", "fence pair", "flat"])
 def test_a_wall_is_kept_clear_however_far_from_the_pegs_a_tool_comes_down(kind: str) -> None:
     part, toolkit, _ = random_case(5, kind)
@@ -273,6 +274,7 @@ def test_a_program_that_leaves_no_place_is_named_with_its_line() -> None:
         answer(asked(part, Vise(10.0, 2, 3.0), program), threads=1)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("toolkit", [Fence(10.0, 3.0, wall_offset=6.0), Vise(10.0, 1, 3.0)])
 def test_an_explanation_names_the_program_and_its_line(toolkit: Toolkit) -> None:
     part = random_outline(Random(5), 6)

@@ -166,6 +166,7 @@ def differences(seed: int) -> list[str]:
 MOST = 1500
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("block", [0, *(pytest.param(k, marks=pytest.mark.prove) for k in range(1, 200))])
 def test_restrictions_leave_what_keeps_to_them_and_the_best_are_the_first(block: int) -> None:
     assert [line for seed in range(50 * block, 50 * (block + 1)) for line in differences(seed)] == []

@@ -68,6 +68,7 @@ def peg_places(fixture: Fixture) -> list[tuple[float, float]]:
     return [(c * x + s * y, -s * x + c * y) for x, y in moved]
 
 
+@pytest.mark.thorough
 def test_avoided_faces_are_not_touched_and_nothing_else_is_lost(free: Result) -> None:
     """What is left are exactly the fixtures that never touched them."""
     avoid = (1, 4)
@@ -78,6 +79,7 @@ def test_avoided_faces_are_not_touched_and_nothing_else_is_lost(free: Result) ->
     assert limited.statistics["features"] < free.statistics["features"]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("body", [3.0, 4.5])
 def test_no_body_stands_over_a_zone(free: Result, body: float) -> None:
     """The distance from each peg to the zones is at least the body's radius; all such fixtures are there."""
@@ -104,6 +106,7 @@ def test_no_body_stands_over_a_zone(free: Result, body: float) -> None:
     assert identities(limited) == identities(free, chosen)
 
 
+@pytest.mark.thorough
 def test_thick_bodies_keep_pegs_apart(free: Result) -> None:
     """Bodies may be thicker than the distance between holes; then no two pegs stand in neighbouring holes."""
     limited = design(free.workpiece, vise(body_radius=6.0))
@@ -116,6 +119,7 @@ def test_thick_bodies_keep_pegs_apart(free: Result) -> None:
     assert limited.statistics["chord_curves"] < free.statistics["chord_curves"]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("angles", [((-20.0, 35.0),), ((0.0, 0.0), (170.0, 200.0)), ((0.0, 360.0),)])
 def test_angles_are_kept(free: Result, angles: tuple[tuple[float, float], ...]) -> None:
     """Type I counts when it or its half turn lies in a range, and is listed as it lies there; less is searched."""
@@ -133,6 +137,7 @@ def test_angles_are_kept(free: Result, angles: tuple[tuple[float, float], ...]) 
     assert all(judge.check(fixture)[0] == [] for fixture in listed(limited)[::9])
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("rows", "names"),
     [
@@ -205,6 +210,7 @@ def is_free(jaw: str, outward: int, row: int, vise: Vise, blocked: tuple[object,
     return not any((h.carrier, h.column) == (jaw, column) and h.row in (None, row) for h in blocked)  # type: ignore[attr-defined]
 
 
+@pytest.mark.thorough
 def test_both_engines_agree_under_restrictions() -> None:
     """The paper's polynomials, given the same features and rules, list the same fixtures."""
     part = triangle()

@@ -69,6 +69,7 @@ def warned(result: Result) -> list[float]:
     return [result[k].quality["warnings"] + told.warning_count for k, told in enumerate(result.seating)]
 
 
+@pytest.mark.thorough
 def test_the_first_fixtures_are_ordered_anew_and_all_others_stay(plain: Result, seated: Result) -> None:
     assert len(seated.seating) == LOOKED_AT and seated.complete
     before, after = ([(f.pegs, f.pose) for f in one[:LOOKED_AT]] for one in (plain, seated))
@@ -128,6 +129,7 @@ def test_warnings_are_of_a_small_opening_and_a_close_reading(seated: Result) -> 
     assert not one.catches(one.capture_opening or 0.0) and one.catches(0.999 * (one.capture_opening or 0.0))
 
 
+@pytest.mark.thorough
 def test_the_result_is_the_same_on_any_number_of_threads(
     seated: Result, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -195,6 +197,7 @@ def test_rules_leave_out_what_is_not_as_asked_and_say_so(seated: Result) -> None
     assert first[:] == kept[:2]
 
 
+@pytest.mark.thorough
 def test_seating_is_a_figure_to_rank_by() -> None:
     ranked = workhold.design(WEDGE, VISE, seating=LOOKED_AT, rank_by="capture-opening")
     openings = [round(told.capture_opening or inf, 9) for told in ranked.seating]
@@ -211,6 +214,7 @@ def test_the_best_are_those_of_the_looked_at(seated: Result) -> None:
     assert "Only the best 3 were sought" in best.notes[0]
 
 
+@pytest.mark.thorough
 def test_an_interruption_leaves_what_was_worked_out(plain: Result, monkeypatch: pytest.MonkeyPatch) -> None:
     """Those whose seating is told come first, the others as they were."""
     cancel, solve = Event(), Solver.read

@@ -38,6 +38,7 @@ def everything() -> Result:
     return design(WIDGET, VISE)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("best", [None, 20])
 def test_previews_are_some_of_the_fixtures(monkeypatch: pytest.MonkeyPatch, best: int | None) -> None:
     monkeypatch.setattr(shares, "PAUSE", 0.0)

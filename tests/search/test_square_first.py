@@ -64,6 +64,7 @@ def searches_of_any_size_begin_so(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("workhold.search.shares.SQUARE_FIRST", 0.0)
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("ranking", RANKINGS)
 def test_the_best_are_the_first_of_all(ranking: str) -> None:
@@ -82,6 +83,7 @@ def test_the_best_are_the_first_of_all(ranking: str) -> None:
     assert set(ended) == ({False} if ranking in ("usual", "precise") else {True, False})
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("seed", "toolkit", "most"), [(1, VISE, 100), (9, CLAMPS, 20), (41, CLAMPS, 15)])
 def test_tilted_ones_between_square_ones_are_found(seed: int, toolkit: Toolkit, most: int) -> None:
     """The best is square and the last is, so that there are enough; but tilted ones rank between."""
@@ -91,6 +93,7 @@ def test_tilted_ones_between_square_ones_are_found(seed: int, toolkit: Toolkit, 
     assert list(design(cad_part(seed), toolkit, best=most)) == list(full)[:most]
 
 
+@pytest.mark.thorough
 def test_the_file_of_such_a_search_holds_and_does_not_depend_on_threads(tmp_path: Path) -> None:
     """For one clamp and for two, counts of the work included."""
     for workpiece, toolkit in ((cad_part(0), VISE), (cad_part(0), CLAMPS)):
@@ -102,6 +105,7 @@ def test_the_file_of_such_a_search_holds_and_does_not_depend_on_threads(tmp_path
         assert verify_file(files[0]).proven == 8
 
 
+@pytest.mark.thorough
 def test_angles_that_are_asked_for_stay_so() -> None:
     """Also where no square orientation is among them."""
     for angles in (((20.0, 60.0),), ((80.0, 100.0), (200.0, 210.0))):
@@ -117,6 +121,7 @@ def records_of(search: ToolkitSearch, **asked: Any) -> np.ndarray[Any, np.dtype[
     return np.unique(np.concatenate([block.work(Needed()) for block in blocks]), axis=0)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("loose", [False, True])
 def test_the_first_blocks_and_the_rest_find_everything(loose: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     """Together, and the first alone all that lies square; with pairs that slide at any angle as well."""
@@ -162,6 +167,7 @@ def test_square_ranges_come_first_and_all_others_after_them() -> None:
         assert all(share[0][0] <= low < high <= share[0][1] for low, high in each)
 
 
+@pytest.mark.thorough
 def test_small_searches_and_whole_lists_begin_anywhere(monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing is left out of these, so that all is counted."""
     query = Query(part(NOTCHED), CLAMPS, best=4)

@@ -67,6 +67,7 @@ def cut(listed: int, query: Query = SYMMETRIC) -> Result:
     return workhold.answer(query).part(slice(listed)).cut_short(listed)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("answer", [in_memory, in_a_file])
 def test_the_best_are_listed_and_all_are_counted(answer: Callable[..., Result], tmp_path: Path) -> None:
     """Stopped once all are measured. The file is whole, too, with less in it than it had room for."""
@@ -142,6 +143,7 @@ def test_rules_for_the_seating_say_how_many_were_looked_at_instead(
     assert verify(result).holds
 
 
+@pytest.mark.thorough
 def test_a_file_that_was_cut_short_must_say_so(tmp_path: Path) -> None:
     """It is incomplete, and its numbers are those of what it lists."""
     workhold.save(cut(MOST), tmp_path / "a.json")

@@ -36,6 +36,7 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(collector, "BLOCK", 64)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", QUERIES)
 def test_the_bytes_are_those_of_the_result_in_memory(small: None, tmp_path: Path, name: str) -> None:
     """On any number of threads, and whatever the room; the folder holds nothing else afterwards."""
@@ -67,6 +68,7 @@ def test_progress_rises_to_its_end(small: None, tmp_path: Path) -> None:
     assert seen == sorted(seen) and seen[-1] == pytest.approx(1.0) and len(seen) > 10
 
 
+@pytest.mark.thorough
 def test_what_is_being_sorted_has_no_name_that_a_killed_program_could_leave(
     small: None, tmp_path: Path
 ) -> None:
@@ -80,6 +82,7 @@ def test_what_is_being_sorted_has_no_name_that_a_killed_program_could_leave(
     assert seen == {".part"}
 
 
+@pytest.mark.thorough
 def test_a_cancel_in_the_search_keeps_what_was_found(small: None, tmp_path: Path) -> None:
     cancel = Event()
 
@@ -96,6 +99,7 @@ def test_a_cancel_in_the_search_keeps_what_was_found(small: None, tmp_path: Path
     assert all(min(abs(fixture.pose.theta_deg - other) for other in poses) < 1e-6 for fixture in result[:20])
 
 
+@pytest.mark.thorough
 def test_a_cancel_while_fixtures_are_measured_keeps_the_first_of_them(
     small: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

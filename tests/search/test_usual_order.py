@@ -57,7 +57,8 @@ def assert_first(query: Query, kept: Sequence[int]) -> int:
     return len(whole)
 
 
-@pytest.mark.thinned(11)
+@pytest.mark.sampled(15)
+@pytest.mark.thorough
 @pytest.mark.parametrize("kind", TOOLKITS)
 @pytest.mark.parametrize("number", [0, pytest.param(3, marks=pytest.mark.prove), 5])
 def test_the_best_are_the_first_of_all(kind: str, number: int) -> None:
@@ -65,6 +66,8 @@ def test_the_best_are_the_first_of_all(kind: str, number: int) -> None:
     assert_first(Query(cad_part(number), TOOLKITS[kind]), (1, 2, 7, 20))
 
 
+@pytest.mark.sampled(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "seed", [1, 2, 3, 4, *(pytest.param(seed, marks=pytest.mark.prove) for seed in range(5, 120))]
 )
@@ -88,6 +91,7 @@ def written(tmp_path: Path, **changes: object) -> tuple[str, ...]:
     return verify_file(tmp_path / "s.json").faults
 
 
+@pytest.mark.thorough
 def test_the_file_says_the_least_error_and_verification_holds_it_to_that(tmp_path: Path) -> None:
     """Missing, too small, too large, and of a list whose first ones change places."""
     key = "least_effective_error"
@@ -100,6 +104,7 @@ def test_the_file_says_the_least_error_and_verification_holds_it_to_that(tmp_pat
     assert any("is better than the one before it" in fault for fault in swapped)
 
 
+@pytest.mark.thorough
 def test_old_files_keep_their_order(tmp_path: Path) -> None:
     """Files ranked by figures alone say no least error, and verify."""
     figures = ["warnings", "penalty", "clamp_freedom", "clamp_amplification"]

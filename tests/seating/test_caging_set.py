@@ -125,12 +125,14 @@ def test_the_extremes_are_those_of_a_flood(name, rank):
     assert beyond.min() > -0.15 and beyond.max() < 5.0
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ["1", "opening"])
 def test_a_part_comes_home_from_the_largest_turns(name):
     """From as far off as is told, opened by a hair less than the whole capture opening."""
     assert end_at_home(name, 0, 0.98, [0, 3])
 
 
+@pytest.mark.thinned(7)
 @pytest.mark.parametrize(
     ("name", "rank"),
     [
@@ -214,6 +216,7 @@ def way() -> Any:
     return np.array([(radians(theta), x, y, opened) for theta, x, y in CHANNEL])
 
 
+@pytest.mark.thorough
 def test_the_notched_part_leaves_its_cage_by_a_narrow_channel():
     """A peg in its hole and one below it pinch the web between them: within a degree of turn the channel is hundredths of a
     millimetre wide and narrower. A grid of half a degree steps over it, to a pass half a millimetre higher."""

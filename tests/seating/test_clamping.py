@@ -78,6 +78,7 @@ def test_on_a_fence_a_rectangle_sticks_from_a_friction_found_by_hand() -> None:
     assert sticking_friction_of_two(fixture, RECTANGLE, result.toolkit) == pytest.approx(43 / 160, rel=1e-8)
 
 
+@pytest.mark.thorough
 def test_below_the_friction_told_no_locator_can_be_spared(result: Result) -> None:
     """By linear programs from the drawing: none balance just below it, and some do just above; of each kind of order."""
     for fixture in of_every_kind(result):

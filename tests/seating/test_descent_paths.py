@@ -66,6 +66,7 @@ def clearance(closing, configs, pegs):
     return out.reshape(len(configs), len(pegs)).min(axis=1, initial=np.inf)
 
 
+@pytest.mark.thorough
 def test_they_end_as_ways_that_are_followed_with_all_pegs(ways):
     seen = set()
     for closing, found, seats, (starts, ends, how) in ways:
@@ -169,6 +170,7 @@ def test_nodes_say_how_far_their_way_has_come(ways):
         assert nodes[1:, MOVED] == pytest.approx(np.cumsum(steps[:, 1:].sum(axis=1)), abs=1e-9)
 
 
+@pytest.mark.thorough
 def test_nothing_depends_on_what_was_followed_before(ways, monkeypatch):
     """Nor on what is forgotten: to the last bit."""
     monkeypatch.setattr("workhold.seating.equilibria.MOST_NODES", 0)

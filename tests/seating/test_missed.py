@@ -46,6 +46,7 @@ def result(request: pytest.FixtureRequest) -> Result:
     return workhold.design(WEDGE, KITS[request.param], seating=2, best=2, rank_by=FIGURE_RANKING)
 
 
+@pytest.mark.thorough
 def test_it_is_named_and_tells_what_is_known(
     result: Result, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

@@ -143,6 +143,7 @@ def ends_at_home(number: int, seed: int, share: float, steps: int) -> bool:
     )
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("number", CASES)
 def test_what_is_let_go_in_the_cage_comes_home(number):
     """Inside the cage nothing can go wrong: random walks below the pass do not leave it, and closing leads home."""

@@ -68,6 +68,7 @@ def by_themselves() -> list[list[bytes]]:
     ]
 
 
+@pytest.mark.thorough
 def test_nothing_depends_on_what_was_solved_before():
     """Not on the order of patterns: to the last bit."""
     solver, count = Solver(STEP, VISE), 0

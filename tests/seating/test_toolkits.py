@@ -96,6 +96,7 @@ def test_all_fixtures_of_a_pattern_are_among_its_seats(name):
         assert len(there) == len(fixtures) + len(by_pattern.get(turned, ()))
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("name", KITS)
 def test_every_seat_lies_free_where_its_pose_says(name):
     """Told from the outline, in the toolkit's own frame and with each peg's own radius: what touches does, and forces
@@ -146,6 +147,7 @@ def comes_home(name: str, rank: int, seed: int, share: float, steps: int) -> boo
     )
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("name", KITS)
 def test_what_is_let_go_in_the_cage_comes_home(name):
     assert comes_home(name, 0, 0, 0.97, 100)

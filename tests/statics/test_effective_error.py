@@ -58,6 +58,7 @@ def test_near_the_end_of_a_straight_face_is_nearer_than_the_pegs_radius() -> Non
     assert 0 < found["face_end"].sum() < len(table)
 
 
+@pytest.mark.thorough
 def test_clamps_and_dowels_inside_holes_count_unless_asked_for() -> None:
     """Where every face outside is avoided nothing is left but holes, and a vise that opens works from inside."""
     part = block(BORE, [(70, 20, 0), (90, 20, 0), (90, 40, 0), (70, 40, 0)])
@@ -76,6 +77,7 @@ def test_clamps_and_dowels_inside_holes_count_unless_asked_for() -> None:
     assert not EffectiveErrors.of(opening).unasked.any()
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(
     ("columns", "rows", "hangs"),
     [(None, None, False), (5, 5, False), (4, 5, True), (None, 3, False), (None, 2, True)],
@@ -107,6 +109,7 @@ TOOLKITS: dict[str, Toolkit] = {
 L_SHAPE = [(0, 0, 0), (84, 0, 0), (84, 25, 0.2), (30, 30, 0), (26, 70, 0.4), (0, 70, 0)]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("kind", TOOLKITS)
 def test_verification_finds_the_same_factors(kind: str) -> None:
     """By arithmetic of its own, of every fixture; most factors hold of some, and not of others."""
@@ -126,6 +129,7 @@ def test_verification_finds_the_same_factors(kind: str) -> None:
     assert len(marks) > 5 and (marks.any(axis=0) & ~marks.all(axis=0)).sum() >= 2
 
 
+@pytest.mark.thorough
 def test_factors_multiply() -> None:
     """Of the location error."""
     query = Query(block(BORE), Plate(pitch=20, peg_radius=3, clamps=2))
@@ -137,6 +141,7 @@ def test_factors_multiply() -> None:
     assert len(np.unique(np.round(product, 9))) > 4
 
 
+@pytest.mark.thorough
 def test_why_first_says_what_counts() -> None:
     """As drawn, turned by a quarter, and of another order nothing."""
     plate, two = Plate(pitch=20, peg_radius=3), Plate(pitch=20, peg_radius=3, clamps=2)

@@ -56,6 +56,7 @@ def result(request: pytest.FixtureRequest) -> Result:
     return held(*request.param)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("stiffness", [0.3, 4.0, 1e9])
 def test_locked_forces_are_those_of_springs(result: Result, stiffness: float) -> None:
     """Above the jaw force needed every spring presses with the force told; below it one has let go."""

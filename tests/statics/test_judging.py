@@ -29,7 +29,7 @@ from workhold.statics.quality import main_direction, quality_of, tilts
 SHEET = {"number": 1, "count": 1, "day": None, "result_hash": "", "version": ""}
 
 
-@pytest.mark.thinned(7)
+@pytest.mark.thorough
 def test_the_sheet_warns_as_often_as_the_table_counts(result: Result) -> None:
     """Of every kind, with a load and a jaw force that some fixtures need more than."""
     loads = [Load(((5.0, 5.0),), 100.0), Load((), 0.0, moment=500.0)]
@@ -49,6 +49,7 @@ def test_the_sheet_warns_as_often_as_the_table_counts(result: Result) -> None:
         assert len([kind for kind in kinds if kind not in ("unfit", "pose")]) == count
 
 
+@pytest.mark.thinned(5)
 def test_the_jaw_force_needed_is_that_of_the_load_cases(result: Result) -> None:
     """The largest over the loads."""
     loads = [Load(((5.0, 5.0),), 100.0, (20.0, 70.0)), Load((), 0.0, moment=-500.0)]

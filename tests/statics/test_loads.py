@@ -67,7 +67,7 @@ class TestHeld:
             assert (np.abs(wrenches.T @ case.largest + wrench) < 1e-7 * size).all()
             assert shares @ case.largest == pytest.approx(250, rel=1e-7)
 
-    @pytest.mark.thinned(4)
+    @pytest.mark.thorough
     def test_a_range_holds_the_forces_of_its_directions_and_points(self, result: Result) -> None:
         """Smallest and largest forces over a range and a path are never passed, and nearly met by fine steps."""
         path = [(-10.0, 3.0), (12.0, -4.0), (5.0, 9.0)]
@@ -96,7 +96,7 @@ class TestHeld:
             assert (forces.min(axis=0) >= np.array(case.smallest) - 1e-9 * slack).all()
             assert (forces.min(axis=0) <= np.array(case.smallest) + slack).all()
 
-    @pytest.mark.thinned(4)
+    @pytest.mark.thorough
     def test_jaw_force_needed_is_the_linear_programs(self, result: Result) -> None:
         """Without friction the least jaw force of the program; met where the case says, not passed elsewhere."""
         random = np.random.default_rng(2)
@@ -124,7 +124,7 @@ class TestHeld:
                 )
                 assert not less.keeps_contact and less.smallest[case.needed.peg] < 0
 
-    @pytest.mark.thinned(5)
+    @pytest.mark.thorough
     @pytest.mark.parametrize("friction", [0.1, 0.4])
     def test_jaw_force_with_friction_is_the_linear_programs(self, result: Result, friction: float) -> None:
         """For one direction the least jaw force over all forces in the cones; over a range the worst of its directions."""
@@ -142,7 +142,7 @@ class TestHeld:
             assert case.needed_with_friction == pytest.approx(least, rel=1e-6, abs=1e-4)
             assert case.needed_with_friction <= case.needed.value + 1e-6
 
-    @pytest.mark.thinned(4)
+    @pytest.mark.thorough
     def test_friction_over_a_range_is_its_worst_direction(self, result: Result) -> None:
         """Fine steps through the range nearly meet the figure and never pass it."""
         for fixture in list(result)[::10]:

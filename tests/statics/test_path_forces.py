@@ -70,6 +70,7 @@ def walked(program: Program, functions: Array, places: int = 200, ways: int = 12
     return best, where
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("direction", ["any", "feed"])
 @pytest.mark.parametrize("levels", [1, 3, 200])

@@ -70,6 +70,7 @@ def test_without_a_force_it_is_for_each_kn_and_warns_of_nothing(bent: Result) ->
     assert found.sentence("jaw", INCH).startswith("For each 225 lbf")
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(
     ("limits", "more"),
     [
@@ -164,6 +165,7 @@ def with_bands(bands: list[Any], runs: list[Any]) -> Workpiece:
     return Workpiece.from_loops("square", loops, solid=solid)
 
 
+@pytest.mark.thorough
 def test_of_a_solid_each_peg_is_pressed_in_the_middle_of_its_run() -> None:
     """That of the face, and where runs slide along it, the run where the peg touches."""
     slides = [[0.0, 0.0, 10.0], [1 / 3, 0.0, 16.0], [2 / 3, 0.0, 22.0], [1.0, 0.0, 28.0]]

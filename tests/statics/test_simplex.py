@@ -9,6 +9,7 @@ from scipy.optimize import linprog
 from workhold.supports.friction import least_costs
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("seed", range(12))
 def test_least_costs_are_those_of_another_solver(seed: int) -> None:
     """Few rows, many columns, several right sides at once; some of which nothing solves, some degenerate."""

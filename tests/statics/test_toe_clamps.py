@@ -31,6 +31,7 @@ def closes(forces: Array) -> bool:
     )
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("seed", range(12))
 def test_six_contacts_close_if_any_do(seed: int) -> None:
     """Contacts on the sides of a random rectangle or around a triangle; a subset that closes may leave the others out."""

@@ -19,6 +19,7 @@ from workhold.supports.choosing import coarse, digits_of
 from workhold.supports.listing import supports_of, supports_one_by_one
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("few", [0, 48])
 @pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.prove)])
 def test_the_best_few_of_random_fixtures_are_the_first_of_all(
@@ -44,6 +45,7 @@ def test_the_best_few_of_random_fixtures_are_the_first_of_all(
     assert with_some > 15
 
 
+@pytest.mark.thorough
 def test_of_a_part_that_hangs_in_places_the_best_few_are_the_first_of_all() -> None:
     """Places over material before places over air, and sets from which the part falls last of all."""
     kinds = set()

@@ -43,6 +43,8 @@ def compare(seed: int, of_each: int, path: Path) -> Counter[str]:
     return seen
 
 
+@pytest.mark.prove
+@pytest.mark.thorough
 @pytest.mark.parametrize("seed", [pytest.param(11, marks=pytest.mark.prove), 12])
 def test_lists_of_random_fixtures_are_complete(seed: int, tmp_path: Path) -> None:
     """One fixture in each kind of toolkit, with zones, margins, limits of columns and reach."""
@@ -85,6 +87,7 @@ def refusal(path: Path) -> str:
     return (*outcome.faults, *(one.reason for one in outcome.unproven))[0]
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("place", [0, 40, -1])
 def test_a_removed_triple_is_missed(written: Path, place: int) -> None:
@@ -98,6 +101,7 @@ def test_a_removed_triple_is_missed(written: Path, place: int) -> None:
     assert "is missing" in refusal(written)
 
 
+@pytest.mark.thorough
 def test_a_moved_hole_and_a_wrong_count_of_holes_are_refused(written: Path) -> None:
     """A triple in another hole has other figures, or breaks a rule; holes are counted anew."""
     text = written.read_text()
@@ -111,6 +115,7 @@ def test_a_moved_hole_and_a_wrong_count_of_holes_are_refused(written: Path) -> N
     assert "holes could hold a support, but" in refusal(written)
 
 
+@pytest.mark.thorough
 def test_a_wrong_band_is_refused(written: Path) -> None:
     """Figures hold for the worst heights of the band that is written."""
     entry = json.loads(written.read_text())
@@ -119,6 +124,7 @@ def test_a_wrong_band_is_refused(written: Path) -> None:
     assert " at the best point is " in refusal(written)
 
 
+@pytest.mark.thorough
 def test_more_listed_than_counted_is_refused(written: Path) -> None:
     """A list that does not say it is complete still has no more triples than are counted."""
     entry = json.loads(written.read_text())

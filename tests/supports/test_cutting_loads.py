@@ -54,6 +54,7 @@ def test_an_arc_lies_inside_its_load() -> None:
     assert np.hypot(*(np.array(load.points) - [50, 30]).T).max() < 20 * 1.09
 
 
+@pytest.mark.thorough
 def test_a_program_holds_the_clamp_down_as_its_loads_do() -> None:
     program = program_of([*SLOT, *HOLE], cut_depth=4)
     query = Query(PART, VISE, program=program, peg_height=8.0, best=60)

@@ -95,6 +95,7 @@ def wrenches(load: SpatialLoad) -> list[Array]:
     return out
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("seed", range(5))
 def test_the_clamp_force_with_friction_is_that_of_another_formulation(seed: int) -> None:
@@ -124,6 +125,7 @@ def found_in(name: str, jaw_force: float | None = None) -> Supports:
     return supports_of(one.fixture, one.query, one.request, one.loads, jaw_force or one.jaw_force, best=2)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", NAMES)
 def test_without_friction_it_is_what_the_clamp_needs_and_more_friction_never_asks_for_more(name: str) -> None:
     """At the worst heights of the bands and in all directions; what is needed is derived in another way."""
@@ -134,6 +136,7 @@ def test_without_friction_it_is_what_the_clamp_needs_and_more_friction_never_ask
         assert forces == sorted(forces, reverse=True) and forces[-1] < 0.5 * forces[0]
 
 
+@pytest.mark.thorough
 def test_corners_around_directions_leave_none_out_and_are_hardly_longer() -> None:
     """Each direction of a range is inside the hull of the corners, which are at most 0.5 % longer than 1."""
     for directions in ((0.0, 360.0), (20.0, 20.0), (-30.0, 100.0), (10.0, 14.0)):

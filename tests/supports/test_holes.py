@@ -40,6 +40,7 @@ def widest(vise: Vise, fixture: Fixture, standing: list[Standing]) -> float | No
     return float(opening[may].max()) if may.any() else None
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("vise", VISES, ids=("blocked", "rows", "opening"))
 def test_sets_fit_where_some_way_to_write_them_out_does(vise: Vise) -> None:

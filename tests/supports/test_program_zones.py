@@ -64,7 +64,7 @@ def rooms(program: Program, points: Array) -> tuple[Array, Array]:
     return bottom.room(points) - PAD, top.room(points) - TIP
 
 
-@pytest.mark.thinned(6)
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("number", range(12))
 def test_zones_leave_what_a_walk_leaves(number: int) -> None:

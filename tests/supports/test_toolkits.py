@@ -43,6 +43,7 @@ TOOLKITS = [
 ]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("part", "toolkit"), TOOLKITS, ids=lambda one: getattr(one, "kind", one.__class__.__name__)
 )

@@ -51,6 +51,7 @@ def test_the_jaw_force_needed_is_that_of_the_plane(name):
     assert found.jaw_force == pytest.approx(one.truth["jaw_needed"], rel=1e-9)
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("is_fixed", [True, False])
 @pytest.mark.parametrize("is_loaded", [True, False])

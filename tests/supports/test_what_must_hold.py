@@ -27,7 +27,7 @@ def found(one, request=None, loads=None, force=None, best=None):
     return supports_of(one.fixture, one.query, asked, one.loads if loads is None else loads, force, best)
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", NAMES)
 @given(height=st.floats(0.5, 11), more=st.floats(0, 1000))
 @settings(max_examples=20)
@@ -54,6 +54,7 @@ def test_nothing_changes_when_bands_and_loads_are_raised_alike(name, up):
         assert a.best.clamp_needed == pytest.approx(b.best.clamp_needed, rel=1e-6, abs=1e-6)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", NAMES)
 def test_a_thrust_inside_the_triangle_alone_needs_no_clamp(name):
     one = CASES[name]
@@ -161,7 +162,7 @@ def test_a_vise_given_a_half_turn_has_the_same_figures(name):
     same_figures(case_of(name, truth), case_of(name, other), renamed)
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", NAMES)
 def test_at_the_clamp_force_needed_no_support_pulls_and_one_is_about_to_let_go(name):
     """The six equations of balance, solved anew at all corners of the bands under all loads."""

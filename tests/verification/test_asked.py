@@ -78,6 +78,7 @@ def test_blocked_holes_and_bodies_are_looked_at(limited: Result) -> None:
         assert len(found) == bool(words) and all(words in reason for reason in found)
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("number", range(len(FIGURES)))
 def test_a_wrong_figure_refutes(limited: Result, number: int) -> None:
     """Each figure of quality is derived again."""

@@ -50,7 +50,7 @@ def edited(result: Result, tmp_path: Path) -> Callable[[Edit], Verification]:
     return lambda edit: verify_edited(data, edit, tmp_path)
 
 
-@pytest.mark.thinned(4)
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("loop", "fields", "asked"),
@@ -107,7 +107,7 @@ def moved(data: Data, by: int) -> None:
     first["pose"]["x"] += 10.0 * by
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("edit", "words"),
     [
@@ -176,6 +176,7 @@ def test_contradictions_of_the_head_are_told(
     assert not outcome.holds and any(words in fault for fault in outcome.faults), outcome.faults
 
 
+@pytest.mark.thorough
 def test_a_fixture_left_out_is_found_by_searching_again(result: Result, tmp_path: Path) -> None:
     """Only the search of the query can show it."""
     lacking = evolve(
@@ -190,6 +191,7 @@ def test_a_fixture_left_out_is_found_by_searching_again(result: Result, tmp_path
     assert any("that it does not list" in fault for fault in outcome.faults)
 
 
+@pytest.mark.thorough
 def test_restrictions_are_kept_by_the_wall(result: Result) -> None:
     """A result of a wider query breaks them by name."""
     for asked, words in (

@@ -57,7 +57,7 @@ def test_the_walk_agrees_with_the_closed_form(seed: int, direction: CuttingDirec
         assert wide.contains(ball.mid()) and (wide.rad() > 1e-4 or not program.forces.force.any())
 
 
-@pytest.mark.thinned(6)
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_fixture_of_a_list_with_forces_is_proven(kind: str, tmp_path: Path) -> None:
@@ -99,6 +99,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     return data
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(("change", "reason"), CHANGES)
 def test_what_is_not_that_of_the_walk_is_refuted(
     change: Callable[[dict[str, Any]], Any], reason: str, written: dict[str, Any], tmp_path: Path

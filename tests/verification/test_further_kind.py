@@ -119,6 +119,7 @@ def on_faces(item: Data, workpiece: Workpiece) -> Data:
     return item["wall"] | {"segments": numbers}
 
 
+@pytest.mark.thorough
 def test_every_true_fixture_is_proven(known: Known) -> None:
     """At the lowest precision, and no two are the same."""
     seen = known_in(known.toolkit)
@@ -174,6 +175,7 @@ NUMBERS: list[tuple[Edit, str]] = [
 ]
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(
     ("edit", "words"), NUMBERS, ids=[f"{n} {words}" for n, (_, words) in enumerate(NUMBERS)]
 )
@@ -197,6 +199,7 @@ def test_the_gap_and_the_opening_are_kept(known: Known) -> None:
         assert "is above the largest opening" in known.ruling(item, max_opening=apart - 1e-6).reason
 
 
+@pytest.mark.thorough
 def test_columns_and_rows_are_there_and_counted(known: Known) -> None:
     """A jaw with fewer has no such hole, and pegs stand in the first column and in the nearest row."""
     (pitch, _), looked_at = known.toolkit.pitch, 0

@@ -51,6 +51,7 @@ def outcome_of(case: str, folder: Path, edit: Callable[[dict[str, Any]], object]
     return verify_file(path)
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("case", CASES)
 def test_what_is_written_is_proven(case: str, tmp_path: Path) -> None:
     outcome = outcome_of(case, tmp_path, lambda data: None)
@@ -58,6 +59,7 @@ def test_what_is_written_is_proven(case: str, tmp_path: Path) -> None:
     assert outcome.proven == outcome.fixtures > 0
 
 
+@pytest.mark.thinned(6)
 @pytest.mark.parametrize("case", ["drawing", "solid", "two clamps"])
 @pytest.mark.parametrize("key", [*PIN_KEYS, "warnings"])
 def test_a_forged_figure_is_refuted(case: str, key: str, tmp_path: Path) -> None:

@@ -79,7 +79,7 @@ def edited(data: Data, tmp_path: Path) -> Callable[[Edit], Verification]:
     return lambda edit: verify_edited(data, edit, tmp_path)
 
 
-@pytest.mark.thinned(4)
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("loop", "fields", "asked"),
@@ -173,7 +173,7 @@ BROKEN: list[tuple[Callable[[Data], object], str]] = [
 ]
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("edit", "words"), BROKEN, ids=[f"{n} {words}" for n, (_, words) in enumerate(BROKEN)]
 )
@@ -204,6 +204,7 @@ TOOLKITS: list[tuple[Data, str]] = [
 ]
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(("fields", "words"), TOOLKITS, ids=[str(fields) for fields, _ in TOOLKITS])
 def test_another_plate(edited: Any, fields: Data, words: str) -> None:
     """What is listed does not stand on it, and the sentence says why."""

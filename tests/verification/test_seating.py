@@ -120,7 +120,7 @@ def leaves(value: Any, place: tuple[Any, ...] = ()) -> Iterator[tuple[tuple[Any,
 BOUNDED = ("way_out", "cage", "cage_short", "placing", "depth")
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("part", "toolkit"), [(WEDGE, VISE), (WEDGE, PLATE), (BOWED, FENCE)], ids=["vise", "plate", "fence"]
 )
@@ -146,6 +146,7 @@ def test_every_number_that_is_off_a_little_is_refuted(part: Workpiece, toolkit: 
     assert not missed
 
 
+@pytest.mark.thorough
 def test_words_and_whole_parts_that_are_off_are_refuted(listing: Listing, judge: SeatingJudge) -> None:
     fields = listing.fixtures[0].seating.fields
     own = next(k for k, seat in enumerate(listing.fixtures[0].seating.seating.seats) if seat.is_own)
@@ -221,6 +222,7 @@ def stepped(fixture: Any, toolkit: Any) -> Any:
     return attrs.evolve(fixture, pegs=tuple(pegs), pose=pose)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("part", "toolkit"), [(WEDGE, PLATE), (BOWED, FENCE)], ids=["plate", "fence"])
 def test_what_stands_on_the_same_pegs_is_told_of_every_toolkit(part: Workpiece, toolkit: Any) -> None:
     """The first fixture on whose pegs others stand: all of them are its seats, and none may be left out."""
@@ -307,6 +309,7 @@ def test_rules_and_counts_of_the_first_must_agree(result: Result, tmp_path: Path
     assert any("the note is missing" in fault for fault in faults)
 
 
+@pytest.mark.thorough
 def test_a_seat_with_a_peg_in_the_part_is_refuted(tmp_path: Path) -> None:
     """Two faces slide between two pegs, and a third peg would be inside, below an inner corner."""
     listing = written(solved(NOTCH, NOTCH_VISE), tmp_path / "r.json")

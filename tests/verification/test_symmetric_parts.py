@@ -60,7 +60,8 @@ def counted(result: Result, case: Symmetric) -> dict[str, int]:
     return {kind: sets[kind] for kind in result.distinct}
 
 
-@pytest.mark.thinned(15)
+@pytest.mark.sampled(7)
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("name", "kind", "listing"),
     [case if case in SOME else pytest.param(*case, marks=pytest.mark.prove) for case in CASES],
@@ -87,7 +88,7 @@ def test_every_kind_and_symmetry_is_met() -> None:
     assert {name for name, _ in held} == set(PARTS) - {"disc"} and {kind for _, kind in held} == set(TOOLKITS)
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize(("kind", "best"), [("fence", None), ("fence", 20), ("vise", 80)])
 def test_another_number_of_sets_is_a_fault(kind: str, best: int | None) -> None:
     """Those that are found but not listed may each make a set or none, and no set has more than there are rotations."""

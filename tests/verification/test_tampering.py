@@ -38,6 +38,7 @@ def test_rounding_of_the_file_is_allowed(verified: Verify) -> None:
     assert verified(edit).proven == 12
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("change", [SLIGHT, -SLIGHT, LARGE, -LARGE, 1e5])
 @pytest.mark.parametrize(
     "place", ["x", "y", "force", "theta_deg", "pose x", "pose y", "jaw_separation", "closure_margin"]
@@ -68,6 +69,7 @@ OTHERS = {FIGURES[number] for number in (CLAMP_FREEDOM, JAW_CONTACT, *PIN_FIGURE
 KEYS = [figure.key for figure in FIGURES if figure.unit != "N" and figure not in OTHERS]
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("change", [1e-6, -1e-6])
 @pytest.mark.parametrize("key", ["force", *KEYS])
 def test_a_millionth_of_a_force_or_a_figure(verified: Verify, key: str, change: float) -> None:

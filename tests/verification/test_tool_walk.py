@@ -36,6 +36,7 @@ def program_of_result(result: Result) -> Program:
     return result.query.program
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_fixture_of_a_list_is_proven_in_either_form(kind: str, tmp_path: Path) -> None:
@@ -47,6 +48,7 @@ def test_every_fixture_of_a_list_is_proven_in_either_form(kind: str, tmp_path: P
         assert found.proven == len(result) > 0 and not found.faults
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("kind", ["vise", "bolted", "bolted fence", "flat"])
 def test_what_the_program_rules_out_is_refuted_and_nothing_else(kind: str) -> None:
     some, full = result_of(kind), result_of(kind, program=False)
@@ -63,6 +65,7 @@ def test_what_the_program_rules_out_is_refuted_and_nothing_else(kind: str) -> No
     assert refused
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("rapid", ["straight", "box"])
 def test_the_walk_is_between_its_bounds_and_they_are_near(rapid: Any) -> None:
     result = result_of("bolted fence")
@@ -99,6 +102,7 @@ def tampered(result: Result, change: Callable[[dict[str, Any]], Any], folder: Pa
     return [one.reason for one in verify_file(folder / "b.json").unproven]
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize(
     ("change", "reason"),
     [

@@ -58,7 +58,7 @@ def plate(**fields: Any) -> Plate:
     return Plate(**given)
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("loop", "toolkit", "asked"),
@@ -189,6 +189,7 @@ def test_contacts_make_no_more_seats_and_pairs_than_there_can_be(
     assert few == (max(found, pairs) > 10 or seats > 2)
 
 
+@pytest.mark.thinned(6)
 @pytest.mark.parametrize(
     ("edit", "words"), BROKEN, ids=[f"{n} {words}" for n, (_, words) in enumerate(BROKEN)]
 )
@@ -251,6 +252,7 @@ def test_the_account_is_held_to_what_is_listed(edited: Any) -> None:
     assert "it stands for 2 pairs" in told(lambda content: content["fixtures"][0].update(pairs=2), "all")
 
 
+@pytest.mark.thorough
 def test_a_pair_left_out_of_all_is_missed(results: dict[str, Result]) -> None:
     """With all counts adjusted: the pairs of each seat are derived."""
     result = results["all"]

@@ -38,7 +38,7 @@ NOTCHED = [
 WEDGE = [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]]
 
 
-@pytest.mark.thinned(6)
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("part", "vise"),
@@ -73,7 +73,7 @@ def test_contact_margins_are_proven() -> None:
     assert outcome.bits == 128
 
 
-@pytest.mark.thinned(4)
+@pytest.mark.thorough
 @pytest.mark.parametrize("wide", [0.01, 1.25])
 @pytest.mark.parametrize("loops", [None, NOTCHED])
 def test_a_margin_that_was_not_asked_for(loops: list[list[list[float]]] | None, wide: float) -> None:

@@ -108,6 +108,7 @@ CASES = {
 }
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", CASES)
 def test_neighbours_of_fixtures(name: str) -> None:

@@ -69,6 +69,7 @@ def test_there_are_ten_of_each_kind_and_one_of_each_is_tried() -> None:
     assert len({drawing.name for _, drawing in CASES}) == len(CASES)
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("drawing", cases())
 def test_the_page_asks_and_leads_to_a_sheet(server: RunningServer, drawing: Drawing) -> None:
     """Every refusal comes with a question that the survey gives the answers for; none is a dead end."""
@@ -102,6 +103,7 @@ def test_the_page_asks_and_leads_to_a_sheet(server: RunningServer, drawing: Draw
     assert sheet.status_code == 200 and sheet.content.startswith(b"%PDF")
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("drawing", cases())
 def test_the_command_says_what_to_add_and_leads_to_a_sheet(drawing: Drawing, tmp_path: Path) -> None:
     """Whoever adds what each refusal says comes to a sheet; the first of several remedies is taken."""

@@ -111,6 +111,7 @@ def test_a_job_is_kept_unless_that_was_asked(impatient: RunningServer) -> None:
     refused(impatient.client.post("/api/v1/jobs?when_left=forget", json=LONG))
 
 
+@pytest.mark.thorough
 def test_large_requests_count_in_what_is_kept() -> None:
     """Small results of large requests: the oldest are forgotten."""
     zone = [[500 + k, 500 + k * k, 0] for k in range(300)]

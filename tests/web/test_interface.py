@@ -80,6 +80,7 @@ def asked(server: RunningServer, name: str, example: ApiExample, names: dict[str
     )
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("name", [name for name in EXAMPLES if not name.startswith("DELETE")])
 def test_examples_are_answered_as_they_say(server: RunningServer, names: dict[str, str], name: str) -> None:
     example = EXAMPLES[name]
@@ -164,6 +165,7 @@ def test_errors_have_the_shape_that_is_described(name: str) -> None:
     assert "422" not in answers
 
 
+@pytest.mark.thorough
 def test_answers_have_the_shapes_that_are_described(server: RunningServer, names: dict[str, str]) -> None:
     """Of jobs of each kind, of addresses, and of errors with a place and without one."""
     for path, form in (("jobs", SEARCH), ("explore", EXAMPLES["POST /api/v1/explore"].body)):
@@ -225,6 +227,7 @@ def job(server: RunningServer) -> str:
     return server.done(request()).rpartition("/")[2]
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.thorough
 @pytest.mark.parametrize("name", TRIED)
 def test_no_request_brings_out_a_mistake(server: RunningServer, job: str, name: str) -> None:

@@ -53,6 +53,7 @@ def events(server: RunningServer, job: str) -> list[dict[str, Any]]:
     return out
 
 
+@pytest.mark.thorough
 def test_a_job_finds_what_the_program_finds(server: RunningServer, job: str, result: Result) -> None:
     state = server.client.get(job).json()
     assert state["counts"] == result.counts and state["found"] == len(result)
@@ -97,7 +98,7 @@ def test_what_is_not_known_leaves_the_order_of_ranks(server: RunningServer, job:
         ]
 
 
-@pytest.mark.thinned(10)
+@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     "key", [one.key for one in FIGURES if one.unit != "N" and one.key not in (*ELSEWHERE, *PIN_KEYS)]
@@ -110,6 +111,7 @@ def test_lists_are_sorted_by_any_figure(server: RunningServer, job: str, key: st
     assert sorted(row["rank"] for row in listed) == list(range(1, len(listed) + 1))
 
 
+@pytest.mark.thorough
 def test_filters_keep_exactly_what_they_say(server: RunningServer, job: str) -> None:
     whole = rows(server, job)
     assert rows(server, job, type="II") == [row for row in whole if row["type"] == "II"]

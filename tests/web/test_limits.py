@@ -96,6 +96,7 @@ def test_the_longest_unused_go_when_too_much_is_kept(small: RunningServer) -> No
     assert [small.client.get(url).status_code for url in urls] == [200, 404, *[200] * (len(urls) - 2)]
 
 
+@pytest.mark.thorough
 def test_what_is_wrong_in_very_many_places_is_found_out_by_a_worker(
     server: RunningServer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -141,6 +142,7 @@ def test_what_is_wrong_in_very_many_places_is_found_out_by_a_worker(
     assert by_worker == []
 
 
+@pytest.mark.thorough
 def test_what_a_search_found_is_freed_when_it_is_deleted(server: RunningServer) -> None:
     """Nothing that waits for the next search holds what came of the last one, also if it was still running."""
     url = server.done(request())
@@ -183,6 +185,7 @@ def test_a_slow_client_is_let_go(hasty: RunningServer) -> None:
         assert b" 408 " in slow.recv(400)
 
 
+@pytest.mark.thorough
 def test_a_search_that_takes_too_long_shows_what_it_found(hasty: RunningServer) -> None:
     state = hasty.outcome(hasty.submit(LONG))
     assert state["state"] == "done" and not state["complete"]
@@ -190,6 +193,7 @@ def test_a_search_that_takes_too_long_shows_what_it_found(hasty: RunningServer) 
     assert state["listed"] == 3 < state["found"]
 
 
+@pytest.mark.thorough
 def test_a_search_that_needs_too_much_memory_fails_in_a_sentence(strict: RunningServer) -> None:
     corners = [[30 * cos(tau * k / 120), (30 - k % 3) * sin(tau * k / 120), 0.0] for k in range(120)]
     huge = {"pitch": [0.5, 0.5], "columns": 60, "peg_radius": 0.01}

@@ -39,6 +39,7 @@ def part(server: RunningServer, block: Path) -> dict[str, Any]:
     return {name: told[name] for name in ("name", "loops", "solid", "outlines")}
 
 
+@pytest.mark.thorough
 def test_the_part_is_held_as_the_program_holds_it(
     server: RunningServer, block: Path, part: dict[str, Any]
 ) -> None:

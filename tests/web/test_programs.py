@@ -69,6 +69,7 @@ def test_a_search_keeps_clear_of_it_and_names_the_nearest_move(server: RunningSe
     assert 'class="rapid"' in server.client.get(f"{url}/fixtures/1/picture.svg").text
 
 
+@pytest.mark.thorough
 def test_a_preference_counts_the_forces_of_the_tools(server: RunningServer) -> None:
     """As loads do: what presses least under them comes before what presses least without."""
     tools = "\n".join(

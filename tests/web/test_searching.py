@@ -125,6 +125,7 @@ def test_a_search_that_is_stopped_keeps_the_best_first(whole: Result) -> None:
     assert sum(joined.found.values()) == 9
 
 
+@pytest.mark.thorough
 def test_of_very_many_fixtures_the_best_are_sought(
     query: Query, whole: Result, asked: list[int | None], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -74,6 +74,7 @@ def test_figures_and_sentences_are_the_programs(server: RunningServer, place: st
     assert " in at most" in inches["steps"][0] and inches["capture_opening"] == answer["capture_opening"]
 
 
+@pytest.mark.thorough
 def test_a_search_tells_the_seating_of_its_first_fixtures(server: RunningServer, result: Result) -> None:
     """As the program does, in the order that it gives them; what cannot be asked is refused before it begins."""
     made = workhold.design(result.workpiece, result.toolkit, seating=3, opening=0.5)

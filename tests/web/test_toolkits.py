@@ -192,6 +192,7 @@ def test_a_fence_is_answered_with_its_bar_and_the_contacts_on_it(server: Running
     assert server.client.get(f"{square}/explanation").json()["removals"]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ["machine-vise-6-inch", "fence-20mm", "clamp-plate-20mm", "plate-20mm"])
 def test_each_carrier_has_its_own_pegs(name: str) -> None:
     """By the numbers that they have in the fixture, also where the wall comes first; walls have what lies flush."""

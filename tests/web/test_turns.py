@@ -106,6 +106,7 @@ def other(shared: RunningServer) -> Iterator[httpx.Client]:
         yield client
 
 
+@pytest.mark.thorough
 def test_nobody_waits_behind_anothers_searches(shared: RunningServer, other: httpx.Client) -> None:
     """A search of another client comes to its end while the many of the first are still to be done."""
     urls = [shared.submit(LONG) for _ in range(6)]

@@ -47,6 +47,7 @@ def transformed(angle: float, scale: float, mirror: bool, shift: tuple[float, fl
     return Workpiece.from_loops("expected", [rows])
 
 
+@pytest.mark.thorough
 @settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     angle=st.floats(-360, 360),

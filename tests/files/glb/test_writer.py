@@ -27,7 +27,7 @@ def bodies_of(name: str) -> list[ReadBody]:
     return read_glb(fixture_glb(*held(name), SIZES))[1]
 
 
-@pytest.mark.thinned(4)
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", TOOLKITS)
 def test_bodies_are_closed_and_enclose_area_times_height(name: str) -> None:
     """Volumes are those of the prisms with their arcs, which chords shorten by no more than the sagitta all along them."""
@@ -83,6 +83,7 @@ def shadow(body: ReadBody) -> shapely.Geometry:
     return shapely.union_all([shapely.Polygon(corners) for corners in upper])
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("name", TOOLKITS)
 def test_pegs_and_clamps_touch_the_part_and_plates_stay_apart(name: str) -> None:
     """In the plane: what touches is as far off as its chords and the part's are from their arcs at most, and enters

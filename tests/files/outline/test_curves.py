@@ -128,6 +128,7 @@ def test_an_elliptical_slot_is_refused_and_fitted(tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.thorough
 def test_a_closed_spline_is_fitted(tmp_path: Path) -> None:
     """A free-form outline of one periodic spline."""
 
@@ -141,6 +142,7 @@ def test_a_closed_spline_is_fitted(tmp_path: Path) -> None:
     assert area(coarse) == pytest.approx(area(fine), abs=(coarse.departure + fine.departure) * 220)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("tangents", [None, [(1, 2, 0), (0, -1, 0)]])
 def test_a_spline_of_fit_points_is_the_cubic_that_cad_programs_draw(tangents: Any, tmp_path: Path) -> None:
     """Through the points, with the tangents given or straight at its ends; that it is a guess is told."""

@@ -16,6 +16,7 @@ from workhold.errors import InputError
 PAGE = 'width="200mm" height="200mm" viewBox="-100 -100 200 200"'
 
 
+@pytest.mark.thorough
 @settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(depth=st.integers(1, 9), order=st.randoms(use_true_random=False))
 def test_concentric_circles_alternate(tmp_path: Path, depth: int, order: Any) -> None:

@@ -28,6 +28,7 @@ def fit_named(remarks: Any) -> float:
     return float(found[1])
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("sides", [16, 24, 57, 200])
 def test_a_circle_of_chords_becomes_one_with_the_fit_named(tmp_path: Path, sides: int) -> None:
     """From JSON, DXF, SVG and corners."""

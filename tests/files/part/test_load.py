@@ -175,6 +175,7 @@ def test_files_without_an_ending_are_told_apart_by_their_bytes(tmp_path: Path) -
         load(write(tmp_path, "solid part", "part.stl"))
 
 
+@pytest.mark.thorough
 def test_loading_json_imports_no_drawing_library() -> None:
     """A JSON part loads without ezdxf and svgelements, whose imports are slow."""
     code = (

@@ -62,6 +62,7 @@ assert FolderStore(folder).read("abc") is None
 """
 
 
+@pytest.mark.thorough
 def test_only_regular_files_are_read(tmp_path: Path) -> None:
     """A pipe that nobody writes to would never end, a device neither; a process of its own can be ended."""
     pipe = tmp_path / "pipe.json"
@@ -165,6 +166,7 @@ def test_the_first_fixture_is_found_wherever_pieces_end(
         assert stream.read() == path.read_bytes()
 
 
+@pytest.mark.thorough
 def test_json_of_too_many_brackets_or_values_is_refused() -> None:
     """Each takes fifty bytes and more of memory for two of the file."""
     for text in ("[" + "[]," * 1_000_000 + "[]]", "[" + "1," * 2_000_001 + "1]"):

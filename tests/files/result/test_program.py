@@ -31,6 +31,7 @@ def result_of(kind: str, rapid: Any = "straight", **more: Any) -> Result:
     return answer(Query(part, toolkit, program=program, peg_height=PEG_HEIGHT, **more), threads=1)
 
 
+@pytest.mark.thinned(7)
 @pytest.mark.parametrize("rapid", ["straight", "box"])
 @pytest.mark.parametrize("kind", KINDS)
 def test_either_form_gives_the_bytes_of_the_other(kind: str, rapid: str, tmp_path: Path) -> None:
@@ -54,6 +55,7 @@ def test_a_search_into_a_file_writes_what_one_in_memory_does(tmp_path: Path) -> 
     assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes() and len(streamed)
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("kind", KINDS)
 def test_each_fixture_has_its_clearance_with_line_tool_and_element(kind: str, tmp_path: Path) -> None:
     result = result_of(kind, best=12)

@@ -90,6 +90,7 @@ def test_packed_pieces_make_the_moves_of_their_objects() -> None:
     assert line == 3
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("form", ["json", "npz"])
 def test_a_result_comes_back_with_its_program(form: str, tmp_path: Path) -> None:
     """Both forms of a file have all that is swept, and read back to the same list."""

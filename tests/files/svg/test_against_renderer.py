@@ -113,6 +113,7 @@ def failures(start: int, stop: int) -> list[str]:
     return [f"seed {seed}: {words}" for seed, words in found if words]
 
 
+@pytest.mark.thorough
 def test_random_drawings_are_read_as_they_look() -> None:
     """A hundred drawings."""
     assert failures(0, 100) == []
@@ -134,6 +135,7 @@ def nested_rings(chance: random.Random, x: float, y: float, radius: float) -> st
     return " ".join(data)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("rule", ["nonzero", "evenodd"])
 def test_a_hole_is_what_is_not_painted(rule: str) -> None:
     """Circles in circles, run either way: loops sorted by how many are around them give the picture of the fill rule."""
@@ -162,6 +164,7 @@ def test_a_loop_in_the_notch_of_another_is_painted() -> None:
         assert len(read_svg(svg.encode(), unit=None).chains) == 2
 
 
+@pytest.mark.thorough
 def test_most_drawings_are_read_and_have_ink() -> None:
     """The comparison compares something: most drawings are read, and of those most show something."""
     read, inked = 0, 0

@@ -251,6 +251,7 @@ def test_a_style_that_is_repeated_is_read_once(monkeypatch: pytest.MonkeyPatch) 
     assert read == ["the style of rect number 1 (without id)"]
 
 
+@pytest.mark.thorough
 def test_path_data_is_resolved_over_the_joints_of_its_batches(monkeypatch: pytest.MonkeyPatch) -> None:
     """Shorthand curves, relative moves and closing are what they are in one batch, wherever a batch ends."""
     data = "M5 5" + "h1v1h-1z m2 0 q1 1 2 0 t2 0 c0 1 1 1 1 0 s1 1 1 0zh2v2zv-1" * 2

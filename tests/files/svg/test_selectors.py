@@ -75,6 +75,7 @@ def theirs(sheet: str, root: ElementTree.Element) -> dict[str, list[tuple[int, .
     }
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("seed", range(40))
 def test_selectors_select_what_they_say(seed: int) -> None:
     """Random selectors of random trees, by both ways of matching."""

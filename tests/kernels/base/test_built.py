@@ -301,6 +301,7 @@ def test_truths_and_numbers_are_words():
     assert not built.taker("int64")(2.0, []) and not built.taker("bool")(1, [])
 
 
+@pytest.mark.thorough
 def test_the_interpreter_goes_on_while_a_kernel_runs(library):
     """A thread that is never asked to let others run lets them run while it is inside of a kernel."""
     distances, many = checked(library, distance.outline_distances), np.zeros((500_000, 2))

@@ -72,6 +72,7 @@ def filled(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     return folder / "source", folder / "cache"
 
 
+@pytest.mark.thorough
 def test_a_changed_callee_gives_the_new_answer_though_its_caller_is_unchanged(copy, tmp_path):
     """Numba alone would serve the caller's old code; the hash of all sources starts a new folder."""
     cache = tmp_path / "cache"
@@ -85,6 +86,7 @@ def test_a_changed_callee_gives_the_new_answer_though_its_caller_is_unchanged(co
     assert all(list(folder.rglob("*.nbi")) for folder in cache.glob("kernels-*"))
 
 
+@pytest.mark.thorough
 def test_a_cache_that_cannot_be_written_is_done_without(copy, tmp_path):
     """Where the cache's name is that of a file, kernels are compiled anew and the answer is the same."""
     blocked = tmp_path / "file"
@@ -93,6 +95,8 @@ def test_a_cache_that_cannot_be_written_is_done_without(copy, tmp_path):
     assert blocked.read_text() == "not a folder"
 
 
+@pytest.mark.sampled(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize("ending", ["nbi", "nbc"])
 @pytest.mark.parametrize("damage", [lambda old: b"", lambda old: old[: len(old) // 2]], ids=["empty", "half"])
 def test_a_damaged_cache_is_thrown_away_and_made_anew(filled, tmp_path, ending, damage):

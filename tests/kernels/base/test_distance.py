@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 
 from strategies import outlines, seeds
@@ -40,6 +41,7 @@ def crossings_of_a_ray(point, chains) -> int:
     return count
 
 
+@pytest.mark.thorough
 @given(outlines(), seeds)
 def test_distance_and_inside_agree_with_a_fine_polygon(part, seed):
     """min over segments is the distance to the outline (to the sagitta), and the winding test is the parity of a ray."""

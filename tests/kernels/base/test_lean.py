@@ -72,6 +72,7 @@ def lean() -> tuple[Any, ...]:
     return kernels(numba.njit(**INNER), numba.njit(**OUTER))
 
 
+@pytest.mark.thorough
 def test_bits_are_those_of_numba_s_own_way(lean):
     """Infinities and what is no number included."""
     *_, least, first = kernels(numba.njit(**OWN), numba.njit(**OWN))
@@ -138,6 +139,7 @@ def test_another_numba_and_a_wheel_s_compile_in_numba_s_own_way(monkeypatch):
     assert lean_compiler("InnerCompiler") == {}
 
 
+@pytest.mark.thorough
 def test_the_loop_that_a_search_is_measured_by_calls_a_kernel_so_compiled():
     """Code that numba compiles in its own way cannot call one: the benchmark of the floor ended by a signal."""
     command = [

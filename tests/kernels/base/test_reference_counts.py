@@ -87,6 +87,7 @@ def test_only_kernels_that_make_room_count_references():
             assert re.search("Array|Verdicts|Space|Work", told) is None, name
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "kernel", [two_and_two_cells, three_and_one_cells], ids=["two and two", "three and one"]
 )
@@ -99,6 +100,7 @@ def test_the_loops_of_a_search_count_no_references(kernel):
         assert count <= FEW, function
 
 
+@pytest.mark.thorough
 def test_the_certificate_counts_no_references():
     """The kernel that proves fixtures makes no array at all."""
     assert counting_functions(certified) == {}

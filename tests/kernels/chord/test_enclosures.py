@@ -152,6 +152,7 @@ def test_errors_are_small_away_from_tangencies(seed, pair):
     assert spread < 1e-6
 
 
+@pytest.mark.thorough
 @given(seeds, positions, depths, st.floats(3.0, 16.0).map(lambda exponent: 10.0**-exponent) | st.just(0.0))
 def test_tails_are_within_their_radius(seed, position, depth, reach):
     """The exact tail at every direction within ``reach`` lies in the disc told by ``tail_radius``, ``chord_tail`` and
@@ -181,6 +182,7 @@ def test_tails_are_within_their_radius(seed, position, depth, reach):
                 check_discs(exact, discs if inside else discs[::2], detail)
 
 
+@pytest.mark.thorough
 @given(seeds, positions, depths, st.floats(2.0, 15.0).map(lambda exponent: 10.0**-exponent), modes)
 def test_discs_hold_the_values_of_a_branch(seed, position, depth, reach, mode):
     """|value - exact| <= radius for all directions within ``reach``, tangency or not, which lie on the branch."""

@@ -40,6 +40,7 @@ def test_tail_and_head_touch_their_features(kinds):
                     assert np.allclose(r, expected, atol=1e-9 / max(row[6], 1e-1))
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("mode", [HEIGHT, POSITION])
 @pytest.mark.parametrize("kinds", PAIRS)
 def test_slope_is_the_derivative_of_the_value(kinds, mode):
@@ -137,6 +138,7 @@ def center(a, b, curve, psi) -> tuple[float, float]:
     return chord_state(a, b, curve, psi, cos(psi), sin(psi))[6:8]
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("kinds", PAIRS)
 def test_center_motion_encloses_every_divided_difference_of_the_instant_centre(kinds):
     """(P(t) - P(s)) / (t - s) is a mean of P' between s and t, so each of its entries lies in the enclosure over X^3."""

@@ -39,6 +39,7 @@ def counts(a, b, d, alphas, slack):
     return np.array(out)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.thinned(9)
 @pytest.mark.parametrize("kinds", PAIRS)
 def test_ranges_count_the_chords_of_every_direction(kinds):
@@ -85,6 +86,7 @@ def test_inside_its_range_a_branch_lies_on_both_features(kinds):
     assert free < 0.005 * looked
 
 
+@pytest.mark.thorough
 def test_arcs_that_touch_leave_out_only_a_sliver():
     """On either side of the coincidence there are as many chords as solutions, and so up to the other tangency."""
     random = Random(15)
@@ -103,6 +105,7 @@ def is_mere_cut(ranges, branch, alpha):
     return max(off) < 1e-9
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("kinds", PAIRS)
 def test_a_range_ends_at_a_tangency_or_at_an_end_of_a_feature(kinds):
     """X = 0 at ends marked as tangencies; at the others the tail or the head is at an end of its feature.

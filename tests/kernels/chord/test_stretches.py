@@ -106,6 +106,7 @@ def check_stretch(a, b, curve, low, row, random: Random) -> int:
     return checked
 
 
+@pytest.mark.thorough
 @given(seeds)
 def test_what_stretches_tell_holds_at_every_direction(seed):
     """|P'| <= SPEED, X^3 P' in its box, X^3 P' . r_a, |X|, |X|^3 and the parts of X^3 P' along r_a and r_b."""
@@ -118,6 +119,7 @@ def test_what_stretches_tell_holds_at_every_direction(seed):
             check_stretch(a, b, curve, lows[k], rows[k], random)
 
 
+@pytest.mark.thinned(5)
 @pytest.mark.parametrize("make", SPECIAL)
 def test_what_stretches_tell_holds_in_special_positions(make):
     """The same for every kind of special position, all stretches, those that divide others included."""

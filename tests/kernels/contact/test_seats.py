@@ -55,6 +55,7 @@ def figures(forces: Array) -> tuple[float, float, float] | None:
     return freedom, margin, float(working_forces(reactions).max())
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("off", [1e-6, 1e-3, 0.1])
 def test_no_pair_exceeds_the_bounds(off: float) -> None:
     """Of forces as they are, and moved by as much as they may be off."""

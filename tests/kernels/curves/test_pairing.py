@@ -320,6 +320,8 @@ PARTS = {
 }
 
 
+@pytest.mark.sampled(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", PARTS)
 def test_no_fixture_of_two_chords_is_discarded(name):
     """Every crossing whose four contacts lie inside their features passes the comparison of heights; every one that may be
@@ -333,6 +335,7 @@ def test_no_fixture_of_two_chords_is_discarded(name):
     assert fixtures > 5
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", PARTS)
 def test_no_fixture_of_three_pegs_and_one_is_discarded(name):
     """Every right peg that may make a fixture with three left ones passes all comparisons, in all cells of a turn."""
@@ -359,6 +362,7 @@ def test_no_fixture_of_a_random_part_is_discarded(seed):
     check_type_two(search, low, high)
 
 
+@pytest.mark.thorough
 @given(seeds)
 def test_no_crossing_of_two_steady_pieces_is_denied(seed):
     """Where the difference of two steady pieces changes sign about a target between two samples, they may meet."""

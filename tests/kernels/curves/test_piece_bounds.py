@@ -195,6 +195,7 @@ def check_table(features, table, random: Random, most: int) -> int:
     return checked
 
 
+@pytest.mark.thorough
 @given(seeds)
 def test_pieces_of_random_parts_bound_what_they_tell(seed):
     """Value, slope, second derivative, place along x, y . P and directions of push at orientations all over a piece."""
@@ -202,7 +203,7 @@ def test_pieces_of_random_parts_bound_what_they_tell(seed):
     check_table(*random_table(random), random, 12)
 
 
-@pytest.mark.thinned(5)
+@pytest.mark.thorough
 @pytest.mark.parametrize("make", SPECIAL)
 def test_pieces_in_special_positions_bound_what_they_tell(make):
     """The same for nearly parallel lines, coincidences, tangent joints, unlike arcs, narrow ranges and the like."""
@@ -211,7 +212,7 @@ def test_pieces_in_special_positions_bound_what_they_tell(make):
         checked += check_table(*special_table(random, make), random, 40)
 
 
-@pytest.mark.thinned(5)
+@pytest.mark.thorough
 @pytest.mark.parametrize("make", SPECIAL)
 def test_pieces_next_to_the_ends_of_a_curve_bound_what_they_tell(make):
     """The same in cells that begin or end at any small distance from the end of a curve, where tangencies are."""
@@ -231,6 +232,7 @@ def test_pieces_next_to_the_ends_of_a_curve_bound_what_they_tell(make):
                     checked += check_piece(features, table, piece, mode, random)
 
 
+@pytest.mark.thorough
 @given(seeds)
 @settings(max_examples=25)
 def test_a_small_part_between_lines_of_action_near_the_middle(seed):
@@ -309,6 +311,7 @@ def test_largest_part_bounds_a_direction_that_turns(seed):
             assert told <= most + 1e-12
 
 
+@pytest.mark.thorough
 @given(seeds)
 def test_push_range_holds_every_direction_between(seed):
     """All directions within ``doubt`` of both ends: every direction between them with a part along x is told."""

@@ -54,6 +54,7 @@ def parts_in_cell(reals: np.ndarray, low: float, high: float) -> list[tuple[floa
     return parts
 
 
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("mode", [HEIGHT, POSITION])
 @pytest.mark.parametrize("width", [0.03, 0.5, 3.0, 6.2])
 def test_pieces_tile_the_curves_in_a_cell(mode, width):

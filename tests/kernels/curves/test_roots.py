@@ -151,6 +151,7 @@ def overlapping(random: Random, pieces: np.ndarray, most: int, least: float = 1e
     return [tuple(pairs[k]) for k in random.sample(range(len(pairs)), min(most, len(pairs)))]
 
 
+@pytest.mark.thorough
 def test_heights_cross_wherever_a_dense_sampling_changes_sign():
     """Every k with h_B - h_A = offset + k period between two samples is found between them, none twice, residual < 1e-9."""
     random = Random(41)
@@ -166,6 +167,7 @@ def test_heights_cross_wherever_a_dense_sampling_changes_sign():
     assert total > 100
 
 
+@pytest.mark.thorough
 def test_some_pairs_of_heights_against_a_hundred_thousand_samples():
     """The same, with samples so dense that hardly two roots share a gap."""
     random = Random(101)
@@ -178,6 +180,7 @@ def test_some_pairs_of_heights_against_a_hundred_thousand_samples():
     assert total > 30
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("circles", [False, True])
 def test_positions_on_a_shared_tail_cross_wherever_a_dense_sampling_changes_sign(circles):
     """Two chords share their tail where s_A = s_B (modulo 2 pi on a whole circle, also across the circle's seam)."""
@@ -212,6 +215,7 @@ def shared_tails(features, steps, low: float, high: float) -> set[tuple[float, f
     return found
 
 
+@pytest.mark.thorough
 def test_shared_tails_do_not_depend_on_where_a_circle_has_its_seam():
     """Turning the parameter of a whole circle changes no contact: the roots are the same points at the same psi."""
     random = Random(43)
@@ -297,6 +301,7 @@ def test_curves_on_top_of_each_other_are_told_as_ranges_and_not_given_up():
     assert seen > 0
 
 
+@pytest.mark.thorough
 def test_the_exact_root_is_within_the_radius():
     """f - target, by 200 bits, has opposite signs at both ends of a root's range, if the root is simple; double roots of a
     whole range are told from them by their radius."""

@@ -89,6 +89,7 @@ def test_the_head_of_a_pair_in_place_is_as_far_off_as_it_may_be_turned():
             assert hypot(exact[0] - head_x, exact[1] - head_y) <= head_off + 1e-12
 
 
+@pytest.mark.thorough
 def test_sliding_pairs_are_complete():
     """A tail outside all the ranges of a direction has its head off b, and no other direction fits at all."""
     random = Random(22)

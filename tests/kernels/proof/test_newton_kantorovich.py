@@ -6,6 +6,7 @@ from math import cos, pi, sin
 from random import Random
 
 import numpy as np
+import pytest
 from attrs import define
 from flint import arb
 from hypothesis import given
@@ -134,6 +135,7 @@ def test_ordinary_contacts_have_a_small_certificate(seed: int) -> None:
     assert (radii < 1e-11).mean() > 0.75
 
 
+@pytest.mark.thorough
 @given(seeds, st.floats(0.0, 4.0).map(lambda exponent: 10.0**-exponent))
 def test_no_other_solution_is_within_the_distance_told(seed: int, tilt: float) -> None:
     """Newton's method started anywhere within ``unique`` finds the same solution, or leaves."""

@@ -227,6 +227,7 @@ VARYING = [
 ]
 
 
+@pytest.mark.thinned(5)
 @pytest.mark.parametrize("about", [False, True])
 @pytest.mark.parametrize("column", VARYING)
 def test_what_varies_over_a_part_of_a_box_is_bounded_to_its_second_order(column: int, about: bool) -> None:

@@ -56,6 +56,7 @@ def is_within(angle, ranges):
     return any(a < sweep for a, (_, sweep) in zip(ahead, ranges, strict=True)), min(near, default=inf)
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("row", [LINE, *ARCS])
 def test_directions_that_meet_a_piece_are_its_ranges(row):
     rng, seen = np.random.default_rng(3), set()
@@ -100,6 +101,7 @@ def test_a_peg_goes_along_what_it_touches_and_not_into_it():
         ] * len(met)
 
 
+@pytest.mark.thorough
 def test_what_ranges_leave_is_found():
     """And nothing where they leave nothing: against many directions."""
     rng, seen, left = np.random.default_rng(5), [], changed(way_left)

@@ -52,6 +52,7 @@ def on_its_piece(row, theta, x, y):
     return np.abs(np.arctan2(across, ahead) if row[IS_ARC] else ahead) <= row[HALF_EXTENT]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("within", [True, False])
 def test_bounds_of_a_contact_enclose_it_over_its_range(within):
     """Its place, both derivatives and the tangent of its normal, the level being a wave, wherever it is on the piece."""
