@@ -174,6 +174,7 @@ def test_options() -> None:
     assert not answer_by_algebra(Query(part, vise), cancel=cancel).complete
 
 
+@pytest.mark.thorough
 def test_double_contacts_are_no_fixtures() -> None:
     """Two pegs exactly as far apart as the tips of a pill touch it doubly: their lines of action are one, nothing closes."""
     pill = Workpiece.from_loops("pill", [[[0, -8, 0], [30, -8, 1], [30, 8, 0], [0, 8, 1]]])

@@ -103,6 +103,7 @@ def test_the_checker_is_printed_as_it_is(run: Callable[..., Any], checker: Any) 
     assert run("checker").stdout == Path(checker.__file__).read_text(encoding="utf-8")
 
 
+@pytest.mark.thorough
 def test_parquet_says_the_same(
     run: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -57,7 +57,7 @@ def test_the_data_are_small() -> None:
     assert sum(path.stat().st_size for path in home.rglob("*.json")) < 1_000_000
 
 
-@pytest.mark.thinned(5)
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "name", ["kite-vise", "bar-plate", "bar-pair", "el-fence", "el-fence-pair", "house-flat-opening"]
 )

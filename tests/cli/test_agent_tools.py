@@ -59,6 +59,7 @@ def test_the_whole_way(folder: Path) -> None:
     assert "SHA-256" in Path("setup.svg").read_text()
 
 
+@pytest.mark.thorough
 def test_seating_is_told_where_it_is_asked_for(folder: Path) -> None:
     """Of the first of a design, which then stand in its order; of any fixture; and only with what it needs."""
     made = told("design", folder, part="wedge.json", **VISE, seating=2, count=3, out="some.json")
@@ -161,6 +162,7 @@ def test_the_time_for_a_search_is_kept(folder: Path, monkeypatch: pytest.MonkeyP
     assert workhold.open("late.json").query.contact_margin == 0.25
 
 
+@pytest.mark.thorough
 def test_pictures_are_shown_where_asked_for(folder: Path) -> None:
     for name, asked in (
         ("load", {"part": "wedge.json"}),
@@ -304,6 +306,7 @@ def test_the_protocol_lists_the_tools(spoken: Spoken) -> None:
     assert tools["design"]["inputSchema"]["required"] == ["part", "toolkit"]
 
 
+@pytest.mark.thorough
 def test_the_protocol_calls_a_tool(spoken: Spoken) -> None:
     """Its data as text and as such, its picture as PNG, and what it cannot do as an error for the agent to read."""
     told = spoken.ask(

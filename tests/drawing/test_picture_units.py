@@ -71,6 +71,7 @@ def test_lengths_in_inches_are_those_in_millimetres_over_25_4(drawn: Drawn, coun
     assert words == same_words
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("drawn", PICTURES)
 def test_pictures_in_inches_name_no_other_unit(drawn: Drawn, held: Held) -> None:
     """No word of millimetres."""
@@ -78,7 +79,7 @@ def test_pictures_in_inches_name_no_other_unit(drawn: Drawn, held: Held) -> None
     assert [word for word in words if re.search(r"\bmm\b", word)] == []
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thorough
 def test_pictures_are_in_millimetres_where_nothing_is_said(held: Held) -> None:
     """To the byte."""
     fixture, workpiece, vise = held
@@ -98,6 +99,7 @@ def test_the_scale_is_as_long_as_it_says(drawn: Drawn, unit: Unit, held: Held) -
     assert sign == unit.abbreviation and number.strip("0.") in {"1", "2", "5"}
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("drawn", PICTURES)
 def test_nothing_is_covered_in_inches(drawn: Drawn, held: Held) -> None:
     """A metric pitch in inches has many figures, and keeps off what stands before it."""

@@ -51,7 +51,7 @@ def with_seats(told: Seating, wrong: int) -> Seating:
     return evolve(told, seats=tuple(own + [seat for seat in told.seats if seat.is_wrong][:wrong]))
 
 
-@pytest.mark.thinned(6)
+@pytest.mark.thorough
 @pytest.mark.parametrize(("paper", "unit"), [("a4", MILLIMETRE), ("letter", INCH)])
 @pytest.mark.parametrize("wrong", [0, 1, 2, 23])
 def test_nothing_is_covered_or_cut_off(

@@ -30,7 +30,7 @@ def supports_of_sheet(name: str, loaded: bool = False) -> ChosenSupports:
     return found
 
 
-@pytest.mark.thinned(7)
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", NAMES)
 def test_supports_stand_on_the_plan_in_the_holes_that_are_named(name: str) -> None:
     """Each sign is at the place of a hole, whose name stands on the plan; the clamp is where it presses."""
@@ -82,7 +82,7 @@ def test_clamp_is_told_from_the_zero_that_the_sheet_uses(zero: str | None, unit:
     assert f"tipping arm {lengths.words(found.clamp.arm)}" in words
 
 
-@pytest.mark.thinned(7)
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", NAMES)
 def test_clamp_is_drawn_where_it_needs_the_least_force(name: str) -> None:
     """Under loads that is not where its arm is the longest."""
@@ -95,7 +95,7 @@ def test_clamp_is_drawn_where_it_needs_the_least_force(name: str) -> None:
     assert at == pytest.approx(found.recounted.fixture.pose.apply(*found.triple.best.at), abs=2e-3)
 
 
-@pytest.mark.thinned(7)
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", NAMES)
 def test_forces_are_those_of_the_loads(name: str) -> None:
     """Clamp force wanted, largest support force and tipping moment stand in the PDF, rounded to the safe side."""
@@ -146,7 +146,7 @@ def test_without_loads_the_moment_is_told_for_a_round_force() -> None:
     )
 
 
-@pytest.mark.thinned(7)
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", NAMES)
 def test_hardware_is_counted(name: str) -> None:
     """Pegs, clamps, bolts, supports and walls of the set-up, each with its size, as the PDF has them."""
@@ -259,6 +259,7 @@ def test_second_side_says_what_the_first_did() -> None:
     ]
 
 
+@pytest.mark.thorough
 def test_signs_are_explained_where_they_stand() -> None:
     """The legend has supports and the clamp on top only with them."""
     result = result_of("plate", False)

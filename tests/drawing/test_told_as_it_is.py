@@ -157,7 +157,7 @@ def test_a_picture_tells_the_fixture(held: Held) -> None:
         assert has_run(words, ["Clamp freedom", f"{fixture.quality['clamp_freedom']:.1f}°"])
 
 
-@pytest.mark.thinned(8)
+@pytest.mark.thorough
 @EVERY
 def test_arrows_and_names_stand_at_what_they_tell_of(held: Held) -> None:
     """Each clamp's block arrow points its way, and the name of each hole stands at, or leads to, its peg or bolt."""
@@ -272,6 +272,7 @@ def above(force: float) -> str:
     return f"{-(-force // 1):.0f}"
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled(4)
 @pytest.mark.thinned(8)
 @EVERY
@@ -309,6 +310,7 @@ def test_a_sheet_tells_pose_calipers_and_figures(held: Held) -> None:
         assert (calipers[6], calipers[7]) == (mm(apart - 6.0), mm(apart + 6.0))
 
 
+@pytest.mark.thinned(61)
 @EVERY
 def test_a_sheet_tells_loads_in_their_order(held: Held) -> None:
     """The hardest load first; of each what it needs, and the force of every peg below the name of that peg."""
@@ -378,7 +380,7 @@ def test_the_terminal_tells_the_fixture(
         assert [f"cut {number}", *ranges, "yes"] in lines
 
 
-@pytest.mark.thinned(8)
+@pytest.mark.thorough
 @EVERY
 def test_files_and_thumbnails_tell_the_fixture(held: Held) -> None:
     """The words in a drawing for a CAM system and below a thumbnail, and the list of pins."""

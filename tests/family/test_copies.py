@@ -107,7 +107,7 @@ def most_by_trying(places: list[tuple[int, int]], near: set[tuple[int, int]]) ->
     return max(1 + most_by_trying(free, near), most_by_trying(rest, near))
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("name", "size"),
     [("strokes", (12, 7)), ("two clamps", (9, 8)), ("fence", (16, 6)), ("tips alone", (11, 8))],

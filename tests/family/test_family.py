@@ -308,6 +308,7 @@ def test_the_file_is_what_the_contract_says(twenty: Family) -> None:
     }
 
 
+@pytest.mark.thorough
 def test_pegs_of_a_part_that_stand_elsewhere_and_its_zero_are_told(twenty: Family) -> None:
     """A largest opening, or a smallest gap, may ask for other columns than those of the set-up."""
     from workhold.family.family import holding_entry

@@ -111,6 +111,7 @@ def test_a_name_however_long_stays_in_its_place(families: dict[str, Family]) -> 
         assert not collisions(page) and on_page(page)
 
 
+@pytest.mark.thorough
 def test_a_name_with_room_is_told_in_full(families: dict[str, Family]) -> None:
     """A name that is wider than its column takes another line of the table; nothing of it is cut off."""
     family, name = families["vise"], "left hand mounting bracket of the second conveyor, revision 12"

@@ -46,6 +46,7 @@ def test_every_command_takes_it(outcomes: tuple[Path, dict[str, Any]]) -> None:
         assert "a mistake of workhold" not in words, words
 
 
+@pytest.mark.thorough
 def test_its_files_are_written_and_say_the_same(outcomes: tuple[Path, dict[str, Any]]) -> None:
     """The result in columns is the result; sheet, set-up and pins are there."""
     folder = outcomes[0]

@@ -170,6 +170,7 @@ def test_half_a_turn_of_the_plate_lists_nothing_twice(pair: tuple[str, str]) -> 
     assert len(one) == len(in_part(one)) == len(both)
 
 
+@pytest.mark.thorough
 def test_the_best_of_each_seat_is_the_best_of_all() -> None:
     """By clamp freedom, then closure margin, then order; and the numbers of pairs add up."""
     plate = Plate(16, 3, columns=4, rows=4, clamps=2, directions=["-x", "-y"])

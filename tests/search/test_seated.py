@@ -83,6 +83,7 @@ def test_the_first_fixtures_are_ordered_anew_and_all_others_stay(plain: Result, 
             assert before.index(after[one]) < before.index(after[other])
 
 
+@pytest.mark.thorough
 def test_each_seating_is_that_of_its_fixture(seated: Result) -> None:
     [alone] = workhold.seatings(seated, seated[3:4])
     told = seated[3].seating

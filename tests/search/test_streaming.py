@@ -49,6 +49,7 @@ def test_the_bytes_are_those_of_the_result_in_memory(small: None, tmp_path: Path
     assert {path.name for path in tmp_path.iterdir()} == {"whole.npz", "streamed.npz"}
 
 
+@pytest.mark.thorough
 def test_the_room_changes_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Parts so large that there is one, and parts of a hundred, give the same result in memory."""
     files = []
@@ -60,6 +61,7 @@ def test_the_room_changes_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     assert files[0].read_bytes() == files[1].read_bytes()
 
 
+@pytest.mark.thorough
 def test_progress_rises_to_its_end(small: None, tmp_path: Path) -> None:
     seen: list[float] = []
     workhold.answer_to_file(

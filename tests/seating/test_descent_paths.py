@@ -81,6 +81,7 @@ def test_they_end_as_ways_that_are_followed_with_all_pegs(ways):
     assert seen == {AT_REST, AT_THE_STOP}
 
 
+@pytest.mark.thorough
 def test_a_way_of_a_group_is_one_of_the_pattern_as_far_as_no_other_peg_is_in_the_part(ways):
     """Up to the last node that is told all are free and above the stop, and the next is not."""
     cut = whole = 0

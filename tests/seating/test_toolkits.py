@@ -161,6 +161,7 @@ def test_hundreds_of_walks_come_home(name, rank):
         assert all(comes_home(name, rank, seed, 0.99, 300) for seed in range(50))
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("name", KITS)
 def test_the_cage_is_told_in_the_frame_of_the_toolkit(name):
     """Closing from its corners of y and of the turn shows which is which: the pass lies in it, as does the pose."""

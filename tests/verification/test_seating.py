@@ -85,7 +85,7 @@ def told(fields: Fields, fixture: Any) -> Any:
     return type(fixture.seating.seating).of_fields(fields, fixture.pose)
 
 
-@pytest.mark.thinned(4)
+@pytest.mark.thorough
 @pytest.mark.parametrize("form", ["json", "npz"])
 @pytest.mark.parametrize(
     ("part", "toolkit"),

@@ -88,7 +88,7 @@ CHANGES: list[tuple[Callable[[dict[str, Any]], Any], str]] = [
 ]
 
 
-@pytest.mark.thinned(4)
+@pytest.mark.thorough
 @pytest.mark.parametrize(("change", "said"), CHANGES)
 def test_a_file_that_says_otherwise_is_refused(
     change: Callable[[dict[str, Any]], Any], said: str, tmp_path: Path

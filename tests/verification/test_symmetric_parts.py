@@ -82,6 +82,7 @@ def test_search_verification_and_trying_each_rotation_count_alike(
         assert one.distinct == (counted(one, case) if one.found == one.counts else result.distinct)
 
 
+@pytest.mark.thorough
 def test_every_kind_and_symmetry_is_met() -> None:
     """Of each toolkit some part above has fixtures, and of each part but the disc some toolkit."""
     held = [(name, kind) for name, kind, listing in SOME if len(full(name, kind, listing))]

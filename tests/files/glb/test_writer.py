@@ -59,6 +59,7 @@ def area(loop: tuple) -> float:
     return total
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", TOOLKITS)
 def test_pegs_stand_where_the_fixture_says(name: str) -> None:
     """Every peg's axis is where its hole is, its vertices on its circle; it goes through its plate."""

@@ -25,7 +25,7 @@ from workhold.model.fixture_table import FixtureTable
 from workhold.verification.listing import read_listing
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize("count", [0, 1, 7, 5000])
 def test_the_same_bytes_come_back_from_the_other_form(tmp_path: Path, count: int, monkeypatch: Any) -> None:
     monkeypatch.setattr(in_columns, "BLOCK", 999)

@@ -55,7 +55,7 @@ def test_a_search_into_a_file_writes_what_one_in_memory_does(tmp_path: Path) -> 
     assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes() and len(streamed)
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize("kind", KINDS)
 def test_each_fixture_has_its_clearance_with_line_tool_and_element(kind: str, tmp_path: Path) -> None:
     result = result_of(kind, best=12)

@@ -34,7 +34,7 @@ def document(tmp_path: Path) -> dict[str, Any]:
     return data
 
 
-@pytest.mark.thinned(4)
+@pytest.mark.thorough
 @pytest.mark.parametrize("count", [0, 1, 7, 4096, 5000])
 def test_writing_what_was_read_gives_the_same_bytes(tmp_path: Path, count: int) -> None:
     result = fake_result(count, notes=("remark ä",), complete=False)

@@ -85,6 +85,7 @@ def test_every_kernel_takes_what_a_library_can_be_handed(builder):
         assert any(map(can_be_handed, kernel.signatures)), kernel.__name__
 
 
+@pytest.mark.thorough
 def test_answers_are_the_same_to_the_last_bit(library):
     """Numbers, truths and arrays that the library makes."""
     ours, theirs = checked(library, distance.outline_distances), distance.outline_distances

@@ -84,6 +84,7 @@ def test_bits_are_those_of_numba_s_own_way(lean):
     assert np.float64(lean[3](rows)).tobytes() == np.float64(first(rows)).tobytes()
 
 
+@pytest.mark.thorough
 def test_only_what_python_calls_becomes_machine_code(lean):
     """With all that it calls inside of it, also what only those call."""
     rows = np.ones((2, 3))

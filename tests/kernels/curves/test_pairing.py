@@ -346,6 +346,7 @@ def test_no_fixture_of_three_pegs_and_one_is_discarded(name):
     )
 
 
+@pytest.mark.thorough
 @settings(max_examples=25)
 @given(seeds)
 def test_no_fixture_of_a_random_part_is_discarded(seed):

@@ -78,6 +78,7 @@ def test_pieces_tile_the_curves_in_a_cell(mode, width):
             assert np.allclose(runs, expected, atol=1e-12)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("mode", [HEIGHT, POSITION])
 def test_slopes_stay_in_the_enclosure_of_a_piece(mode):
     """Over any part [s, t] of a piece, slope_range(f'(s), f'(t), second derivative, t - s) contains the slope everywhere."""
