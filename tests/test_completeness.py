@@ -77,6 +77,7 @@ def test_what_a_server_cut_short_is_a_part_of_the_whole(whole: Result, tmp_path:
     assert (outcome.is_compared, outcome.faults, outcome.proven) == (True, (), kept)
 
 
+@pytest.mark.thorough
 def test_the_best_that_a_server_kept_are_the_best_of_all(whole: Result, tmp_path: Path) -> None:
     """Of a search that came to its end, another fixture than the best is one too many."""
     kept = attrs.evolve(whole, table=whole.table.take(np.arange(40)), notes=(kept_note(505, 40),))

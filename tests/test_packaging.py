@@ -127,6 +127,7 @@ def made(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     return done
 
 
+@pytest.mark.thorough
 def test_a_wheel_has_the_library_and_its_platform(made: list[Any]) -> None:
     backend.build_wheel("dist")
     folder, settings = made

@@ -14,7 +14,7 @@ from workhold.algebra.resultants import PAPER_DEGREES, TRUE_DEGREES, coefficient
 from workhold.algebra.table_two import random_contacts, table_two
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize("case", [case for case in PAPER_DEGREES if case[0] > 0])
 def test_no_real_root_is_lost_to_rounding(case: tuple[int, int]) -> None:
     """Every real root isolated in ball arithmetic is met again, to the last digits, by a pose from double precision."""
@@ -34,6 +34,7 @@ def test_no_real_root_is_lost_to_rounding(case: tuple[int, int]) -> None:
 
 
 # Table 2 of the paper: degrees of the resultants in t.
+@pytest.mark.thorough
 def test_degrees_are_the_numbers_of_solutions_of_general_systems() -> None:
     """No row's resultant has a spurious root: its degree is that of the Groebner basis, never above the paper's."""
     for row in table_two():

@@ -40,6 +40,7 @@ def test_a_long_list_is_cut() -> None:
     assert notes[-1] == "Undecided: 7 more systems of pegs and faces."
 
 
+@pytest.mark.thorough
 def test_a_result_without_doubt_has_no_note() -> None:
     result = answer_by_algebra(Query(WEDGE, VISE))
     assert result.statistics["undecided"] == 0

@@ -64,6 +64,7 @@ def half_turned(fixture: dict[str, Any]) -> dict[str, Any]:
     return made
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("name", EVERY_KIND)
 def test_the_list_itself_is_found_whole(name: str, content: Content) -> None:
     """A set's own file finds every fixture once and nothing else."""

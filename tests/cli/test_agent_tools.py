@@ -37,6 +37,7 @@ def told(name: str, folder: Path, **arguments: Any) -> Any:
     return json.loads(json.dumps(data, allow_nan=False))
 
 
+@pytest.mark.thorough
 def test_the_whole_way(folder: Path) -> None:
     """From a part's faces over its fixtures to the sheet, with forbidden faces, places, loads and an order."""
     part = told("load", folder, part="wedge.json")
@@ -79,6 +80,7 @@ def test_seating_is_told_where_it_is_asked_for(folder: Path) -> None:
     assert failed and "such as seating 100" in json.dumps(data)
 
 
+@pytest.mark.thorough
 def test_with_two_clamps_agents_are_told_what_to_do_by_hand(folder: Path) -> None:
     """Of the first of a design, of any fixture that is asked for, and on the sheet."""
     plate = {"toolkit": "two-clamp-plate-20mm"}

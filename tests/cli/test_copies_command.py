@@ -17,6 +17,7 @@ pytest.importorskip("scipy", reason="the extra [batch] is not installed")
 BAR = Workpiece.from_loops("bar", [[[0, 0, 0], [50, 0, 0], [50, 28, 0], [0, 28, 0]]])
 
 
+@pytest.mark.thorough
 def test_copies_are_told_and_drawn_or_refused(run: Any, tmp_path: Path) -> None:
     result = answer(Query(BAR, Plate(pitch=20, peg_radius=3, clamps=2, travel=(10, 35)), best=3), threads=1)
     file, picture = tmp_path / "r.json", tmp_path / "p.png"

@@ -154,6 +154,7 @@ def test_the_algebra_goes_through_no_cells(run: Any, searched: dict[str, Any]) -
     ]
 
 
+@pytest.mark.thinned(1)
 @pytest.mark.parametrize(
     ("count", "rest"), [(1, None), (3, None), (4, "The other one is"), (9, "The other 6 are")]
 )
@@ -288,6 +289,7 @@ def test_bad_requests_are_refused_before_the_search(
     assert [(p.name, p.read_text()) for p in tmp_path.iterdir()] == [("old.json", OURS)]
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("content", [None, b"", b"\x00\xff" * 300, b"0\nSECTION\n", b'{"name": "x"}'])
 @pytest.mark.parametrize("name", ["part.dxf", "part.svg", "part.json", "part"])
 def test_unreadable_parts_are_refused(

@@ -103,7 +103,7 @@ def test_mistakes_are_told_with_their_place(tmp_path: Path, name: str, text: str
     assert name in str(caught.value)
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("name", "text", "words"),
     [

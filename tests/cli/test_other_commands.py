@@ -46,6 +46,7 @@ def test_show_draws(run: Any, result_file: Path, tmp_path: Path, name: str, star
     assert (tmp_path / name).read_bytes().startswith(start)
 
 
+@pytest.mark.thorough
 def test_show_writes_bodies(run: Any, result_file: Path, tmp_path: Path) -> None:
     """The fixture's own file, over one that workhold wrote; the height that nobody said is told."""
     result = open_result(result_file)

@@ -159,6 +159,7 @@ def test_explore_and_batch_take_a_program(run: Any, file: Path, tmp_path: Path) 
 FORCES = ("--material", "aluminium", "--teeth", "2", "--cut-depth", "3")
 
 
+@pytest.mark.thorough
 def test_forces_reach_the_table_the_sentences_and_the_sheet(run: Any, file: Path, tmp_path: Path) -> None:
     file.write_text(PROGRAM.replace("T1 M6", "T1 M6 S3000"))
     out, sheet = tmp_path / "widget.json", tmp_path / "widget.svg"

@@ -143,6 +143,7 @@ def test_nothing_left_to_touch_is_refused(run: Any, words: tuple[str, ...]) -> N
     assert outcome.stderr.count("\n") == 1 and outcome.stderr.startswith("workhold: error: ")
 
 
+@pytest.mark.thorough
 def test_no_fixture_is_explained_and_the_nearest_miss_drawn(run: Any, tmp_path: Path) -> None:
     """The rule that left nothing, and a picture of what came nearest."""
     outcome = run(*WIDGET, "--min-gap", "300", "--draw", tmp_path)

@@ -130,6 +130,7 @@ def test_one_side_and_one_opening_leave_seats_out(run: Any, result_file: Path) -
     assert told.reading_of(level) == min(abs(seat.difference) for seat in opened)
 
 
+@pytest.mark.thorough
 def test_json_has_the_fields(run: Any, result_file: Path, tmp_path: Path) -> None:
     """The fields of the manual, in mm, and the picture that was drawn."""
     picture = tmp_path / "seats.svg"
@@ -212,6 +213,7 @@ def test_with_two_clamps_it_says_what_to_do_by_hand(
     assert len(seen) == 4
 
 
+@pytest.mark.thorough
 def test_a_search_for_seating_with_two_clamps_is_told_by_show(run: Any, tmp_path: Path) -> None:
     """Of the first fixtures, as many as were asked, in words and as JSON; the search says so, and what it cannot do."""
     (tmp_path / "square.json").write_text(

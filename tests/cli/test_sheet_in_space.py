@@ -70,6 +70,7 @@ def test_from_a_part_to_its_sheet_in_one_command(run: Run, folder: Path) -> None
     assert words_in("b.pdf") == text
 
 
+@pytest.mark.thorough
 def test_sheet_without_supports_or_result_file(run: Run, folder: Path) -> None:
     """The sheet alone; its file may be a picture, and --json says that it was written."""
     shown = run("design", "plate.json", *KIT, "--best", 2, "--sheet", "a.svg", "--json")

@@ -163,6 +163,7 @@ def test_the_figures_of_a_vise(run: Any, tmp_path: Path) -> None:
     assert "try plate-one-inch" in refused.stderr
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ["hardware.md", "no-fixture.md"])
 def test_the_worked_examples_of_the_manual(
     name: str, run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -47,6 +47,7 @@ def test_every_face_is_numbered_once(size: float) -> None:
     assert f"{60 * size:.{decimals}f} mm" in texts(svg) and f"{40 * size:.{decimals}f} mm" in texts(svg)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("teeth", [4, 15])
 def test_numbers_do_not_cover_each_other(teeth: int) -> None:
     """Sixty faces, and no two of their numbers overlap."""

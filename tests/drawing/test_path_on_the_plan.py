@@ -74,7 +74,7 @@ def test_path_lies_where_the_pose_puts_the_part(result: Result) -> None:
     assert np.hypot(x - 102, y - 18).max() > 60
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thorough
 def test_nearest_move_is_marked_at_its_distance(result: Result) -> None:
     """The marked place is off what it passes by the clearance, the tool's radius and the peg's."""
     path, near = planned_path(result, 0), passing_of(result, 0)

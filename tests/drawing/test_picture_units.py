@@ -71,7 +71,7 @@ def test_lengths_in_inches_are_those_in_millimetres_over_25_4(drawn: Drawn, coun
     assert words == same_words
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thorough
 @pytest.mark.parametrize("drawn", PICTURES)
 def test_pictures_in_inches_name_no_other_unit(drawn: Drawn, held: Held) -> None:
     """No word of millimetres."""
@@ -88,7 +88,7 @@ def test_pictures_are_in_millimetres_where_nothing_is_said(held: Held) -> None:
     assert draw_thumbnails([fixture] * 2, workpiece, vise, ["1", "2"]) == thumbnails(held, MILLIMETRE)
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize("drawn", PICTURES)
 @pytest.mark.parametrize("unit", [MILLIMETRE, INCH], ids=lambda unit: unit.name)
 def test_the_scale_is_as_long_as_it_says(drawn: Drawn, unit: Unit, held: Held) -> None:
@@ -99,7 +99,7 @@ def test_the_scale_is_as_long_as_it_says(drawn: Drawn, unit: Unit, held: Held) -
     assert sign == unit.abbreviation and number.strip("0.") in {"1", "2", "5"}
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thorough
 @pytest.mark.parametrize("drawn", PICTURES)
 def test_nothing_is_covered_in_inches(drawn: Drawn, held: Held) -> None:
     """A metric pitch in inches has many figures, and keeps off what stands before it."""

@@ -32,7 +32,7 @@ def test_the_arc_of_an_angle_ends_at_its_arrow_head(theta: float) -> None:
     assert abs(theta) - 12.0 < angles[-1] < abs(theta) - 8.0
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("theta", "words"),
     [

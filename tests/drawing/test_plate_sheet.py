@@ -68,7 +68,7 @@ def test_nothing_is_covered_or_cut_off(
     ] == []
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize("way", WAYS)
 @BOLTED
 def test_the_clamp_can_be_set_up_from_the_sheet(way: str, bolted: bool) -> None:
@@ -90,7 +90,7 @@ def test_the_clamp_can_be_set_up_from_the_sheet(way: str, bolted: bool) -> None:
     assert all(peg.hole in words for peg in fixture.pegs[:3]) and "Locators Ø 10 mm" in words
 
 
-@pytest.mark.thinned(8)
+@pytest.mark.thorough
 @pytest.mark.parametrize("way", WAYS)
 @BOLTED
 def test_all_may_be_moved_as_far_as_there_are_holes(way: str, bolted: bool) -> None:

@@ -225,6 +225,7 @@ def test_with_two_clamps_it_says_what_to_do_by_hand(toolkit: Plate | Fence) -> N
     assert asked == plain
 
 
+@pytest.mark.thorough
 def test_a_clamp_is_drawn_back_and_tightened() -> None:
     """Words and readings of a clamp whose stroke gets less as it is drawn back, and never told wider than it may be."""
     toolkit = Plate(pitch=20, peg_radius=3, directions=["+y"], travel=(1, 40))

@@ -56,7 +56,7 @@ def boxes(page: str, name: str) -> list[Box]:
     return found
 
 
-@pytest.mark.thinned(7)
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", NAMES)
 def test_view_is_true_to_the_scale_that_is_written(name: str) -> None:
     """What is drawn of part, pegs and bands is as large as their heights and places, at the scale of the title."""

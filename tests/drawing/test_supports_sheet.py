@@ -209,6 +209,7 @@ def test_a_part_that_lies_on_no_face_is_said_to_do_so() -> None:
     assert "Turned over, the part would fit the same pegs: make sure that −z of the file points up." in text
 
 
+@pytest.mark.thorough
 def test_holes_with_other_names_are_said_to_be_so() -> None:
     """Where jaws stand nearer for supports between the pegs, the sheet has the new opening and says by how much."""
     found = supports_of_sheet("vise")

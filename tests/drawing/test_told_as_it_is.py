@@ -310,7 +310,7 @@ def test_a_sheet_tells_pose_calipers_and_figures(held: Held) -> None:
         assert (calipers[6], calipers[7]) == (mm(apart - 6.0), mm(apart + 6.0))
 
 
-@pytest.mark.thinned(61)
+@pytest.mark.thorough
 @EVERY
 def test_a_sheet_tells_loads_in_their_order(held: Held) -> None:
     """The hardest load first; of each what it needs, and the force of every peg below the name of that peg."""
@@ -329,6 +329,7 @@ def test_a_sheet_tells_loads_in_their_order(held: Held) -> None:
     assert f"{'clamp' if tips else 'jaw'} force of 1750 N" in words
 
 
+@pytest.mark.thinned(2)
 @EVERY
 def test_the_terminal_tells_the_fixture(
     held: Held, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch

@@ -79,7 +79,7 @@ def sheet_words(result: Result, **details: object) -> str:
     return " ".join(" ".join(texts(page)) for page in pages)
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thorough
 @pytest.mark.parametrize("pair", list(PAIRS))
 def test_the_sheet_tells_both_clamps_and_their_order(pair: str) -> None:
     """Where each is bolted, how to tighten them, and forces that make up the one given."""

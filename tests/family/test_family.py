@@ -164,7 +164,7 @@ TOOLKITS: dict[str, Toolkit] = {
 }
 
 
-@pytest.mark.thinned(6)
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", TOOLKITS)
 def test_plans_in_every_toolkit_are_proven(name: str) -> None:
     family = family_of(asked(TWENTY[:4], TOOLKITS[name]), threads=1)

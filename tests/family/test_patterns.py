@@ -65,7 +65,7 @@ def naive(result: Result, row: int) -> tuple[object, ...]:
     return fixture.type, fixture.direction, tuple(sorted(told, key=repr))
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", HELD)
 def test_words_are_the_same_where_patterns_are(results: dict[str, Result], name: str) -> None:
     result = results[name]

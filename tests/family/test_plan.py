@@ -32,7 +32,7 @@ def fewest_moved(one: list[Hole], other: list[Hole], freedom: Freedom) -> int:
     return min(tried)
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thorough
 @pytest.mark.parametrize("freedom", [Freedom(False, False), Freedom(False, True), Freedom(True, True)])
 @pytest.mark.parametrize("seed", range(6))
 def test_no_other_order_moves_fewer(seed: int, freedom: Freedom) -> None:

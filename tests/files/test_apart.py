@@ -121,7 +121,7 @@ def test_a_mistake_of_the_program_stays_one(work: str) -> None:
         run_apart(work, b"fault", {}, "the file")
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thorough
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_the_process_ends_with_its_starter(work: str, tmp_path: Path, number: int) -> None:

@@ -123,6 +123,7 @@ def test_an_inner_folder_that_nobody_may_read_costs_no_other(
     assert "cannot be looked into: allow reading it" in read_listed(parts[1]).refusal
 
 
+@pytest.mark.thorough
 def test_folders_may_lie_in_each_other_as_deep_as_the_disk_allows(tmp_path: Path) -> None:
     nested = [tmp_path]
     for _ in range(1200):

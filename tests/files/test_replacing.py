@@ -94,6 +94,7 @@ def test_foreign_files_are_kept_until_it_is_asked_for_and_own_ones_replaced(
     assert [one.name for one in tmp_path.iterdir()] == [name]
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled(3)
 @pytest.mark.thinned(6)
 @pytest.mark.parametrize("name", WRITERS)

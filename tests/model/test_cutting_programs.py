@@ -59,6 +59,7 @@ def test_a_drilled_hole(tmp_path: Path) -> None:
     assert forces.stretches.of_move(move) == [[pytest.approx(0.1, abs=1e-6), 1.0]]
 
 
+@pytest.mark.thorough
 def test_a_face_mill_that_comes_down_in_air(tmp_path: Path) -> None:
     """Ø 40 with 5 teeth, 600 mm/min at 800/min: 0.15 mm a tooth, 2 mm deep and as wide as the tool.
 
@@ -83,6 +84,7 @@ def test_a_face_mill_that_comes_down_in_air(tmp_path: Path) -> None:
     assert need is not None and need.jaw.line == 6
 
 
+@pytest.mark.thorough
 def test_a_slot(tmp_path: Path) -> None:
     """Ø 10 with 4 teeth in aluminium, 4 mm deep: two teeth cut at once, at 45 degrees each.
 

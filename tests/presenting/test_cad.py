@@ -105,7 +105,7 @@ def test_a_direction_along_no_axis_is_refused(up: Any, words: str) -> None:
         workhold.from_build123d(None, up=up)
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize(("up", "vise"), [("z", VISE), ((0, -1, 0), VISE), ("-x", FINE), ("-z", FINE)])
 def test_bodies_stand_about_the_part_where_it_lies(up: Any, vise: workhold.Vise, cadquery: None) -> None:
     """Each peg touches the part's own solid and enters nothing, and the plates lie under it."""

@@ -149,6 +149,7 @@ def test_a_fixture_shows_its_figures_with_units() -> None:
     assert b"Fixture 1 of" in page.pictures[0]
 
 
+@pytest.mark.thorough
 def test_where_no_edge_is_none_is_said() -> None:
     """The figure then stands for no edge, and is a length that nobody can measure on the part."""
     for loop, words in ((STADIUM, "none"), (RECTANGLE[0], None)):

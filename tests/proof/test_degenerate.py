@@ -274,6 +274,7 @@ def test_nothing_about_a_symmetric_part_is_undecided(part: Workpiece, toolkit: T
     assert verify(result).proven == len(result) > 0
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "toolkit", [Plate(pitch=20, peg_radius=3, clamp_radius=5), Vise(pitch=20, columns=3, peg_radius=3)]
 )

@@ -128,6 +128,7 @@ def in_part(result: Result, mirrored: bool = False) -> set[tuple[Any, ...]]:
     return seen
 
 
+@pytest.mark.thorough
 def test_moving_and_turning_the_part_and_mirroring_it() -> None:
     """Poses change only; the mirror image has the mirrored set, with the other of the two usual pairs of directions."""
     plate = Plate(20, 3, clamps=2, columns=4, rows=4)
@@ -148,6 +149,7 @@ def test_moving_and_turning_the_part_and_mirroring_it() -> None:
     assert in_part(swapped, mirrored=True) == in_part(one)
 
 
+@pytest.mark.thorough
 def test_a_quarter_turn_swaps_pitch_limits_and_the_usual_pairs() -> None:
     """["-x", "-y"] on one pitch is ["-x", "+y"] on the other, with columns and rows swapped."""
     upright = Plate((14, 20), 3, columns=5, rows=4, clamps=2, directions=[("-x", "-y")], travel=(3, 40))

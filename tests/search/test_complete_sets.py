@@ -46,7 +46,7 @@ def test_complete_set_is_reproduced(name: str) -> None:
                 assert near or marginal, (key, theta)
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", SETS)
 def test_no_listed_contact_is_at_an_end(name: str) -> None:
     """A peg wedged in a corner or standing on one is not listed: only its own face holds it (these sets have no tangent

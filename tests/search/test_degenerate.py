@@ -190,6 +190,7 @@ def test_slots_on_the_lattice_of_the_vise() -> None:
         assert_same(ours, theirs, Judge(part, vise))
 
 
+@pytest.mark.thorough
 def test_a_drawing_turned_and_saved_is_decided() -> None:
     """A part with a slot, turned by an odd angle and saved with a dozen digits: its parallel lines are so to 1e-13 only.
     Three pegs on such lines leave the fourth no share, wherever along them the exact contact may be."""

@@ -166,7 +166,7 @@ def test_bad_options(free: Result, options: dict[str, object], words: str) -> No
         design(free.workpiece, free.toolkit, **options)
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ["small4Handle", "thin4Handle", "widget"])
 def test_distinct_counts_by_brute_force(name: str) -> None:
     """The number of sets under the part's rotations equals a count by carrying every fixture around by hand.

@@ -295,6 +295,7 @@ def test_zones_and_faces_to_avoid_are_both_named_where_they_leave_nothing() -> N
     assert isinstance(answer(Query(PLAIN_PLATE, WIDE, restrictions=Restrictions(zones=(side,)))), Result)
 
 
+@pytest.mark.thorough
 def test_a_round_part_is_blamed_for_being_round() -> None:
     """Contacts of it are not counted, as nothing keeps it from turning; where holes are too far apart, these are."""
     disc = Workpiece.from_loops("disc", [[[-40, 0, 1], [40, 0, 1]]])

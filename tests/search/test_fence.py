@@ -62,6 +62,7 @@ def faceless(fixtures: set[tuple[Any, ...]]) -> set[tuple[Any, ...]]:
     return {(way, *rest) for way, _, _, *rest in fixtures}
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("path", COMPLETE, ids=lambda path: path.stem)
 def test_complete_set_is_reproduced(path: Path, tmp_path: Path) -> None:
     """Every fixture of the set and no other, each by itself beyond reproach; and nothing undecided."""
@@ -285,6 +286,7 @@ def test_those_equally_good_stand_in_the_order_of_directions() -> None:
     assert (steps >= 0).all() and (steps > 0).any()
 
 
+@pytest.mark.thorough
 def test_listing_a_few_at_a_time_lists_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     """After every hull edge, of all directions, also of a part that looks alike from three sides, and the best of them."""
     corners = [
@@ -356,6 +358,7 @@ def test_contacts_at_tangent_joints_are_listed_once(tmp_path: Path) -> None:
     assert result.proof is not None and not result.proof.undecided
 
 
+@pytest.mark.thorough
 def test_where_a_row_grazes_an_arc_balls_tell_the_contact() -> None:
     """A locator at the very top of an arc, pressed by next to nothing: its place and forces are finite, and not refuted."""
     result = design(workhold.load("flange"), Fence(2, 1, wall_offset=5, directions=("-y",)), best=2000)

@@ -107,6 +107,7 @@ def test_turning_and_moving_the_part_changes_poses_only() -> None:
     assert seen(one) == seen(other) and len(one) > 50
 
 
+@pytest.mark.thorough
 def test_larger_plates_and_more_directions_hold_all_that_smaller_ones_hold() -> None:
     small = Fence((16, 12), 3, wall_offset=6, clamps=2, columns=3, rows=4)
     base = set(seen(design(part(NOTCHED), small, listing="all")))
@@ -117,6 +118,7 @@ def test_larger_plates_and_more_directions_hold_all_that_smaller_ones_hold() -> 
         assert {(way, tuple(peg[0:1] + peg[3:] for peg in pegs)) for way, pegs in base} <= held
 
 
+@pytest.mark.thorough
 def test_no_clamp_of_a_pair_holds_alone_and_the_best_are_the_best_of_all() -> None:
     fields = {"wall_offset": 6, "columns": 4, "rows": 5, "directions": ALL}
     single = design(part(NOTCHED), Fence((16, 12), 3, **fields))

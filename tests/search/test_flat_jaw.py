@@ -46,7 +46,7 @@ def seen(result: Result, mirrored: bool = False) -> set[Identity]:
     return found
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize("path", TRUTHS, ids=lambda path: path.stem)
 def test_complete_set_is_reproduced(path: Path, tmp_path: Path) -> None:
     """None missing, none extra, as the independent checker says, and each proven by the verification."""
@@ -163,6 +163,7 @@ def test_a_slow_search_of_sampled_curves_finds_the_same(loop: list[tuple[float, 
     assert_alike(slow_search(workpiece, vise, 6), places(workhold.design(workpiece, vise)))
 
 
+@pytest.mark.thorough
 def test_a_lower_jaw_meets_its_own_outline() -> None:
     """The part lies flush with one outline, and pegs touch another, as the slow search says."""
     vise = FlatJaw(pitch=(13, 11), peg_radius=2.5, wall_heights=(0, 4), jaw_heights=(10, 18))

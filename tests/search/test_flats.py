@@ -96,6 +96,7 @@ def tip_is_off(fixture: Fixture, apart: float) -> bool:
     return not apart or all(np.hypot(peg.x - tip.x, peg.y - tip.y) >= apart for peg in locators)
 
 
+@pytest.mark.thorough
 def test_a_flat_at_the_radius_is_none() -> None:
     """Nothing but the angles differs from round pegs."""
     round_one, flat = (design(part(NOTCHED), Vise(9, 2, 3, flat=flat)) for flat in (None, 3))

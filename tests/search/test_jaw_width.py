@@ -312,6 +312,7 @@ def test_verify_refutes_what_the_jaw_does_not_reach_and_other_columns(tmp_path: 
     assert "its jaw contact is missing" in said(missing)
 
 
+@pytest.mark.thorough
 def test_loads_are_borne_at_the_ends_that_the_jaw_reaches(tmp_path: Path) -> None:
     """The same push on a narrow jaw may need far more force than on an endless one, and verify says so as well."""
     load = Load(points=[(30.0, 38.0)], force=100.0)

@@ -35,6 +35,7 @@ def plate_of(truth: dict[str, Any]) -> Plate:
     return Plate(**fields)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("path", COMPLETE, ids=lambda path: path.stem)
 def test_complete_set_is_reproduced(path: Path, tmp_path: Path) -> None:
     """Every fixture of the set and no other, each by itself beyond reproach; and nothing undecided."""
@@ -145,6 +146,7 @@ def test_larger_plates_and_longer_strokes_hold_all_that_smaller_ones_hold() -> N
     assert few < every
 
 
+@pytest.mark.thorough
 def test_a_rectilinear_part_is_touched_from_all_four_sides_and_a_plain_rectangle_never_square() -> None:
     """Each fixture touches one face of each of the four directions."""
     ell = [(0, 0, 0), (60, 0, 0), (60, 24, 0), (26, 24, 0), (26, 58, 0), (0, 58, 0)]

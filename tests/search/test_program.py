@@ -187,7 +187,7 @@ def test_a_rapid_move_in_a_box_counts_as_all_that_is_in_it(kind: str) -> None:
     assert kind not in ("vise", "plate") or box < straight
 
 
-@pytest.mark.thinned(4)
+@pytest.mark.thorough
 @pytest.mark.parametrize("seed", range(4))
 def test_no_contact_is_on_a_face_that_is_cut_away(seed: int) -> None:
     """A cut within the tool's radius of a face leaves no contact there, nor within the clearance of its ends."""

@@ -254,6 +254,7 @@ def test_what_needs_seating_is_refused_without_it() -> None:
         workhold.design(WEDGE, VISE, seating=2, rank_by="bliss")
 
 
+@pytest.mark.thorough
 def test_with_two_clamps_fixtures_stay_in_order_and_a_note_says_that_the_part_is_put_in_by_hand(
     tmp_path: Path,
 ) -> None:

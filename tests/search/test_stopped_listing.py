@@ -82,6 +82,7 @@ def test_the_best_are_listed_and_all_are_counted(answer: Callable[..., Result], 
     assert (outcome.proven, outcome.faults) == (MOST, ())
 
 
+@pytest.mark.thorough
 def test_what_is_listed_before_somebody_asks_to_stop_stays(tmp_path: Path) -> None:
     """In a file it is written by then; what follows is not."""
     result, whole = (
@@ -116,6 +117,7 @@ def test_what_is_not_measured_soon_is_left(tmp_path: Path, monkeypatch: pytest.M
     assert (outcome.proven, outcome.faults) == (len(result), ())
 
 
+@pytest.mark.thorough
 def test_of_several_ways_the_best_of_all_are_listed(tmp_path: Path) -> None:
     """Stopped in the last of the ways, which lists no more than the best of its own."""
     whole, result = (
@@ -167,6 +169,7 @@ def test_a_server_that_keeps_fewer_says_that_alone() -> None:
     assert verify(job.result).holds
 
 
+@pytest.mark.thorough
 def test_stopped_while_the_file_is_written_the_best_are(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -94,6 +94,7 @@ def test_below_the_friction_told_no_locator_can_be_spared(result: Result) -> Non
         assert sticks == [False, True]
 
 
+@pytest.mark.thorough
 def test_what_a_clamp_alone_does_not_press_is_told(result: Result) -> None:
     """In balance of that clamp alone those locators have no force, or would have to pull; of a clamp that may be first none
     pulls, and at the working ratio none is without force."""

@@ -73,6 +73,7 @@ def test_what_is_put_nearer_than_placing_comes_home():
     assert free >= 3
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("turned_over", [False, True])
 def test_each_seat_is_where_closing_from_just_above_it_ends(turned_over):
     """Every strict seat of both sides, told by its own name."""

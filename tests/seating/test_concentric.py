@@ -68,6 +68,7 @@ def found():
     return out
 
 
+@pytest.mark.thorough
 def test_three_pegs_touch_and_the_separation_is_stationary(found):
     """Its second derivative is what is written, by differences of what three contacts leave free."""
     kinds = Counter()

@@ -84,6 +84,7 @@ def test_nothing_depends_on_what_was_solved_before():
     )
 
 
+@pytest.mark.thorough
 def test_what_is_forgotten_is_found_again(monkeypatch):
     """With room for three groups, which one pattern has more of, and the cells of one or two jaws, the same; and no more are
     kept than those of a pattern."""
@@ -159,6 +160,7 @@ def slides_on(row: np.ndarray, pattern: Pattern, boundary: Any) -> int:
     return 0
 
 
+@pytest.mark.thorough
 def test_parts_that_slide_are_stopped_and_clamped():
     """Two pegs of a jaw on parallel faces: clamped by one of the other on an arc, by two, or stopped by a third of their
     own; and in each all that touches does."""
@@ -193,6 +195,7 @@ def test_slides_end_where_a_third_peg_of_the_jaw_touches():
         ).min() < 1e-6
 
 
+@pytest.mark.thorough
 def test_all_kinds_of_groups_have_their_part():
     """Two, three and four pegs touch in what is found, a peg in a corner among them, none at less than the stop."""
     pegs, pockets, loose = set(), 0, 0

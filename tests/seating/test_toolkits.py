@@ -96,7 +96,7 @@ def test_all_fixtures_of_a_pattern_are_among_its_seats(name):
         assert len(there) == len(fixtures) + len(by_pattern.get(turned, ()))
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", KITS)
 def test_every_seat_lies_free_where_its_pose_says(name):
     """Told from the outline, in the toolkit's own frame and with each peg's own radius: what touches does, and forces
@@ -161,7 +161,7 @@ def test_hundreds_of_walks_come_home(name, rank):
         assert all(comes_home(name, rank, seed, 0.99, 300) for seed in range(50))
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", KITS)
 def test_the_cage_is_told_in_the_frame_of_the_toolkit(name):
     """Closing from its corners of y and of the turn shows which is which: the pass lies in it, as does the pose."""
@@ -213,6 +213,7 @@ def quarter_turned(fixture: Fixture, names: dict[str, str], quarters: int) -> Fi
     return Fixture("clamp", pegs, pose, fixture.jaw_separation, {})
 
 
+@pytest.mark.thinned(1)
 @pytest.mark.parametrize(("direction", "quarters"), [("-y", 1), ("+x", 2), ("+y", 3)])
 def test_a_plate_turned_says_the_same(direction, quarters):
     result, _ = listed("left")

@@ -116,6 +116,7 @@ def test_compiled_and_array_forms_agree():
         assert np.allclose(solved(p, n, 30.0)[1], array_form[k], rtol=1e-9)
 
 
+@pytest.mark.thorough
 def test_positive_exactly_when_no_plane_has_all_wrenches_on_one_side():
     """All lambda_i > 0 iff the wrenches positively span R^3 (Mishra, Schwartz & Sharir 1987)."""
     random = Random(3)

@@ -42,6 +42,7 @@ def test_angles_as_written() -> None:
     assert angle_classes(np.radians(degrees)).tolist() == [0, 0, 0, 2, 1, 1, 1, 2, 2, 2]
 
 
+@pytest.mark.thorough
 def test_near_the_end_of_a_straight_face_is_nearer_than_the_pegs_radius() -> None:
     """Two locators under the block, the first 3 mm from its corner: at the radius it is not nearer."""
     query = Query(block(), Plate(pitch=20, peg_radius=3, clamps=2))
@@ -77,7 +78,7 @@ def test_clamps_and_dowels_inside_holes_count_unless_asked_for() -> None:
     assert not EffectiveErrors.of(opening).unasked.any()
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("columns", "rows", "hangs"),
     [(None, None, False), (5, 5, False), (4, 5, True), (None, 3, False), (None, 2, True)],

@@ -49,7 +49,7 @@ def test_the_sheet_warns_as_often_as_the_table_counts(result: Result) -> None:
         assert len([kind for kind in kinds if kind not in ("unfit", "pose")]) == count
 
 
-@pytest.mark.thinned(5)
+@pytest.mark.thorough
 def test_the_jaw_force_needed_is_that_of_the_load_cases(result: Result) -> None:
     """The largest over the loads."""
     loads = [Load(((5.0, 5.0),), 100.0, (20.0, 70.0)), Load((), 0.0, moment=-500.0)]

@@ -48,7 +48,7 @@ def least_jaw_force(wrenches: Array, shares: Array, wrench: Array) -> float:
 class TestHeld:
     """Properties of each part's fixtures."""
 
-    @pytest.mark.thinned(4)
+    @pytest.mark.thorough
     def test_forces_balance_the_load_and_the_jaw(self, result: Result) -> None:
         """Under one load in one direction: sums of forces and moments are 0, and the right jaw feels the jaw force."""
         random = np.random.default_rng(1)

@@ -64,7 +64,7 @@ def as_loads(program: Program, step: float = 0.05) -> tuple[Load, ...]:
     return tuple(out)
 
 
-@pytest.mark.thinned(9)
+@pytest.mark.thorough
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_program_asks_what_its_loads_do(kind: str) -> None:
     result = result_of(kind)

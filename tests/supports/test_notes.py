@@ -63,6 +63,7 @@ def test_nothing_is_said_of_what_is_not_there(found: Supports) -> None:
     assert "at its top," in note and note.endswith("off the rest with b.")
 
 
+@pytest.mark.thorough
 def test_no_pad_stands_under_a_part_that_lies_on_no_face() -> None:
     """A level face on top and none below: no support, whoever asks and whatever else is kept out, and why."""
     part = stepped({})

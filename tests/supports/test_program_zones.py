@@ -225,6 +225,7 @@ def test_boxes_of_rapid_moves_count_inside(number: int) -> None:
     assert (above[(slack > 0.03) & (face >= 0.0)] >= -1e-9).all()
 
 
+@pytest.mark.thorough
 def test_supports_of_a_fixture_with_a_program_keep_off_what_it_sweeps() -> None:
     """Pads and tip of every set listed are clear of a walk; without the program there are more sets."""
     holes = ((12.0, 12.0), (48.0, 28.0))
@@ -263,6 +264,7 @@ def test_zones_some_at_a_time_are_what_they_are_together() -> None:
     assert 100 < places.allows(points).sum() < 3000
 
 
+@pytest.mark.thorough
 def test_free_pieces_hold_all_places_on_borders() -> None:
     """Also where a piece goes on over the angle at which counting begins, and all of a circle without corners."""
     _, places = crowded()

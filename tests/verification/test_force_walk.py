@@ -99,7 +99,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     return data
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thorough
 @pytest.mark.parametrize(("change", "reason"), CHANGES)
 def test_what_is_not_that_of_the_walk_is_refuted(
     change: Callable[[dict[str, Any]], Any], reason: str, written: dict[str, Any], tmp_path: Path

@@ -175,7 +175,7 @@ NUMBERS: list[tuple[Edit, str]] = [
 ]
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("edit", "words"), NUMBERS, ids=[f"{n} {words}" for n, (_, words) in enumerate(NUMBERS)]
 )

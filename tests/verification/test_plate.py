@@ -204,7 +204,7 @@ TOOLKITS: list[tuple[Data, str]] = [
 ]
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize(("fields", "words"), TOOLKITS, ids=[str(fields) for fields, _ in TOOLKITS])
 def test_another_plate(edited: Any, fields: Data, words: str) -> None:
     """What is listed does not stand on it, and the sentence says why."""

@@ -170,6 +170,7 @@ def test_words_and_whole_parts_that_are_off_are_refuted(listing: Listing, judge:
         assert words in fault(listing, judge, change), words
 
 
+@pytest.mark.thorough
 def test_a_fixture_on_the_same_pegs_must_be_among_the_seats(tmp_path: Path) -> None:
     """A seat left out with all counts adjusted is seen where the list has that fixture."""
     result = workhold.design(WEDGE, VISE, types="I", seating=3)
@@ -246,6 +247,7 @@ def test_what_stands_on_the_same_pegs_is_told_of_every_toolkit(part: Workpiece, 
     assert all("stands on the pegs of fixture 1" in words for found in missing for words in found)
 
 
+@pytest.mark.thorough
 def test_the_order_is_that_of_the_seating(listing: Listing) -> None:
     """Two fixtures with different warnings exchanged, and one told only behind others."""
     fixtures = list(listing.fixtures)
@@ -288,6 +290,7 @@ def test_the_first_other_key_is_told() -> None:
     assert first_other(one | {"e": "other"}, one) == "e"
 
 
+@pytest.mark.thorough
 def test_rules_and_counts_of_the_first_must_agree(result: Result, tmp_path: Path) -> None:
     """Of a file whose rules none of its fixtures keeps, or that tells of fewer than were asked."""
     path = tmp_path / "r.json"

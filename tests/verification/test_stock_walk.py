@@ -103,6 +103,7 @@ def test_a_file_that_says_otherwise_is_refused(
     assert any(said in one for one in outcome.faults) and not outcome.holds
 
 
+@pytest.mark.thorough
 def test_a_file_without_a_stock_is_read_as_it_stands(tmp_path: Path) -> None:
     path = tmp_path / "a.json"
     query = asked(1)

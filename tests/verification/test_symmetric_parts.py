@@ -119,6 +119,7 @@ def test_rotations_are_those_that_the_part_was_made_with(name: str) -> None:
         assert complex(*point) == pytest.approx(case.kept, abs=1e-9)
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(
     ("off", "order", "is_certain"), [(1e-7, 2, True), (1.5e-6, 2, False), (2e-5, 1, True)]
 )

@@ -69,7 +69,7 @@ def test_there_are_ten_of_each_kind_and_one_of_each_is_tried() -> None:
     assert len({drawing.name for _, drawing in CASES}) == len(CASES)
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thorough
 @pytest.mark.parametrize("drawing", cases())
 def test_the_page_asks_and_leads_to_a_sheet(server: RunningServer, drawing: Drawing) -> None:
     """Every refusal comes with a question that the survey gives the answers for; none is a dead end."""

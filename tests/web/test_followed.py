@@ -77,6 +77,7 @@ def test_a_job_that_waits_and_is_left_never_begins(impatient: RunningServer) -> 
     impatient.client.delete(first)
 
 
+@pytest.mark.thorough
 def test_a_job_that_is_followed_or_asked_for_goes_on(impatient: RunningServer) -> None:
     """For longer than it would be kept; it stops once the connection is gone."""
     url = impatient.submit(LONG, "/api/v1/jobs?when_left=cancel")

@@ -80,7 +80,7 @@ def asked(server: RunningServer, name: str, example: ApiExample, names: dict[str
     )
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", [name for name in EXAMPLES if not name.startswith("DELETE")])
 def test_examples_are_answered_as_they_say(server: RunningServer, names: dict[str, str], name: str) -> None:
     example = EXAMPLES[name]
@@ -185,6 +185,7 @@ def test_answers_have_the_shapes_that_are_described(server: RunningServer, names
     assert ErrorAnswer.model_validate(server.client.get("/api/v1/none").json()).place is None
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("name", OPERATIONS)
 def test_the_newest_version_is_at_the_address_without_one(server: RunningServer, name: str) -> None:
     """The same is answered there, to a request that asks for what is not there or sends nothing."""

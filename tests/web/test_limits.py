@@ -212,6 +212,7 @@ def test_nothing_is_kept_after_the_life_of_a_search(small: RunningServer) -> Non
         assert small.client.get(url).status_code == status
 
 
+@pytest.mark.thorough
 def test_the_server_looks_for_what_to_forget_by_itself() -> None:
     with running_server(life_seconds=0.2) as running:
         running.submit(request())

@@ -122,6 +122,7 @@ def test_what_cannot_be_read_is_refused_in_the_words_of_the_page(
         assert sentence.lower() in words.lower() and "/tmp" not in words and "--" not in words
 
 
+@pytest.mark.thorough
 def test_the_description_names_the_form(server: RunningServer) -> None:
     """OpenAPI has the address, the form with its parts, and the same form in a search."""
     told = server.client.get("/api/openapi.json").json()

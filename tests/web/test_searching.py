@@ -62,6 +62,7 @@ def marks(result: Result) -> list[Any]:
     return [mark_of(result.table, k) for k in range(len(result))]
 
 
+@pytest.mark.thorough
 def test_the_best_of_all_come_first(
     query: Query, whole: Result, asked: list[int | None], previews: list[bool]
 ) -> None:

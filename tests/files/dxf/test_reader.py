@@ -308,6 +308,7 @@ def test_truncated_files_are_refused(tmp_path: Path) -> None:
             load(tmp_path / "cut.dxf")
 
 
+@pytest.mark.thorough
 def test_damaged_files_give_one_sentence(tmp_path: Path) -> None:
     """Random bytes replaced in a DXF file never lead to anything but a part or an input error."""
     import random

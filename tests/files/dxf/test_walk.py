@@ -145,6 +145,7 @@ def test_an_array_of_holes(tmp_path: Path) -> None:
     assert centers == {(5.0 - 10 * row, 5.0 + 15 * column) for row in range(2) for column in range(3)}
 
 
+@pytest.mark.thorough
 def test_unequal_scales_turn_arcs_into_ellipses(tmp_path: Path) -> None:
     """Lines stay lines under any affine map; arcs become ellipses, which need a fit."""
     document, space = new_dxf()

@@ -242,6 +242,7 @@ DAMAGED: list[tuple[Damage, str]] = [
 ]
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(("damage", "message"), DAMAGED)
 def test_a_damaged_file_is_refused_with_its_place(
     tmp_path: Path, document: dict[str, Any], damage: Damage, message: str

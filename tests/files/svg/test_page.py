@@ -37,7 +37,7 @@ def ink(svg: str) -> np.ndarray:
     return np.asarray(Image.open(io.BytesIO(bytes(png))))[:, :, 3] >= 128
 
 
-@pytest.mark.thinned(5)
+@pytest.mark.thorough
 @pytest.mark.parametrize("size", [(200, 70), (100, 150)], ids=["wide", "high"])
 @pytest.mark.parametrize("aspect", ASPECTS)
 def test_a_drawing_lies_on_its_page_as_renderers_show_it(size: tuple[int, int], aspect: str) -> None:

@@ -75,7 +75,7 @@ def theirs(sheet: str, root: ElementTree.Element) -> dict[str, list[tuple[int, .
     }
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thorough
 @pytest.mark.parametrize("seed", range(40))
 def test_selectors_select_what_they_say(seed: int) -> None:
     """Random selectors of random trees, by both ways of matching."""
@@ -99,6 +99,7 @@ def test_ways_through_ancestors_and_siblings_are_not_tried_one_by_one() -> None:
     assert found["r0"] == found["r2999"] == [(0, 0, 32, 1)]
 
 
+@pytest.mark.thorough
 def test_thousands_of_combinators_are_as_good_as_one() -> None:
     """No recursion is as deep as a selector is long."""
     root = ElementTree.Element("g")

@@ -104,6 +104,7 @@ def test_only_what_python_calls_becomes_machine_code(lean):
         assert f"@{name}(" not in whole.get_llvm_str(), "put in place of its call"
 
 
+@pytest.mark.thorough
 def test_arrays_that_a_kernel_makes_are_given_back():
     """Kernels that count references are lowered with what ends their variables."""
 

@@ -232,7 +232,7 @@ def coincident(random: Random, off: float) -> tuple[np.ndarray, np.ndarray, floa
     return arc, line, d, pi / 2
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thorough
 @pytest.mark.parametrize("mode", [HEIGHT, POSITION])
 @pytest.mark.parametrize("off", [0.0, 1e-15, 1e-13, 5e-12, 1e-10])
 def test_errors_hold_through_a_coincidence(mode, off):
@@ -287,7 +287,7 @@ def test_errors_hold_for_arcs_that_nearly_touch():
     assert checked > 300 and needed > 30
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thorough
 @pytest.mark.parametrize("off", [0.0, 1e-13, 5e-12])
 def test_tails_hold_through_a_coincidence(off):
     """The exact tail within ``reach`` of an orientation is within the radius told: of the part in which lengths agree near

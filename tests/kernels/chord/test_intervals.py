@@ -39,6 +39,7 @@ def counts(a, b, d, alphas, slack):
     return np.array(out)
 
 
+@pytest.mark.thorough
 @pytest.mark.sampled(3)
 @pytest.mark.thinned(9)
 @pytest.mark.parametrize("kinds", PAIRS)

@@ -112,6 +112,7 @@ def test_slopes_stay_in_the_enclosure_of_a_piece(mode):
             assert (slopes >= whole[0] - slack).all() and (slopes <= whole[1] + slack).all()
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("mode", [HEIGHT, POSITION])
 def test_values_at_the_ends_of_pieces_are_the_curves(mode):
     """VALUE and SLOPE are limits of the curve; only at a tangency is the slope infinite, and of the right sign."""

@@ -389,6 +389,7 @@ def test_planted_double_roots_are_told(rest):
     assert (np.abs(roots[:, ROOT_PSI] - pi / 4) <= away + 1e-6).all()
 
 
+@pytest.mark.thorough
 def test_a_root_s_radius_holds_wherever_newtons_method_stops():
     """Told at the first guess, without a single Newton step, a root is as far from the exact one as its value is from the
     target over the slope between them, which may be the least slope of the range: the radius allows for that. Some come

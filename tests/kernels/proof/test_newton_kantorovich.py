@@ -116,6 +116,7 @@ def start_at(contacts: Planted, shift: list[float]) -> list[float]:
     ]
 
 
+@pytest.mark.thorough
 @given(seeds, st.floats(0.0, 6.0).map(lambda exponent: 10.0**-exponent))
 def test_the_exact_solution_is_within_the_radius(seed: int, tilt: float) -> None:
     """Where there is a certificate, Newton's method at 200 bits ends within the radius told; near singular ones too."""
@@ -150,6 +151,7 @@ def test_no_other_solution_is_within_the_distance_told(seed: int, tilt: float) -
             assert off <= radius or off > unique
 
 
+@pytest.mark.thorough
 @given(seeds)
 def test_a_start_moved_off_the_solution_has_a_radius_that_reaches_it(seed: int) -> None:
     """The radius follows from the values of the equations: contacts moved aside by some micrometres reach back, which

@@ -339,6 +339,7 @@ CONSTANTS = [
 ]
 
 
+@pytest.mark.thorough
 def test_the_rounding_of_a_jacobian_is_allowed_for() -> None:
     """What a certificate adds to I - A J holds the roundings of a row, and is no more than twenty times as much."""
     random = Random(9)
