@@ -56,7 +56,6 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return made
 
 
-@pytest.mark.sampled(3)
 @pytest.mark.thorough
 @pytest.mark.parametrize("first", ORDERS)
 def test_every_method_works_whatever_was_imported_first(first: str, folder: Path) -> None:

@@ -26,7 +26,6 @@ def shown(notebook: dict[str, Any]) -> list[str]:
     return texts
 
 
-@pytest.mark.sampled(3)
 @pytest.mark.thorough
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.ipynb")), ids=lambda path: path.name)
 def test_the_notebook_shows_what_is_stored_in_it(path: Path) -> None:

@@ -37,7 +37,6 @@ STARTS = 1500
 OF_LAST_DIGITS = [f"the checksum of the {what} is not that of the manifest" for what in ("fixtures", "file")]
 
 
-@pytest.mark.sampled(4)
 @pytest.mark.thorough
 @pytest.mark.parametrize("name", TRUE)
 def test_a_true_file_holds(
@@ -53,7 +52,6 @@ def test_a_true_file_holds(
     assert [one for one in said if one not in OF_LAST_DIGITS] == []
 
 
-@pytest.mark.sampled(7)
 @pytest.mark.thorough
 @pytest.mark.parametrize("forgery", FORGERIES)
 def test_a_forged_file_is_refused_without_the_manifest(
@@ -70,7 +68,6 @@ def test_a_forged_file_is_refused_without_the_manifest(
     assert any(word in fault for fault in faults), faults
 
 
-@pytest.mark.sampled(3)
 @pytest.mark.thorough
 @pytest.mark.parametrize("forgery", [*FORGERIES, *MANIFEST_ONLY])
 def test_the_checksums_refuse_every_forgery(forgery: str, checker: ModuleType, content: Content) -> None:

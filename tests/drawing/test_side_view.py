@@ -96,7 +96,6 @@ def test_view_is_true_to_the_scale_that_is_written(name: str) -> None:
     assert sorted(boxes(page, "band")) == [pytest.approx(one, abs=2e-3) for one in sorted(expected)]
 
 
-@pytest.mark.sampled(3)
 @pytest.mark.thorough
 @pytest.mark.parametrize("name", NAMES)
 def test_pegs_stand_from_the_plate_to_their_height(name: str) -> None:

@@ -273,7 +273,6 @@ def above(force: float) -> str:
 
 
 @pytest.mark.thorough
-@pytest.mark.sampled(4)
 @pytest.mark.thinned(8)
 @EVERY
 def test_a_sheet_tells_pose_calipers_and_figures(held: Held) -> None:

@@ -48,7 +48,6 @@ def on_page(svg: str) -> bool:
     return all(page_of(svg).contains(box) for _, box in words_of(svg))
 
 
-@pytest.mark.sampled(3)
 @pytest.mark.thorough
 @pytest.mark.parametrize(
     ("name", "place", "unit"),

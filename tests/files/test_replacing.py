@@ -73,7 +73,6 @@ WRITERS: dict[str, Callable[[Result, Any], Write]] = {
 }
 
 
-@pytest.mark.sampled(3)
 @pytest.mark.thorough
 @pytest.mark.parametrize("name", WRITERS)
 def test_foreign_files_are_kept_until_it_is_asked_for_and_own_ones_replaced(
@@ -95,7 +94,6 @@ def test_foreign_files_are_kept_until_it_is_asked_for_and_own_ones_replaced(
 
 
 @pytest.mark.thorough
-@pytest.mark.sampled(3)
 @pytest.mark.thinned(6)
 @pytest.mark.parametrize("name", WRITERS)
 def test_where_nothing_can_be_written_a_sentence_says_so(

@@ -51,7 +51,7 @@ def page(folder: Path) -> Page:
     return page_of(folder / "report.html")
 
 
-@pytest.mark.prove
+@pytest.mark.thorough
 def test_every_number_of_the_page_is_that_of_its_data_file(folder: Path, page: Page) -> None:
     """The text, read as a number in its unit, is the value at its key to half a unit of the last digit."""
     assert len(page.numbers) > 200

@@ -88,7 +88,6 @@ def limited(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     return tried
 
 
-@pytest.mark.sampled(9)
 @pytest.mark.thorough
 @pytest.mark.parametrize("kit", ["plate", "two clamps"])
 @pytest.mark.parametrize("part", PARTS)
@@ -103,7 +102,6 @@ def test_the_best_are_the_first_of_all(part: str, kit: str, limited: list[float]
     assert bool(limited) == bool(len(everything))
 
 
-@pytest.mark.prove
 @pytest.mark.thorough
 def test_what_limits_save_is_told(limited: list[float]) -> None:
     """How many boxes were looked at and ruled out, and far fewer contacts than a whole search examines."""
@@ -131,7 +129,6 @@ def found_errors(search: ToolkitSearch, **asked: Any) -> tuple[np.ndarray[Any, A
     return keys.error / PER_MM, keys.is_fine
 
 
-@pytest.mark.sampled(4)
 @pytest.mark.thinned(9)
 @pytest.mark.parametrize("times", [1.02, 1.2, 1.6])
 @pytest.mark.parametrize("kit", ["plate", "vise", "opening"])

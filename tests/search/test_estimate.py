@@ -31,7 +31,6 @@ def unasked(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(estimate, "CONTACTS_DECIDED", 400)
 
 
-@pytest.mark.sampled(8)
 @pytest.mark.thorough
 @pytest.mark.usefixtures("unasked")
 @pytest.mark.parametrize("kit", KITS)

@@ -139,7 +139,6 @@ def test_a_prism_gives_the_same_list_whatever_the_heights(name: str) -> None:
         assert len(found) == len(usual) + more
 
 
-@pytest.mark.prove
 @pytest.mark.thorough
 @pytest.mark.sampled(5)
 @pytest.mark.parametrize(
@@ -220,7 +219,6 @@ def lattice_pairs(vise: Vise, part: Any) -> Iterable[tuple[tuple[int, int], Any,
     return product(steps, faces, faces, (0, 1))
 
 
-@pytest.mark.prove
 @pytest.mark.thorough
 def test_two_left_pegs_and_two_right_ones_are_found_by_a_slow_search() -> None:
     """Chords of the left pegs' outline and of the right pegs', whose rows differ by whole pitches.

@@ -93,7 +93,6 @@ def differences(seed: int, kind: str) -> tuple[list[str], int, int]:
     return wrong, len(some), len(full)
 
 
-@pytest.mark.sampled(3)
 @pytest.mark.thorough
 @pytest.mark.parametrize("kind", KINDS)
 def test_what_is_listed_is_what_a_slow_walk_leaves(kind: str) -> None:

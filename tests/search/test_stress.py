@@ -228,7 +228,6 @@ SHAPES_AND_HAIRS = [
 ]
 
 
-@pytest.mark.sampled(3)
 @pytest.mark.parametrize(("family", "play"), SHAPES_AND_HAIRS)
 def test_a_concave_arc_a_hair_larger_or_smaller_than_a_peg(family: Family, play: float) -> None:
     """A concave arc larger than a peg keeps a feature, however small, and one smaller has none; what does not touch it or

@@ -57,7 +57,6 @@ def assert_first(query: Query, kept: Sequence[int]) -> int:
     return len(whole)
 
 
-@pytest.mark.sampled(15)
 @pytest.mark.thorough
 @pytest.mark.parametrize("kind", TOOLKITS)
 @pytest.mark.parametrize("number", [0, pytest.param(3, marks=pytest.mark.prove), 5])
@@ -66,7 +65,6 @@ def test_the_best_are_the_first_of_all(kind: str, number: int) -> None:
     assert_first(Query(cad_part(number), TOOLKITS[kind]), (1, 2, 7, 20))
 
 
-@pytest.mark.sampled(3)
 @pytest.mark.thorough
 @pytest.mark.parametrize(
     "seed", [1, 2, 3, 4, *(pytest.param(seed, marks=pytest.mark.prove) for seed in range(5, 120))]

@@ -53,7 +53,6 @@ class TestHeld:
             hull = ConvexHull(np.column_stack([normals, moments]))
             assert found == pytest.approx(-hull.equations[:, 3].max(), rel=1e-6, abs=1e-12)
 
-    @pytest.mark.sampled(5)
     @pytest.mark.thorough
     def test_a_peg_can_walk_the_end_distance_and_no_farther(self, result: Result) -> None:
         """Along its face, either way, a peg stays clear of the rest of the part for that long; one of the four no longer."""
@@ -85,7 +84,6 @@ class TestHeld:
             worst = np.linalg.norm(np.tensordot(corners, generators, axes=1), axis=2).max()
             assert found == pytest.approx(worst, rel=2e-4)
 
-    @pytest.mark.sampled(3)
     @pytest.mark.thorough
     def test_load_reaction_is_the_worst_of_the_linear_programs(self, result: Result) -> None:
         """Least clamping by HiGHS: no sampled point and direction needs a larger peg force, and the one named needs it."""

@@ -43,7 +43,6 @@ def compare(seed: int, of_each: int, path: Path) -> Counter[str]:
     return seen
 
 
-@pytest.mark.prove
 @pytest.mark.thorough
 @pytest.mark.parametrize("seed", [pytest.param(11, marks=pytest.mark.prove), 12])
 def test_lists_of_random_fixtures_are_complete(seed: int, tmp_path: Path) -> None:

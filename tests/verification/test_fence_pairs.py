@@ -108,7 +108,6 @@ def plus(values: Any, place: Any, by: float) -> None:
     values[place] += by
 
 
-@pytest.mark.sampled(3)
 @pytest.mark.thorough
 @pytest.mark.parametrize(
     ("edit", "words"),

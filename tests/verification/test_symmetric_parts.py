@@ -60,7 +60,6 @@ def counted(result: Result, case: Symmetric) -> dict[str, int]:
     return {kind: sets[kind] for kind in result.distinct}
 
 
-@pytest.mark.sampled(7)
 @pytest.mark.thorough
 @pytest.mark.parametrize(
     ("name", "kind", "listing"),

@@ -228,7 +228,6 @@ def job(server: RunningServer) -> str:
     return server.done(request()).rpartition("/")[2]
 
 
-@pytest.mark.sampled(5)
 @pytest.mark.thorough
 @pytest.mark.parametrize("name", TRIED)
 def test_no_request_brings_out_a_mistake(server: RunningServer, job: str, name: str) -> None:

@@ -132,7 +132,6 @@ def outline_at(shape: Any, height: float) -> HeightOutline | str:
         return str(error)
 
 
-@pytest.mark.sampled(7)
 @pytest.mark.parametrize(("name", "axis", "share"), CASES)
 def test_bands_are_covered_and_no_longer_run_is_passed_over(name: str, axis: str, share: float) -> None:
     """A peg touches over all of its band, half as much as it can, and the moved part has the moved bands."""

@@ -55,7 +55,6 @@ HELD: dict[str, tuple[Toolkit, tuple[str, ...]]] = {
 }
 
 
-@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", HELD)
 def test_each_part_of_a_plan_lies_as_its_own_list_says(name: str, tmp_path: Path) -> None:
     """A part's number in the plan is that of its fixture in the whole list of its side; as bodies it is held there."""

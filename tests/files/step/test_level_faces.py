@@ -74,7 +74,6 @@ def spline_pocket(deep: float) -> Any:
     return cut(box(80, 50, 16), prism([GeomAPI_PointsToBSpline(points).Curve(), *sides], 30))
 
 
-@pytest.mark.sampled(6)
 @pytest.mark.parametrize(
     ("shape", "openings"),
     [

@@ -67,7 +67,6 @@ def test_sections_between_the_heights_lie_in_the_outline_and_its_border_is_their
         assert off_region(points, rows).max() < 1e-6
 
 
-@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", HELD)
 def test_every_fixture_holds_as_bodies_between_the_heights(name: str, tmp_path: Path) -> None:
     """Each peg touches the solid over its own heights and enters it nowhere up to the head room above."""

@@ -83,7 +83,6 @@ def test_outer_loops_come_first(feet: Workpiece, eyes: Workpiece) -> None:
     assert all(edge.height(segment.start) > -1e-9 for edge in eyes.hull_edges for segment in eyes.segments)
 
 
-@pytest.mark.sampled(3)
 @pytest.mark.parametrize("toolkit", KITS, ids=lambda kit: f"{type(kit).__name__}{getattr(kit, 'clamps', '')}")
 def test_fixtures_hold_pieces(feet: Workpiece, eyes: Workpiece, toolkit: Any, tmp_path: Path) -> None:
     """Pegs touch the solid and do not enter it, every fixture is proven, and files say the same when read."""

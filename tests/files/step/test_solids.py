@@ -46,7 +46,6 @@ def outline(solid: StandingSolid, high: float) -> Loops:
     return [np.array([(*piece.start, piece.bulge) for piece in loop]) for loop in solid.border(-np.inf, high)]
 
 
-@pytest.mark.sampled(3)
 @pytest.mark.parametrize("example", examples())
 def test_sections_lie_in_the_outline_and_make_it(example: SolidExample) -> None:
     """At 200 heights the section lies in U, and over every border of U the solid stands or leans.

@@ -49,7 +49,6 @@ def test_of_a_block(height: float, toolkit: workhold.Vise, expected: float) -> N
     assert workhold.load(block, toolkit=toolkit, peg_height=2.5).solid.peg_height == 2.5  # type: ignore[union-attr]
 
 
-@pytest.mark.sampled(5)
 @pytest.mark.parametrize("make", [bearing_housing, boss, stepped, ribbed])
 @pytest.mark.parametrize("toolkit", [VISE, SIXTEEN], ids=["6", "16"])
 def test_it_is_the_rule_word_for_word(make: Any, toolkit: workhold.Vise) -> None:

@@ -90,7 +90,6 @@ WAYS = {
 NOT_AS_SPLINES = ("lying shaft", "valve body")
 
 
-@pytest.mark.sampled(15)
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize(
     "example",

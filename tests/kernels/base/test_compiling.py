@@ -95,7 +95,6 @@ def test_a_cache_that_cannot_be_written_is_done_without(copy, tmp_path):
     assert blocked.read_text() == "not a folder"
 
 
-@pytest.mark.sampled(3)
 @pytest.mark.thorough
 @pytest.mark.parametrize("ending", ["nbi", "nbc"])
 @pytest.mark.parametrize("damage", [lambda old: b"", lambda old: old[: len(old) // 2]], ids=["empty", "half"])

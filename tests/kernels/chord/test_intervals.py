@@ -40,7 +40,6 @@ def counts(a, b, d, alphas, slack):
 
 
 @pytest.mark.thorough
-@pytest.mark.sampled(3)
 @pytest.mark.thinned(9)
 @pytest.mark.parametrize("kinds", PAIRS)
 def test_ranges_count_the_chords_of_every_direction(kinds):

@@ -320,7 +320,6 @@ PARTS = {
 }
 
 
-@pytest.mark.sampled(3)
 @pytest.mark.thorough
 @pytest.mark.parametrize("name", PARTS)
 def test_no_fixture_of_two_chords_is_discarded(name):
