@@ -144,11 +144,14 @@ def test_no_contact_is_lost(seed: int) -> None:
     assert found.reach[0] <= box.reach[0] * (1 + 1e-5)
 
 
-def placed_box(random: Random, reach: float) -> tuple[CandidateBox, tuple[float, float, float, float]]:
-    """A box about three standing pegs and a moving one on lines and arcs, and the place at which all touch."""
+def placed_box(
+    random: Random, reach: float
+) -> tuple[CandidateBox, tuple[float, float, float, float], Limits]:
+    """A box about three standing pegs and a moving one on lines and arcs, the place at which all touch, and limits
+    by which the moving one pushes there."""
     psi, x, y, separation = (random.uniform(-end, end) for end in (pi, 9.0, 9.0, 40.0))
     offsets = [(0.0, 0.0), (120.0, 440.0), (720.0, 20.0), (40.0, 100.0)]
-    rows = []
+    rows, normal = [], 0.0
     for k, (dx, dy) in enumerate(offsets):
         along = dx + (separation if k == 3 else 0.0)
         center = x + cos(psi) * along - sin(psi) * dy, y + sin(psi) * along + cos(psi) * dy
@@ -162,19 +165,17 @@ def placed_box(random: Random, reach: float) -> tuple[CandidateBox, tuple[float,
     true = (psi, x, y, separation)
     reaches = (reach, 400.0 * reach, 400.0 * reach, 900.0 * reach)
     middle = tuple(one + 0.9 * off * random.uniform(-1, 1) for one, off in zip(true, reaches, strict=True))
-    return CandidateBox(rows, offsets, 3, middle, reaches), true  # type: ignore[arg-type]
+    asked = LIMITS._replace(gap=-inf, pairing=1.0, clamping=1.0 if cos(normal - psi) > 0.0 else -1.0)
+    return CandidateBox(rows, offsets, 3, middle, reaches), true, asked  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("seed", range(60))
 def test_standing_pegs_lose_no_contact(seed: int) -> None:
     """The place at which three locators and a clamp touch stays in the box, which mostly shrinks to it."""
     random = Random(seed)
-    box, true = placed_box(random, 10.0 ** random.uniform(-7, -2.5))
-    # Neither the gap nor what closes is asked for.
-    found = located(box, LIMITS._replace(gap=-inf, pairing=1.0, clamping=0.0))
-    if found is None:
-        # The clamp pushes the wrong way, or hardly at all, everywhere.
-        return
+    box, true, asked = placed_box(random, 10.0 ** random.uniform(-7, -2.5))
+    found = located(box, asked)
+    assert found is not None
     for one, middle, reach in zip(true, found.middle, found.reach, strict=True):
         assert abs(one - middle) <= reach + 1e-11
 
@@ -184,10 +185,11 @@ def test_standing_pegs_make_most_boxes_small() -> None:
     small = 0
     for seed in range(60):
         random = Random(seed)
-        box, true = placed_box(random, 1e-4)
+        box, true, asked = placed_box(random, 1e-4)
         away = evolve(box, middle=(*box.middle[:3], true[3]), reach=(*box.reach[:3], 30.0))
-        found = located(away, LIMITS._replace(gap=-inf, pairing=1.0, clamping=0.0))
-        small += found is None or max(found.reach[:3]) < 1e-9
+        found = located(away, asked)
+        assert found is not None
+        small += max(found.reach[:3]) < 1e-9
     assert small >= 50
 
 

@@ -24,6 +24,7 @@ from workhold.search import design as designing
 from workhold.search.error_limits import (
     LocatorSpots,
     can_limit_errors,
+    distance_from_hull,
     give_of,
     is_enough,
     keys_beyond,
@@ -198,6 +199,30 @@ def test_no_centre_moves_farther_than_its_give_says(part: str) -> None:
     assert (nearest <= gives + 1e-9).all()
     inside = gives == 1.0
     assert inside.any() and (nearest[inside] > 0.6).all()
+
+
+@pytest.mark.parametrize(
+    ("place", "apart"), [((1.0, 1.0), 0.0), ((4.0, 1.0), 2.0), ((5.0, -4.0), 5.0), ((1.0, 2.5), 0.5)]
+)
+def test_the_distance_from_a_hull_is_that_of_its_nearest_point(
+    place: tuple[float, float], apart: float
+) -> None:
+    corners = np.array([(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0), (1.0, 0.5)])
+    assert distance_from_hull(corners, np.array(place)) == pytest.approx(apart)
+
+
+@pytest.mark.parametrize("part", ["flange", "arcs", "bores"])
+def test_what_lies_square_is_found_with_the_curves_that_come_there(part: str) -> None:
+    query = Query(PARTS[part], KITS["plate"], tolerance=TOLERANCE, best=5)
+    problem, first = Problem.of(query), preferred_angles(query)
+    whole, some = (ToolkitSearch.of(problem, only=only) for only in ((), first))
+    assert len(some.table) < len(whole.table)
+    one, other = (
+        np.concatenate([block.work(Needed()) for block in search.blocks(query.arrangements, first=first)])
+        for search in (whole, some)
+    )
+    assert len(one) == len(other) and (one == other).all()
+    assert some.statistics["crossings_sought"] == whole.statistics["crossings_sought"] > 0
 
 
 def test_the_next_limit_is_no_larger_than_it_must_be() -> None:
