@@ -211,6 +211,7 @@ def test_the_distance_from_a_hull_is_that_of_its_nearest_point(
     assert distance_from_hull(corners, np.array(place)) == pytest.approx(apart)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("part", ["flange", "arcs", "bores"])
 def test_what_lies_square_is_found_with_the_curves_that_come_there(part: str) -> None:
     query = Query(PARTS[part], KITS["plate"], tolerance=TOLERANCE, best=5)
