@@ -13,6 +13,7 @@ from cad_parts import cad_part
 from workhold import OpeningVise, Plate, Query, Result, Tolerance, Vise, Workpiece, answer, load
 from workhold.contact.problem import Problem
 from workhold.fixels.toolkit import Toolkit
+from workhold.geometry.hull import convex_hull
 from workhold.kernels.base.feature import IS_ARC, X, Y
 from workhold.listing.bounds import preferred_angles
 from workhold.listing.canonical_form import listed_once
@@ -25,7 +26,7 @@ from workhold.search.error_limits import (
     LocatorSpots,
     can_limit_errors,
     distance_from_hull,
-    give_of,
+    gives_of,
     is_enough,
     keys_beyond,
     next_limit,
@@ -189,7 +190,7 @@ def test_no_centre_moves_farther_than_its_give_says(part: str) -> None:
     """Where no point of the silhouette moves by more than 1, no centre of an arc does by more than that."""
     problem = Problem.of(Query(PARTS[part], KITS["plate"], tolerance=TOLERANCE, best=5))
     points, rows = outermost(problem), problem.rows[problem.rows[:, IS_ARC] != 0.0]
-    gives, nearest = np.array([give_of(row, points) for row in rows]), np.zeros(len(rows))
+    gives, nearest = gives_of(rows, points), np.zeros(len(rows))
     for seed in range(2000):
         x, y, turn = np.random.default_rng(seed).normal(size=3) * (1.0, 1.0, 1.0 / problem.wrench_length)
         moved, centers = (
@@ -207,8 +208,8 @@ def test_no_centre_moves_farther_than_its_give_says(part: str) -> None:
 def test_the_distance_from_a_hull_is_that_of_its_nearest_point(
     place: tuple[float, float], apart: float
 ) -> None:
-    corners = np.array([(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0), (1.0, 0.5)])
-    assert distance_from_hull(corners, np.array(place)) == pytest.approx(apart)
+    corners = [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0), (1.0, 0.5)]
+    assert distance_from_hull(convex_hull(corners), place) == pytest.approx(apart)
 
 
 @pytest.mark.thorough

@@ -20,7 +20,7 @@ from collections.abc import Callable
 from functools import reduce
 
 from attrs import evolve, frozen
-from flint import arb, arb_mat, ctx
+from flint import arb, ctx
 
 from workhold.kernels.base.tables import Limits
 from workhold.model.search_report import AT_AN_EDGE, NEARLY_DOUBLE
@@ -34,7 +34,7 @@ from workhold.proof.ball_contacts import (
     slacks,
     wrench_minors,
 )
-from workhold.proof.singular_frame import SingularFrame, is_smaller, newton_step, thirds
+from workhold.proof.singular_frame import SingularFrame, decoupled, is_smaller, newton_step, thirds
 from workhold.proof.solution_curve import roots_on_curve
 
 __all__ = ["BoxOutcome", "solutions_in"]
@@ -97,13 +97,10 @@ def located(box: CandidateBox, limits: Limits) -> CandidateBox | None:
             slopes = [row[:3] for row in places(box, place).slopes[:3]]
             if turn < 3:
                 values, slopes = values[turn:] + values[:turn], slopes[turn:] + slopes[:turn]
+            elif (combined := decoupled(values, slopes)) is not None:
+                values, slopes = combined
             else:
-                try:
-                    inverse = arb_mat(slopes).mid().inv().mid()
-                except ZeroDivisionError:
-                    break
-                values = list((inverse * arb_mat(3, 1, values)).entries())
-                slopes = (inverse * arb_mat(slopes)).tolist()
+                break
             closer, _ = newton_step(place[:3], values, slopes)
             if closer is None:
                 return None

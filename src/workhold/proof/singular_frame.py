@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from workhold.kernels.base.tables import Limits
 from workhold.proof.ball_contacts import BoxContacts, CandidateBox, contact_values, places
 
-__all__ = ["SingularFrame", "is_smaller", "newton_step", "thirds"]
+__all__ = ["SingularFrame", "decoupled", "is_smaller", "newton_step", "thirds"]
 
 # The exact solution of a box may lie on its rim, so boxes are made larger by this part.
 RIM = 0.1
@@ -97,13 +97,23 @@ class SingularFrame:
         middle = [arb(p.mid()) for p in place]
         values, slopes = self.values(middle), self.slopes(here)
         if regular:
-            try:
-                inverse = arb_mat(slopes).mid().inv().mid()
-            except ZeroDivisionError:
+            combined = decoupled(values, slopes)
+            if combined is None:
                 return place, False
-            values = list((inverse * arb_mat(4, 1, values)).entries())
-            slopes = (inverse * arb_mat(slopes)).tolist()
+            values, slopes = combined
         return newton_step(place, values, slopes)
+
+
+def decoupled(
+    values: Sequence[arb], slopes: Sequence[Sequence[arb]]
+) -> tuple[list[arb], list[list[arb]]] | None:
+    """N equations and their Jacobian, combined by its inverse at the middle; None where it has none there."""
+    jacobian = arb_mat(slopes)
+    try:
+        inverse = jacobian.mid().inv().mid()
+    except ZeroDivisionError:
+        return None
+    return list((inverse * arb_mat(len(values), 1, values)).entries()), (inverse * jacobian).tolist()
 
 
 def newton_step(

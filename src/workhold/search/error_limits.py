@@ -27,6 +27,7 @@ from workhold.contact.curves import loosened
 from workhold.contact.problem import Problem
 from workhold.conventions import SQUARE_TILT
 from workhold.geometry.hull import convex_hull
+from workhold.geometry.segment import Line, Point, distance_to_segment
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS, SEGMENT_LENGTH, SIGN, X, Y
 from workhold.kernels.base.tables import NearSpots, Precision
 from workhold.kernels.contact.location_bounds import (
@@ -125,17 +126,18 @@ class LocatorSpots:
     @classmethod
     def of(cls, problem: Problem) -> LocatorSpots:
         """The spots of a problem."""
-        rows = loosened(problem.rows[:, :SEGMENT_LENGTH])
-        points = outermost(problem)
-        apart = largest_apart(points)
+        rows, precision = loosened(problem.rows[:, :SEGMENT_LENGTH]), precision_of(problem)
+        apart = largest_apart(outermost(problem))
         first, end = problem.standing
         cut = [
-            cut_feature(row, number, points, apart, problem.wrench_length)
-            for number, row in enumerate(rows[first:end])
+            cut_feature(row, number, give, apart, problem.wrench_length)
+            for number, (row, give) in enumerate(
+                zip(rows[first:end], precision.gives[first:end].tolist(), strict=True)
+            )
         ]
         starts = np.cumsum([0, *(len(levels[-1]) for levels in cut)])
         roots = sum(len(levels[0]) for levels in cut)
-        return cls(joined_spots(cut, starts), roots, starts, precision_of(problem))
+        return cls(joined_spots(cut, starts), roots, starts, precision)
 
     def limit(self, most: float) -> ErrorLimit:
         """A limit of the effective error in mm."""
@@ -168,12 +170,11 @@ def precision_of(problem: Problem) -> Precision:
     doubts = np.ones(len(problem.rows))
     if all(carrier.contact.is_placed for carrier in query.toolkit.carriers):
         doubts[faces_unasked_for(query)[problem.faces]] = IN_BORE
-    gives = np.array([give_of(row, points) for row in problem.rows])
     tolerance = query.tolerance
     return Precision(
         problem.faces.astype(np.int64),
         doubts,
-        gives,
+        gives_of(problem.rows, points),
         np.ascontiguousarray(probes),
         tolerance.peg,
         tolerance.face,
@@ -206,34 +207,41 @@ def largest_apart(points: Array) -> float:
     return max(float(np.hypot(*(points - point).T).max()) for point in points)
 
 
-def give_of(row: Array, points: Array) -> float:
-    """What a contact on a feature may be off by for a location error of 1.
+def gives_of(rows: Array, points: Array) -> Array:
+    """What contacts on features (F,) may be off by for a location error of 1.
 
     On a line it is for each mm that the contact is moved, on an arc for each radian. Points (C, 2) are those
     of the silhouette. Nothing between them moves farther than they.
     """
-    apart = largest_apart(points)
-    if row[IS_ARC] == 0.0:
-        return 2.0 / apart
-    return 1.0 + 2.0 * distance_from_hull(points, row[[X, Y]]) / apart
+    apart, hull = largest_apart(points), convex_hull(map(tuple, points.tolist()))
+    away = [
+        distance_from_hull(hull, place) if is_arc else 0.0
+        for is_arc, *place in rows[:, [IS_ARC, X, Y]].tolist()
+    ]
+    return np.where(rows[:, IS_ARC] == 0.0, 2.0 / apart, 1.0 + 2.0 * np.array(away) / apart)
 
 
-def distance_from_hull(points: Array, place: Array) -> float:
-    """The distance in mm of a place from the convex hull of points (C, 2); 0 inside."""
-    hull = np.array(convex_hull(map(tuple, points.tolist())))
-    side, ray = np.roll(hull, -1, axis=0) - hull, place - hull
-    if len(hull) > 2 and (side[:, 0] * ray[:, 1] >= side[:, 1] * ray[:, 0]).all():
+def distance_from_hull(hull: Sequence[Point], place: Point) -> float:
+    """The distance in mm of a place from a convex hull, as ``geometry.hull`` gives it; 0 inside."""
+    sides = [Line(one, other) for one, other in zip(hull, [*hull[1:], hull[0]], strict=True)]
+    if len(hull) > 2 and all(is_left_of(side, place) for side in sides):
         return 0.0
-    along = np.clip((ray * side).sum(axis=1) / np.maximum((side * side).sum(axis=1), 1e-300), 0.0, 1.0)
-    return float(np.hypot(*(ray - along[:, None] * side).T).min())
+    return min(distance_to_segment(place, side) for side in sides)
 
 
-def cut_feature(row: Array, number: int, points: Array, apart: float, length: float) -> list[Array]:
+def is_left_of(side: Line, place: Point) -> bool:
+    """Whether a place is to the left of a segment, or on its line."""
+    (x0, y0), (x1, y1) = side.start, side.end
+    return (x1 - x0) * (place[1] - y0) >= (y1 - y0) * (place[0] - x0)
+
+
+def cut_feature(row: Array, number: int, give: float, apart: float, length: float) -> list[Array]:
     """The spots of a feature, coarse ones first, in as many lists as it is cut.
 
     Parameters
     ----------
-    points : (C, 2) of the silhouette; ``apart`` is the largest distance in mm of two of them.
+    give : see :func:`gives_of`.
+    apart : the largest distance in mm of two points of the silhouette.
     length : L in mm.
     """
     half, is_arc = float(row[HALF_EXTENT]), row[IS_ARC] != 0.0
@@ -241,25 +249,25 @@ def cut_feature(row: Array, number: int, points: Array, apart: float, length: fl
     pieces = max(size * SPOTS_ACROSS / apart, 2.0 * half / MOST_TURN if is_arc else 1.0, 1.0)
     cuts = int(np.ceil(np.log2(pieces)))
     counts = [1 << cut for cut in range(max(cuts - MOST_CUTS, 0), cuts + 1)]
-    return [spots_of(row, number, count, points, length) for count in counts]
+    return [spots_of(row, number, count, give, length) for count in counts]
 
 
-def spots_of(row: Array, number: int, count: int, points: Array, length: float) -> Array:
+def spots_of(row: Array, number: int, count: int, give: float, length: float) -> Array:
     """So many spots (count, 7) of a feature, of which nobody knows yet what they are made of."""
     half, out = float(row[HALF_EXTENT]) / count, np.zeros((count, SPOT_LENGTH))
     at = (2.0 * np.arange(count) + 1.0 - count) * half
     axis = row[[3, 4]]
     if row[IS_ARC] == 0.0:
         place, normal = row[[X, Y]] + at[:, None] * axis, np.tile([axis[1], -axis[0]], (count, 1))
-        give = half * give_of(row, points)
+        off = half
     else:
         cosine, sine = np.cos(at)[:, None], np.sin(at)[:, None]
         ray = cosine * axis + sine * np.array([-axis[1], axis[0]])
         place, normal = row[[X, Y]] + row[RADIUS] * ray, row[SIGN] * ray
-        give = min(half, 2.0) * give_of(row, points)
+        off = min(half, 2.0)
     out[:, 0:2] = normal
     out[:, 2] = (place[:, 0] * normal[:, 1] - place[:, 1] * normal[:, 0]) / length
-    out[:, 3], out[:, 4] = give, number
+    out[:, 3], out[:, 4] = off * give, number
     return out
 
 

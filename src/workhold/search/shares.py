@@ -232,9 +232,9 @@ def limited_work(
 ) -> Work:
     """Hands all fixtures up to a limit of the location error to those kept, and perhaps some beyond."""
     query, works = problem.query, list[Work]()
+    first = preferred_angles(query)
     for number, near in enumerate((limit.square, limit.aslant)):
         share = stage(progress, number / 2, (number + 1) / 2)
-        first = preferred_angles(query)
         search = ToolkitSearch.of(
             problem,
             threads=threads,

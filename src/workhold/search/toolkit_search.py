@@ -264,8 +264,8 @@ class ToolkitSearch:
         """The search of a problem, with its chord curves, or some of them once ``cancel`` is set.
 
         ``counting`` leaves the contact margin out. What ``near`` and ``precision`` rule out is not searched.
-        With ``only``, ranges in degrees of the part's angle, no other blocks are made than those of them that
-        come first.
+        Where blocks are asked for with nothing but some ranges of the part's angle in degrees ``first``, these
+        are ``only`` what curves are made for.
         """
         if counting:
             problem = Problem.of(evolve(problem.query, contact_margin=0.0), problem.pairing)
