@@ -154,7 +154,6 @@ def test_the_algebra_goes_through_no_cells(run: Any, searched: dict[str, Any]) -
     ]
 
 
-@pytest.mark.thinned(1)
 @pytest.mark.parametrize(
     ("count", "rest"), [(1, None), (3, None), (4, "The other one is"), (9, "The other 6 are")]
 )

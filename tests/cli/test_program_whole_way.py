@@ -13,6 +13,8 @@ import workhold
 from slow_program import OFF, walked
 from workhold import Program
 
+pytestmark = pytest.mark.thorough
+
 EXAMPLES = Path(__file__).parents[2] / "examples"
 PEG_HEIGHT = 6.0
 
@@ -31,7 +33,6 @@ def least_distance(program: Program, pegs: np.ndarray, radius: float) -> float:
     return found
 
 
-@pytest.mark.thorough
 def test_the_first_choice_lets_every_tool_pass(run: Any, tmp_path: Path) -> None:
     """A contour, a slot, a bore and four holes: a sheet with the path of each tool, and a walk that meets no peg."""
     result, sheet = tmp_path / "bracket.json", tmp_path / "bracket.svg"
@@ -55,7 +56,6 @@ def test_the_first_choice_lets_every_tool_pass(run: Any, tmp_path: Path) -> None
     assert {"band", "rapid", "cut-1", "cut-2", "cut-3", "nearest"} <= drawn
 
 
-@pytest.mark.thorough
 def test_holes_drilled_through_are_no_place_for_supports(run: Any, tmp_path: Path) -> None:
     """With --supports the drill's four holes and the clamp's keep-outs are those of the program, also in the file."""
     result, supports = tmp_path / "bracket.json", tmp_path / "supports.json"
@@ -76,7 +76,6 @@ def test_holes_drilled_through_are_no_place_for_supports(run: Any, tmp_path: Pat
             assert away.min() >= 4.5 + 1.0 + found.request.pad_radius - 1e-6
 
 
-@pytest.mark.thorough
 def test_what_is_skipped_for_too_much_work_is_said(
     run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

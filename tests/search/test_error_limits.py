@@ -184,7 +184,6 @@ def test_spots_join_what_fixtures_touch() -> None:
     assert {tuple(row) for row in marked.tolist()} == {tuple(row) for row in marked[:, [2, 0, 1]].tolist()}
 
 
-@pytest.mark.thinned(1)
 @pytest.mark.parametrize("part", ["bores", "arcs", "flange"])
 def test_no_centre_moves_farther_than_its_give_says(part: str) -> None:
     """Where no point of the silhouette moves by more than 1, no centre of an arc does by more than that."""

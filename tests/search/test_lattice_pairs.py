@@ -27,7 +27,6 @@ def problem_of(workpiece: Workpiece, margin: float = 0.0, pitch: float = 8.0) ->
     return Problem.of(Query(workpiece, FlatJaw(pitch=pitch, peg_radius=2), contact_margin=margin))
 
 
-@pytest.mark.thinned(1)
 @pytest.mark.parametrize("margin", [0.0, 3.0])
 @pytest.mark.parametrize("loop", [KITE, ROCKER, NOTCHED, BOSSES], ids=["kite", "rocker", "notched", "bosses"])
 def test_balls_find_the_same_places_forces_and_verdicts(loop: list[tuple[float, ...]], margin: float) -> None:

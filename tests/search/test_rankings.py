@@ -27,6 +27,8 @@ from workhold.model.quality import (
 )
 from workhold.search import lattice_shares
 
+pytestmark = pytest.mark.thorough
+
 
 @pytest.fixture(autouse=True)
 def few_contacts_are_left_out_too(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -100,7 +102,6 @@ A_FEW = (0, 3, 4, 7, 15, 20)
 MANY = [range(12 * block, 12 * (block + 1)) for block in range(20)]
 
 
-@pytest.mark.thorough
 @pytest.mark.parametrize("some", [A_FEW, *(pytest.param(block, marks=pytest.mark.prove) for block in MANY)])
 def test_by_any_ranking_the_best_are_the_first_of_all(some: Iterable[int]) -> None:
     outcomes = [differences(seed) for seed in some]

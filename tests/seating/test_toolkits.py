@@ -213,7 +213,6 @@ def quarter_turned(fixture: Fixture, names: dict[str, str], quarters: int) -> Fi
     return Fixture("clamp", pegs, pose, fixture.jaw_separation, {})
 
 
-@pytest.mark.thinned(1)
 @pytest.mark.parametrize(("direction", "quarters"), [("-y", 1), ("+x", 2), ("+y", 3)])
 def test_a_plate_turned_says_the_same(direction, quarters):
     result, _ = listed("left")

@@ -14,6 +14,8 @@ from workhold.model.support_request import SupportRequest
 from workhold.supports.faces import TouchableFace
 from workhold.supports.holes import CarrierRoom, holes_under
 
+pytestmark = pytest.mark.thorough
+
 VISES = (
     Vise(pitch=12, columns=6, peg_radius=2, rows=7, max_opening=50, row_offset=4, blocked=("L-C2", "R-A")),
     Vise(pitch=(10, 8), columns=9, peg_radius=2, rows=6),
@@ -40,7 +42,6 @@ def widest(vise: Vise, fixture: Fixture, standing: list[Standing]) -> float | No
     return float(opening[may].max()) if may.any() else None
 
 
-@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("vise", VISES, ids=("blocked", "rows", "opening"))
 def test_sets_fit_where_some_way_to_write_them_out_does(vise: Vise) -> None:

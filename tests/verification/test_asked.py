@@ -123,7 +123,6 @@ def test_keep_out_zones_are_for_the_bodies_of_pegs(limited: Result, gap: float, 
     assert told == stands_over
 
 
-@pytest.mark.thinned(1)
 @pytest.mark.parametrize("place", range(9))
 def test_two_neighbours_that_change_places(limited: Result, place: int) -> None:
     """It is a fault, unless they count as equal by all that they are ranked by."""

@@ -18,6 +18,8 @@ from workhold import Fixture, Peg, Pose, Result, Vise, Workpiece, design, load
 from workhold.geometry.segment import Line
 from workhold.verification import verify_fixture
 
+pytestmark = pytest.mark.thorough
+
 Array = NDArray[np.float64]
 Hole = tuple[str, int, int, int]
 
@@ -108,7 +110,6 @@ CASES = {
 }
 
 
-@pytest.mark.thorough
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", CASES)
 def test_neighbours_of_fixtures(name: str) -> None:

@@ -13,7 +13,6 @@ from test_parts import refused
 from workhold.web.serve import hosts_of
 
 
-@pytest.mark.thinned(1)
 @pytest.mark.parametrize(
     "path", ["/", "/api/about", "/api/none", "/static/none.js", "/api/openapi.json", "/api/jobs/x"]
 )

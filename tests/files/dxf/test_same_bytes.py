@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.thorough
+
 SRC = Path(__file__).parents[3] / "src"
 PLATES = """
 import sys
@@ -27,7 +29,6 @@ def drawn(seed: int) -> bytes:
     ).stdout
 
 
-@pytest.mark.thorough
 @pytest.mark.parametrize("seed", [4])
 def test_a_drill_template_does_not_depend_on_the_seed_of_hashes(seed: int) -> None:
     """The seed is one with which classes came in another order."""

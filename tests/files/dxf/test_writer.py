@@ -174,7 +174,6 @@ def test_bytes_are_the_same_every_time() -> None:
     assert options.write_fixed_meta_data_for_testing is False
 
 
-@pytest.mark.thinned(1)
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("bolted", [True, False], ids=["bolted", "line"])
 def test_locators_and_clamp_of_a_plate_touch_the_part(way: str, bolted: bool) -> None:

@@ -102,7 +102,6 @@ LINES = {
 }
 
 
-@pytest.mark.thinned(1)
 @pytest.mark.parametrize("line", LINES)
 def test_a_line_is_refused_by_its_number(tmp_path: Path, line: str) -> None:
     """The number stands behind the file's name, and what follows is one sentence that says what helps."""

@@ -107,7 +107,6 @@ def test_columns_without_a_program_are_as_wide_as_ever(tmp_path: Path) -> None:
     assert "program_clearance" in next(result_csv_text(result))
 
 
-@pytest.mark.thinned(1)
 @pytest.mark.parametrize(
     ("change", "reason"),
     [

@@ -63,6 +63,8 @@ from workhold.kernels.curves.two_and_two import (
 from workhold.search.cells import FIRST_ORIENTATION
 from workhold.search.toolkit_search import ToolkitSearch
 
+pytestmark = pytest.mark.thorough
+
 CELL = pi / 96
 # Columns of what the trials of pairs of pieces return, one row for each root.
 (
@@ -320,7 +322,6 @@ PARTS = {
 }
 
 
-@pytest.mark.thorough
 @pytest.mark.parametrize("name", PARTS)
 def test_no_fixture_of_two_chords_is_discarded(name):
     """Every crossing whose four contacts lie inside their features passes the comparison of heights; every one that may be
@@ -334,7 +335,6 @@ def test_no_fixture_of_two_chords_is_discarded(name):
     assert fixtures > 5
 
 
-@pytest.mark.thorough
 @pytest.mark.parametrize("name", PARTS)
 def test_no_fixture_of_three_pegs_and_one_is_discarded(name):
     """Every right peg that may make a fixture with three left ones passes all comparisons, in all cells of a turn."""
@@ -345,7 +345,6 @@ def test_no_fixture_of_three_pegs_and_one_is_discarded(name):
     )
 
 
-@pytest.mark.thorough
 @settings(max_examples=25)
 @given(seeds)
 def test_no_fixture_of_a_random_part_is_discarded(seed):
@@ -362,7 +361,6 @@ def test_no_fixture_of_a_random_part_is_discarded(seed):
     check_type_two(search, low, high)
 
 
-@pytest.mark.thorough
 @given(seeds)
 def test_no_crossing_of_two_steady_pieces_is_denied(seed):
     """Where the difference of two steady pieces changes sign about a target between two samples, they may meet."""
