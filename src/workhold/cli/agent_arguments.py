@@ -9,11 +9,15 @@ from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from workhold.asking.declaring import declarations_of
+from workhold.asking.search import LOADS, RANKING, RULING_OUT, SEARCH, SEATING, SearchQuestion
 from workhold.errors import InputError
+from workhold.files.declared_forms import with_fields
 from workhold.files.input_forms import LoadTable
 
 __all__ = [
     "DesignArguments",
+    "OF_SEARCH",
     "LoadArguments",
     "ProgramArguments",
     "SheetArguments",
@@ -22,6 +26,8 @@ __all__ = [
     "checked_arguments",
 ]
 
+# What a search asks but heights, which stand with the reading of the part and with the program.
+OF_SEARCH = declarations_of(SearchQuestion, (RULING_OUT, LOADS, RANKING, SEATING, SEARCH))
 Arguments = TypeVar("Arguments", bound="ToolArguments")
 Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
 Positive = Annotated[float, Field(gt=0)]
@@ -163,6 +169,7 @@ class ProgramArguments(ToolArguments):
         return given | {"thickness": self.thickness or height}
 
 
+@with_fields(OF_SEARCH)
 class DesignArguments(LoadArguments):
     """A search for every way to hold a part."""
 
@@ -176,36 +183,17 @@ class DesignArguments(LoadArguments):
         "peg_radius, min_gap, max_opening, travel, clamps, wall_offset",
     )
     types: list[str] | None = Field(default=None, description="of a vise I, II or both")
-    best: int | None = Field(default=None, ge=1, description="seek only so many, the best")
     avoid: list[int] = Field(
         default=[], description="faces not to touch, by number, such as those to be machined"
     )
     keep_out: list[Circle | Polygon] = Field(default=[], description="places that no peg may stand over")
     angles: list[Pair] = Field(default=[], description="ranges of angles that the part may lie at")
-    contact_margin: float = Field(
-        default=0.0, ge=0, description="smallest distance of a contact from a face's end"
-    )
     prefer: Literal["square", "strong", "precise", "roomy"] | None = Field(
         default=None, description="what comes first"
     )
-    jaw_force: ClosingForce = None
     loads: list[LoadTable] = Field(default=[], description="what acts on the part while it is held")
     program: ProgramArguments | None = Field(
         default=None, description="list only fixtures that the tools of this program keep clear of"
-    )
-    seating: int | None = Field(
-        default=None,
-        ge=1,
-        description="of the first so many fixtures report from how far open, or drawn back, the part is "
-        "caught and where else it can rest, and order them by that too",
-    )
-    opening: Positive | None = Field(
-        default=None,
-        description="with seating, list only those that catch the part when opened by so many mm",
-    )
-    foolproof: bool = Field(
-        default=False,
-        description="with seating, list only those of which a caliper shows every wrong place to rest",
     )
     count: int = Field(default=5, ge=0, le=100, description="how many fixtures to report")
     out: str | None = Field(

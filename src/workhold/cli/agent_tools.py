@@ -15,6 +15,7 @@ from typing import Any
 from attrs import frozen
 
 from workhold.cli.agent_arguments import (
+    OF_SEARCH,
     DesignArguments,
     LoadArguments,
     ProgramArguments,
@@ -27,6 +28,7 @@ from workhold.cli.outputs import refuse_output
 from workhold.cli.search_options import with_fit_of
 from workhold.cli.show_command import passing_words
 from workhold.errors import InputError
+from workhold.files.declared_forms import given_in
 from workhold.files.input_forms import LoadTable
 from workhold.files.loads_file import load_from_words
 from workhold.files.part.load import Loaded, read_workpiece, refuse_unsure_numbers
@@ -135,16 +137,11 @@ def answered(asked: DesignArguments, cancel: Event) -> tuple[Loaded, Result]:
         loaded.workpiece,
         toolkit,
         asked.types,
-        asked.contact_margin,
         Restrictions(avoid=asked.avoid, zones=zones, angles=asked.angles),
         asked_ranking(None, asked.prefer, bool(loads) or has_forces, program is not None),
         with_fit_of(None, tolerance),
         loads,
-        asked.best,
-        asked.jaw_force,
-        seating=asked.seating,
-        opening=asked.opening,
-        foolproof=asked.foolproof,
+        **given_in(asked, OF_SEARCH),
         **passed,
     )
     clock = Timer(asked.seconds, cancel.set)

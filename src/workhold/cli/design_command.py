@@ -8,8 +8,12 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Any, TextIO
 
 import typer
+from attrs import frozen
 
+from workhold.asking.declaring import declarations_of
+from workhold.asking.search import SEARCH, SearchQuestion
 from workhold.cli.commands import flag, option, print_remark, spread
+from workhold.cli.declared import one_flag, one_word, options_of, read_words
 from workhold.cli.design_report import NEAREST_MISS, draw_best, draw_one, explain_none, picture_names
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.options import CALLED, PartArgument, PartWords
@@ -39,6 +43,8 @@ from workhold.errors import InputError
 if TYPE_CHECKING:
     from threading import Event
 
+    from workhold.cli.warming import SecondProcess
+    from workhold.files.part.loaded import Loaded
     from workhold.model.query import Query
     from workhold.model.result import Result
     from workhold.model.support_triples import Supports
@@ -46,11 +52,174 @@ if TYPE_CHECKING:
 
 __all__ = ["design"]
 
-SEARCH = "The search"
 EVERY_TYPE = "both"
 ENGINES = ("curves", "algebra")
 # Bytes of a fixture in a file of each form, and the largest file that is text.
 BYTES, MOST_TEXT = {"json": 960, "csv": 550, "npz": 225}, 7e8
+OF_ONE = declarations_of(SearchQuestion, [SEARCH])
+TYPE = option(
+    SEARCH,
+    "I|II|both",
+    "Of a vise: I: two pegs on each jaw; II: three on the left, one on the right.",
+    "--type",
+    default="both",
+)
+ALL = flag(
+    SEARCH,
+    "List all fixtures, however many: of more than 200,000 only the best 1,000 are listed else.",
+    "--all",
+)
+ENGINE = option(
+    SEARCH,
+    "curves|algebra",
+    "curves: the fast search. algebra: the paper's own polynomials, slower; both list the same fixtures.",
+    default="curves",
+)
+
+
+@frozen(
+    these=options_of(
+        OF_ONE,
+        best={"type_": one_word(TYPE)},
+        listing={"every": one_flag(ALL)},
+        threads=one_word(option(SEARCH, "N", "Threads to use; all processors if not given.")),
+        engine=one_word(ENGINE),
+    )
+)
+class SearchWords:
+    """The options of one search, as typed."""
+
+    if TYPE_CHECKING:
+        type_: str
+        best: str | None
+        every: bool
+        threads: str | None
+        engine: str
+
+
+@frozen
+class OutputWords:
+    """The options of where the answer goes, as typed."""
+
+    out: str | None = option(OUTPUT, "FILE", "Write all fixtures to this file; - is the terminal.")
+    format_: str | None = FORMAT
+    draw: str | None = option(
+        OUTPUT, "DIR", "Draw the best twelve and a sheet of thumbnails into this folder, or the nearest miss."
+    )
+    force: bool = FORCE
+    list_: str = option(OUTPUT, "N", "How many to list on the terminal.", "--list", default="5")
+    unfit: bool = flag(OUTPUT, "List also what is no fixture for a workshop, in red.", "--unfit")
+    supports: bool = flag(
+        OUTPUT,
+        "Also find three supports and a clamp on top for the best twenty, as supports does.",
+        "--supports",
+    )
+    sheet: str | None = option(
+        OUTPUT,
+        "FILE",
+        "Write the setup sheet of the first choice into this file (.pdf, .svg, .png), with --supports on "
+        "its supports.",
+    )
+    json_: bool = JSON
+
+    def output(self, inputs: tuple[str | None, ...], before: str | None) -> Output:
+        """Where the answer goes.
+
+        Parameters
+        ----------
+        inputs : files that are read.
+        before : one that is read besides, after the search.
+
+        Raises
+        ------
+        InputError
+            For what cannot be written there, and two things in one place.
+        """
+        listed = whole_number("--list", self.list_)
+        form = output_form(self.out, self.format_)
+        refuse_both(self.json_, self.out)
+        if self.json_ and self.supports:
+            raise InputError("--supports prints a table: leave --json out, or ask the command supports.")
+        folder = None if self.draw is None else Path(self.draw)
+        if self.out is not None and self.out != STANDARD_OUTPUT:
+            refuse_result_file(self.out, form, inputs, self.force)
+        if folder is not None:
+            refuse_output_folder(folder, picture_names(), inputs, self.force)
+        refuse_sheet(self.sheet, (*inputs, before), self.out, self.force)
+        return Output(self.out, form, folder, listed, self.unfit, self.sheet, before, self.json_)
+
+
+@frozen
+class Output:
+    """Where the answer of a search goes.
+
+    Parameters
+    ----------
+    out, form : the result file and its form; None for none.
+    folder : of pictures.
+    listed : how many fixtures the terminal lists, and whether with those that are unfit.
+    sheet, before : the setup sheet of the first choice, and the result of the side before that it names.
+    as_json : whether one JSON object is printed instead of tables.
+    """
+
+    out: str | None
+    form: str
+    folder: Path | None
+    listed: int
+    with_unfit: bool
+    sheet: str | None
+    before: str | None
+    as_json: bool
+
+    @property
+    def stream(self) -> TextIO:
+        """Where words go: stderr where stdout carries the file."""
+        return sys.stderr if self.out == STANDARD_OUTPUT else sys.stdout
+
+    @property
+    def file(self) -> str | None:
+        """The result file that is no terminal."""
+        return None if self.out == STANDARD_OUTPUT else self.out
+
+
+@frozen
+class Asked:
+    """A search and how it is to be answered.
+
+    Parameters
+    ----------
+    loaded : the part as it was read.
+    every : whether all fixtures are listed, however many.
+    thickness : of the part in mm, where supports are wanted.
+    unit : of lengths shown.
+    compiling : on a first run what compiles beside the reading; None where nothing does.
+    """
+
+    query: Query
+    loaded: Loaded
+    every: bool
+    threads: int | None
+    engine: str
+    thickness: float | None
+    unit: Unit
+    output: Output
+    is_first_run: bool
+    compiling: SecondProcess | None
+
+
+@frozen
+class Answer:
+    """What the search found.
+
+    Parameters
+    ----------
+    estimated : about how many fixtures there are, where there are very many.
+    spent : the time it took, in words.
+    """
+
+    result: Result
+    estimated: int | None
+    spent: str
 
 
 @spread
@@ -61,52 +230,8 @@ def design(
     words: QueryWords,
     seated_by: SeatingWords,
     machined: ProgramWords,
-    type_: str = option(
-        SEARCH,
-        "I|II|both",
-        "Of a vise: I: two pegs on each jaw; II: three on the left, one on the right.",
-        "--type",
-        default="both",
-    ),
-    best: str | None = option(SEARCH, "K", "Keep only the best K."),
-    every: bool = flag(
-        SEARCH,
-        "List all fixtures, however many: of more than 200,000 only the best 1,000 are listed else.",
-        "--all",
-    ),
-    listing: str | None = option(
-        SEARCH,
-        "best|all",
-        "Of two clamps: best: for each seat of the locators its best pair of clamps, and how many there "
-        "are; all: every pair. best if not given.",
-    ),
-    threads: str | None = option(SEARCH, "N", "Threads to use; all processors if not given."),
-    engine: str = option(
-        SEARCH,
-        "curves|algebra",
-        "curves: the fast search. algebra: the paper's own polynomials, slower; both list the same fixtures.",
-        default="curves",
-    ),
-    out: str | None = option(OUTPUT, "FILE", "Write all fixtures to this file; - is the terminal."),
-    format_: str | None = FORMAT,
-    draw: str | None = option(
-        OUTPUT, "DIR", "Draw the best twelve and a sheet of thumbnails into this folder, or the nearest miss."
-    ),
-    force: bool = FORCE,
-    list_: str = option(OUTPUT, "N", "How many to list on the terminal.", "--list", default="5"),
-    unfit: bool = flag(OUTPUT, "List also what is no fixture for a workshop, in red.", "--unfit"),
-    supports: bool = flag(
-        OUTPUT,
-        "Also find three supports and a clamp on top for the best twenty, as supports does.",
-        "--supports",
-    ),
-    sheet: str | None = option(
-        OUTPUT,
-        "FILE",
-        "Write the setup sheet of the first choice into this file (.pdf, .svg, .png), with --supports on "
-        "its supports.",
-    ),
-    json_: bool = JSON,
+    searched: SearchWords,
+    written: OutputWords,
     reading: PartWords,
 ) -> None:
     """Find every way to hold PART in a vise, or on a plate with a clamp or two.
@@ -117,111 +242,144 @@ def design(
 
     Example: workhold design part.dxf --vise plate-20mm --out part.json
     """
-    # Everything cheap is checked before anything is read, and everything is checked before the search.
+    asked = parse(part, held_in, words, seated_by, machined, searched, written, reading)
+    report(asked, ask(asked))
+
+
+def parse(
+    part: str,
+    held_in: ToolkitWords,
+    words: QueryWords,
+    seated_by: SeatingWords,
+    machined: ProgramWords,
+    searched: SearchWords,
+    written: OutputWords,
+    reading: PartWords,
+) -> Asked:
+    """Read what was typed: all that is cheap before any file, and all of it before the search."""
     shown = length_unit(reading.unit)
-    kept = optional_count("--best", best)
-    workers = optional_count("--threads", threads)
-    engine = choice("--engine", engine, ENGINES)
-    if every and kept is not None:
+    threads = optional_count("--threads", searched.threads)
+    engine = choice("--engine", searched.engine, ENGINES)
+    if searched.every and searched.best is not None:
         raise InputError("--all and --best are opposites: leave one of them out.")
-    listed = whole_number("--list", list_)
-    form = output_form(out, format_)
-    refuse_both(json_, out)
-    if json_ and supports:
-        raise InputError("--supports prints a table: leave --json out, or ask the command supports.")
-    folder = None if draw is None else Path(draw)
-    stream = sys.stderr if out == STANDARD_OUTPUT else sys.stdout
-    given = (part, held_in.vise, words.loads, *machined.files)
-    if out is not None and out != STANDARD_OUTPUT:
-        refuse_result_file(out, form, given, force)
-    if folder is not None:
-        refuse_output_folder(folder, picture_names(), given, force)
-    refuse_sheet(sheet, (*given, words.not_on_faces_cut_in), out, force)
+    asked = read_words(OF_ONE, searched, shown)
+    files = part, held_in.vise, words.loads, *machined.files
+    output = written.output(files, words.not_on_faces_cut_in)
     toolkit, tolerance = held_in.asked(shown)
-    asked = words.asked(shown, machined.program is not None, machined.has_forces) | seated_by.asked(shown)
+    asked |= words.asked(shown, machined.program is not None, machined.has_forces) | seated_by.asked(shown)
     asked["tolerance"] = with_fit_of(asked["tolerance"], tolerance)
-    type_ = choice("--type", type_, (*toolkit.types, EVERY_TYPE))
+    type_ = choice("--type", searched.type_, (*toolkit.types, EVERY_TYPE))
     from workhold.files.part.load import refuse_unsure_numbers
     from workhold.geometry.segment import Box
     from workhold.kernels.base.compiling import is_first_run
     from workhold.model.query import Query
     from workhold.model.requirements import far_loads
 
-    first_run, second = is_first_run(), None
+    first_run, compiling = is_first_run(), None
     if first_run and engine == "curves":
-        from workhold.cli.warming import begin_compiling, compile_kernels
+        from workhold.cli.warming import begin_compiling
 
-        second = begin_compiling()
+        compiling = begin_compiling()
     loaded = machined.reading(part, reading).load(part, toolkit.heights, toolkit.peg_diameter)
     refuse_unsure_numbers(loaded, asked["restrictions"].avoid, CALLED)
     workpiece = loaded.workpiece
     asked |= machined.asked(shown, reading.peg_height, workpiece)
     asked["restrictions"] = without_faces_cut(asked["restrictions"], workpiece, words.not_on_faces_cut_in)
-    thickness = machined.thickness if supports or machined.program is None else None
-    high = asked_thickness(supports, thickness, workpiece, shown)
-    query = Query(
-        workpiece, toolkit, None if type_ == EVERY_TYPE else type_, best=kept, listing=listing, **asked
-    )
+    thickness = machined.thickness if written.supports or machined.program is None else None
+    high = asked_thickness(written.supports, thickness, workpiece, shown)
+    query = Query(workpiece, toolkit, None if type_ == EVERY_TYPE else type_, **asked)
     for remark in far_loads(query.loads, Box(*workpiece.bounds)):
         print_remark(remark)
-    printed = printed_unit(reading.unit, toolkit)
+    unit = printed_unit(reading.unit, toolkit)
+    return Asked(query, loaded, searched.every, threads, engine, high, unit, output, first_run, compiling)
+
+
+def ask(asked: Asked) -> Answer:
+    """Search, and write the result file, which a search of very many fixtures does by itself."""
+    query, engine, output, estimated = asked.query, asked.engine, asked.output, None
     start = perf_counter()
     # What was found is decided for a moment more (``proof.deciding``); the rest of it is left.
     with ask_to_stop("what was found is kept as far as it is soon proven") as cancel:
-        if first_run and engine == "curves":
-            compile_kernels(cancel, second)
+        if asked.is_first_run and engine == "curves":
+            from workhold.cli.warming import compile_kernels
+
+            compile_kernels(cancel, asked.compiling)
         if query.seating is not None and query.toolkit.closes_at_once:
             from workhold.cli.warming import compile_seating
 
             compile_seating(cancel)
-        streamed, estimated = out if form == "npz" and engine == "curves" else None, None
+        streamed = output.out if output.form == "npz" and engine == "curves" else None
         with search_progress() as progress:
             if engine == "curves":
                 progress(0.0, 0)
-                query, estimated = as_many_as_asked(query, every, out, form, workers, cancel)
-            result = answered(query, engine, streamed, threads=workers, progress=progress, cancel=cancel)
-    if out is not None and streamed is None:
-        result = write_found(result, out, form)
-    if json_:
-        from workhold.listing.identity import entries
-        from workhold.presenting.data import result_data
+                query, estimated = as_many_as_asked(asked, cancel)
+            result = answered(
+                query, engine, streamed, threads=asked.threads, progress=progress, cancel=cancel
+            )
+    if output.out is not None and streamed is None:
+        result = write_found(result, output.out, output.form)
+    compiled = ", compiling on this first run included" if asked.is_first_run else ""
+    return Answer(result, estimated, f"{perf_counter() - start:.1f} s{compiled}")
 
-        further = further_data(result, engine, workers, folder, printed) | {"estimated": estimated}
-        if sheet is not None:
-            written = first_sheet(result, sheet, out, high, printed, words.not_on_faces_cut_in)
-            further["sheet"] = sheet if written else None
-        print_json(**result_data(result, entries(result, unfit), max(listed, 0)), result_file=out, **further)
-        if not result.complete:
-            raise typer.Exit(INTERRUPTED)
-        return
-    compiled = ", compiling on this first run included" if first_run else ""
-    spent = f"{perf_counter() - start:.1f} s{compiled}"
-    report(result, spent, out, form, listed, printed, unfit, stream)
-    supported: tuple[Supports, ...] = ()
-    if high is not None:
-        supported = report_supported(result, high, printed, stream)
-    if not result.complete:
+
+def report(asked: Asked, answer: Answer) -> None:
+    """Print what was found, and make the pictures and the sheet that were asked for."""
+    (report_as_json if asked.output.as_json else report_in_words)(asked, answer)
+    if not answer.result.complete:
         raise typer.Exit(INTERRUPTED)
-    if not any(result.found.values()) and engine == "curves":
+
+
+def report_as_json(asked: Asked, answer: Answer) -> None:
+    from workhold.listing.identity import entries
+    from workhold.presenting.data import result_data
+
+    result, output = answer.result, asked.output
+    further = further_data(asked, result) | {"estimated": answer.estimated}
+    if output.sheet is not None:
+        further["sheet"] = None if sheet_of_first(asked, result) is None else output.sheet
+    listed = result_data(result, entries(result, output.with_unfit), max(output.listed, 0))
+    print_json(**listed, result_file=output.out, **further)
+
+
+def report_in_words(asked: Asked, answer: Answer) -> None:
+    result, output, unit = answer.result, asked.output, asked.unit
+    report_found(result, answer.spent, output, unit)
+    supported: tuple[Supports, ...] = ()
+    if asked.thickness is not None:
+        supported = report_supported(result, asked.thickness, unit, output.stream)
+    if not result.complete:
+        return
+    if not any(result.found.values()) and asked.engine == "curves":
         from workhold.cli.tables import other_heights
 
-        explain_none(result, workers, folder, printed, stream)
-        print_tables(*other_heights(workpiece, loaded.heights, printed), stream=stream)
-    elif folder is not None:
-        drawn = draw_best(result, folder, printed)
-        pictures = f"Drawn: {plural(len(drawn), 'picture')} in {folder}." if drawn else "Nothing to draw."
-        print_tables(pictures, stream=stream)
-    if sheet is not None:
-        ranked = first_sheet(result, sheet, out, high, printed, words.not_on_faces_cut_in, supported)
-        if ranked is None:
-            print_tables(f"As there is no fixture, {sheet} was not written.", stream=stream)
-        else:
-            print_tables(f"The setup sheet of fixture {ranked} was written to {sheet}.", stream=stream)
+        explain_none(result, asked.threads, output.folder, unit, output.stream)
+        print_tables(*other_heights(result.workpiece, asked.loaded.heights, unit), stream=output.stream)
+    elif output.folder is not None:
+        drawn = draw_best(result, output.folder, unit)
+        pictures = (
+            f"Drawn: {plural(len(drawn), 'picture')} in {output.folder}." if drawn else "Nothing to draw."
+        )
+        print_tables(pictures, stream=output.stream)
+    if output.sheet is not None:
+        rank = sheet_of_first(asked, result, supported)
+        print_tables(
+            f"As there is no fixture, {output.sheet} was not written."
+            if rank is None
+            else f"The setup sheet of fixture {rank} was written to {output.sheet}.",
+            stream=output.stream,
+        )
 
 
-def as_many_as_asked(
-    query: Query, every: bool, out: str | None, form: str, threads: int | None, cancel: Event
-) -> tuple[Query, int | None]:
+def sheet_of_first(asked: Asked, result: Result, supported: tuple[Supports, ...] = ()) -> int | None:
+    """Write the setup sheet of the first choice; returns its rank, or None where there is no fixture."""
+    output = asked.output
+    assert output.sheet is not None
+    return first_sheet(
+        result, output.sheet, output.out, asked.thickness, asked.unit, output.before, supported
+    )
+
+
+def as_many_as_asked(asked: Asked, cancel: Event) -> tuple[Query, int | None]:
     """Returns the query, or one for the best fixtures where there are very many, and about how many.
 
     A remark says so before the search. Refuses all of very many without a file that can carry them.
@@ -230,25 +388,26 @@ def as_many_as_asked(
     from workhold.model.search_report import round_to_two_digits
     from workhold.search.estimate import LISTED, MANY, best_where_many
 
-    asked, count = best_where_many(query, thread_count(threads), cancel)
+    output = asked.output
+    query, count = best_where_many(asked.query, thread_count(asked.threads), cancel)
     if count is None or count <= MANY:
-        return query, count
-    name = "" if out in (None, STANDARD_OUTPUT) else f" in {out}"
+        return asked.query, count
+    name = "" if output.file is None else f" in {output.file}"
     about = f"{round_to_two_digits(count):,}"
-    size = f"{max(count * BYTES[form] / 1e6, 1.0):,.0f} MB{name}"
-    if not every:
+    size = f"{max(count * BYTES[output.form] / 1e6, 1.0):,.0f} MB{name}"
+    if not asked.every:
         print_remark(
             f"there are about {about} fixtures, {size}: these are the best {LISTED:,}; --all lists all."
         )
-        return asked, count
-    if form != "npz" and (not name or count * BYTES[form] > MOST_TEXT):
+        return query, count
+    if output.form != "npz" and (not name or count * BYTES[output.form] > MOST_TEXT):
         columns = f"{count * BYTES['npz'] / 1e6:,.0f} MB"
         raise InputError(
             f"--all of about {about} fixtures takes {size}: write them to a file whose name ends in .npz, "
             f"which takes {columns} and is written as they are found, such as --out all.npz."
         )
     print_remark(f"there are about {about} fixtures, {size}.")
-    return query, count
+    return asked.query, count
 
 
 def answered(query: Query, engine: str, streamed: str | None, threads: int | None, **watching: Any) -> Result:
@@ -267,17 +426,8 @@ def answered(query: Query, engine: str, streamed: str | None, threads: int | Non
     return answer(query, threads=threads, **watching)
 
 
-def report(
-    result: Result,
-    spent: str,
-    out: str | None,
-    form: str,
-    listed: int,
-    unit: Unit,
-    unfit: bool,
-    stream: TextIO,
-) -> None:
-    """Reports a result on a stream: stderr where stdout carries the file."""
+def report_found(result: Result, spent: str, output: Output, unit: Unit) -> None:
+    """Print the notes, the best fixtures, how many there are, and the proof."""
     from workhold.cli.tables import (
         counts_sentence,
         first_sentence,
@@ -289,41 +439,40 @@ def report(
 
     for note in result.notes:
         print_remark(note)
-    shown = entries(result, unfit)
-    if len(result) and listed > 0:
-        print_tables(result_table(result, shown, listed, unit), stream=stream)
+    shown = entries(result, output.with_unfit)
+    if len(result) and output.listed > 0:
+        print_tables(result_table(result, shown, output.listed, unit), stream=output.stream)
         if reason := first_sentence(result, unit):
-            print_tables(reason, stream=stream)
+            print_tables(reason, stream=output.stream)
     sentence = counts_sentence(result)
     if not sum(result.found.values()):
         found = "exists" if result.complete else "was found before the interruption"
         sentence = (
             f"No fixture {found} for {result.workpiece.name} {result.toolkit.wording.inside}: the count is 0"
         )
-    written = out is not None and out != STANDARD_OUTPUT
-    proof = proof_sentences(result, out if written and form != "csv" else None)
+    out = output.file
+    proof = proof_sentences(result, out if output.form != "csv" else None)
     left_out = [unfit_sentence(shown.unfit)] if shown.unfit else []
-    print_tables(f"{sentence}; {spent}.", *left_out, *proof, stream=stream)
-    if written:
-        print_tables(f"Written to {out}.", stream=stream)
+    print_tables(f"{sentence}; {spent}.", *left_out, *proof, stream=output.stream)
+    if out is not None:
+        print_tables(f"Written to {out}.", stream=output.stream)
     if not result.complete:
-        marked = f", and {out} is marked so" if written else ""
+        marked = "" if out is None else f", and {out} is marked so"
         print_remark(f"interrupted: this is a part of the fixtures only{marked}.")
 
 
-def further_data(
-    result: Result, engine: str, threads: int | None, folder: Path | None, unit: Unit
-) -> dict[str, Any]:
+def further_data(asked: Asked, result: Result) -> dict[str, Any]:
     """Returns why there is no fixture, and the pictures drawn, as plain data.
 
     A search that was interrupted has neither.
     """
     explained, written = None, []
-    if result.complete and not any(result.found.values()) and engine == "curves":
+    folder, unit = asked.output.folder, asked.unit
+    if result.complete and not any(result.found.values()) and asked.engine == "curves":
         from workhold.presenting.data import explanation_data
         from workhold.search.explaining import explain
 
-        why = explain(result.query, threads, unit)
+        why = explain(result.query, asked.threads, unit)
         explained = explanation_data(why, result.toolkit)
         if folder is not None and why.nearest is not None:
             written = draw_one(why.nearest.fixture, result, folder, NEAREST_MISS, "Nearest miss", unit)

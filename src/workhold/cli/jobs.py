@@ -22,7 +22,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from attrs import AttrsInstance, evolve, fields_dict, frozen
+from attrs import AttrsInstance, evolve, fields, fields_dict, frozen, resolve_types
 
 from workhold.cli.commands import print_remark
 from workhold.cli.options import CALLED, PartWords
@@ -44,11 +44,11 @@ PART, TOOLKIT = "part", "toolkit"
 GROUPS = PartWords, QueryWords, SeatingWords, ProgramWords
 Words = TypeVar("Words", PartWords, QueryWords, SeatingWords, ProgramWords)
 KEYS = (PART, TOOLKIT, *(name for group in GROUPS for name in fields_dict(group)))
-# Words that are true or false, and how that is written.
-FLAGS = ("foolproof",)
+KINDS = {one.name: one.type for group in GROUPS for one in fields(resolve_types(group))}
+# How words that are true or false are written.
 TRUTHS = {"true": True, "yes": True, "false": False, "no": False}
 # Words of which there may be several.
-LISTS = (TOOLKIT, "layer", "avoid", "keep_out", "angle", "load")
+LISTS = {TOOLKIT} | {name for name, kind in KINDS.items() if kind == list[str] | None}
 FILES = (PART, TOOLKIT, "loads", "program", "tools")
 
 
@@ -138,7 +138,7 @@ def job_of(entry: Mapping[str, Any], place: str, folder: Path) -> JobWords:
             raise InputError(
                 f"{place} has an unknown word {key[:40]!r}: give {', '.join(KEYS[:-1])} or {KEYS[-1]}."
             )
-        if name in FLAGS:
+        if KINDS.get(name) is bool:
             words[name] = flag_of(value, f"{place}: {key}")
             continue
         values = [

@@ -6,26 +6,20 @@ A load is typed as ``--load "force=200 at=10,5 direction=30..60"``.
 from __future__ import annotations
 
 import shlex
-from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from attrs import evolve, frozen
 
-from workhold.cli.commands import flag, option
-from workhold.cli.values import (
-    length,
-    length_from_zero,
-    number,
-    optional_count,
-    optional_force,
-    optional_positive_length,
-    whole_number,
-)
+from workhold.asking.declaring import declarations_of
+from workhold.asking.search import LOADS, RANKING, RULING_OUT, SEATING, RuledOut, SearchQuestion
+from workhold.cli.commands import option
+from workhold.cli.declared import one_word, options_of, read_words, several_words
+from workhold.cli.values import length
 from workhold.errors import InputError
 from workhold.units import Unit
 
 if TYPE_CHECKING:
-    from workhold.model.requirements import Load, Restrictions, Tolerance, Zone
+    from workhold.model.requirements import Load, Restrictions, Tolerance
     from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -81,9 +75,6 @@ def parse_load(text: str, unit_scale: float = 1.0) -> Load:
     return load_from_words(values, place, unit_scale)
 
 
-RULING_OUT, LOADS, RANKING = "Ruling out", "Loads", "Ranking"
-
-
 LOAD = option(LOADS, "LOAD", LOAD_HELP)
 LOADS_FILE = option(LOADS, "FILE", "Loads from a TOML file.")
 JAW_FORCE = option(
@@ -104,60 +95,63 @@ FRICTION = option(
 )
 
 
-@frozen
+# What a search in one toolkit and a comparison of several both ask; beside these fields stand options that are no fields.
+OF_RESTRICTIONS = declarations_of(RuledOut)
+OF_SEARCHES = declarations_of(SearchQuestion, (RULING_OUT, LOADS, RANKING))
+OF_SEATING = declarations_of(SearchQuestion, (SEATING,))
+BESIDE = {
+    "zones": {
+        "not_on_faces_cut_in": one_word(
+            option(
+                RULING_OUT,
+                "FILE",
+                "Of a solid's second side: the result of the first, whose faces to avoid were cut there; they are "
+                "avoided here, too.",
+            )
+        )
+    },
+    "jaw_force": {"load": several_words(LOAD), "loads": one_word(LOADS_FILE)},
+    "rank_by": one_word(
+        option(
+            RANKING,
+            "FIGURES",
+            "What makes a fixture good, the first counting most, such as penalty,tilt, instead of the usual "
+            "order: no warning; location error in steps of a tenth, more where the part is turned, hangs over or "
+            "is held from inside a hole; as drawn; then warnings, penalty, clamp-amplification (or "
+            "load-reaction), closure-margin, edge-distance. Also location-error, tilt, smallest-face, "
+            "wrench-radius, end-distance, jaw-force-needed, with a program program-clearance, and of two clamps "
+            "clamp-freedom.",
+        )
+    ),
+    "prefer": one_word(
+        option(
+            RANKING,
+            "square|strong|precise|roomy",
+            "Instead of --rank-by, what you want most: the part square to the jaws, gentle pegs, the best "
+            "location, or contacts far from edges and from the program's tools.",
+        )
+    ),
+    "tolerance": one_word(
+        option(
+            RANKING,
+            "PEG[,FACE]",
+            "How far pegs and faces may be off, for the location error; 0.01mm if neither this nor --vise says.",
+        )
+    ),
+}
+
+
+@frozen(these=options_of((*OF_RESTRICTIONS, *OF_SEARCHES), **BESIDE))
 class QueryWords:
     """The options of what is asked for, as typed; None for those not given."""
 
-    avoid: list[str] | None = option(
-        RULING_OUT, "FACES", "Faces that no peg may touch, such as 3,7 (see workhold features)."
-    )
-    not_on_faces_cut_in: str | None = option(
-        RULING_OUT,
-        "FILE",
-        "Of a solid's second side: the result of the first, whose faces to avoid were cut there; they are "
-        "avoided here, too.",
-    )
-    keep_out: list[str] | None = option(
-        RULING_OUT,
-        "ZONE",
-        "Where no peg may stand, in the drawing's coordinates: circle=X,Y,RADIUS or polygon=X,Y;X,Y;X,Y. "
-        "May be repeated.",
-    )
-    angle: list[str] | None = option(
-        RULING_OUT, "FROM..TO", "Angles the part may lie at, in degrees: -10..10. May be repeated."
-    )
-    contact_margin: str = option(
-        RULING_OUT, "LENGTH", "Smallest distance from a contact to the end of its face.", default="0"
-    )
-    load: list[str] | None = LOAD
-    loads: str | None = LOADS_FILE
-    jaw_force: str | None = option(
-        LOADS,
-        "FORCE",
-        "Force that closes the vise, or of the clamp, in N or with its unit (3kN, 700lbf), of two clamps "
-        "the sum of theirs, to warn of pegs that let go under the loads.",
-    )
-    rank_by: str | None = option(
-        RANKING,
-        "FIGURES",
-        "What makes a fixture good, the first counting most, such as penalty,tilt, instead of the usual "
-        "order: no warning; location error in steps of a tenth, more where the part is turned, hangs over or "
-        "is held from inside a hole; as drawn; then warnings, penalty, clamp-amplification (or "
-        "load-reaction), closure-margin, edge-distance. Also location-error, tilt, smallest-face, "
-        "wrench-radius, end-distance, jaw-force-needed, with a program program-clearance, and of two clamps "
-        "clamp-freedom.",
-    )
-    prefer: str | None = option(
-        RANKING,
-        "square|strong|precise|roomy",
-        "Instead of --rank-by, what you want most: the part square to the jaws, gentle pegs, the best "
-        "location, or contacts far from edges and from the program's tools.",
-    )
-    tolerance: str | None = option(
-        RANKING,
-        "PEG[,FACE]",
-        "How far pegs and faces may be off, for the location error; 0.01mm if neither this nor --vise says.",
-    )
+    if TYPE_CHECKING:
+        not_on_faces_cut_in: str | None
+        load: list[str] | None
+        loads: str | None
+        rank_by: str | None
+        prefer: str | None
+        tolerance: str | None
 
     def asked(self, unit: Unit, has_program: bool = False, has_forces: bool = False) -> dict[str, Any]:
         """Keyword arguments of a query; the tolerance is None where none was typed.
@@ -177,19 +171,11 @@ class QueryWords:
 
         loads = asked_loads(self.load, self.loads, unit)
         names = None if self.rank_by is None else [word for word in self.rank_by.split(",") if word.strip()]
-        return {
-            "contact_margin": length_from_zero("--contact-margin", self.contact_margin, unit),
-            "restrictions": Restrictions(
-                avoid=tuple(
-                    whole_number("--avoid", word) for words in self.avoid or () for word in words.split(",")
-                ),
-                zones=tuple(zone(text, unit) for text in self.keep_out or ()),
-                angles=tuple(angles(text) for text in self.angle or ()),
-            ),
+        return read_words(OF_SEARCHES, self, unit) | {
+            "restrictions": Restrictions(**read_words(OF_RESTRICTIONS, self, unit)),
             "ranking": asked_ranking(names, self.prefer, bool(loads) or has_forces, has_program),
             "tolerance": asked_tolerance(self.tolerance, unit),
             "loads": loads,
-            "jaw_force": optional_force("--jaw-force", self.jaw_force),
         }
 
 
@@ -213,33 +199,6 @@ def without_faces_cut(restrictions: Restrictions, workpiece: Workpiece, before: 
     cut = query.workpiece.numbered.faces_over(query.restrictions.avoid)
     avoid = workpiece.numbered.segments_under(cut)
     return evolve(restrictions, avoid=(*restrictions.avoid, *avoid))
-
-
-def zone(text: str, unit: Unit) -> Zone:
-    """A keep-out zone from words such as ``circle=10,5,8`` or ``polygon=0,0;10,0;10,8``."""
-    from workhold.model.requirements import circle_zone, polygon_zone
-
-    kind, _, rest = text.partition("=")
-    points = [
-        [length("--keep-out", word, unit) for word in words.split(",")]
-        for words in rest.split(";")
-        if words.strip()
-    ]
-    kind = kind.strip().lower()
-    if kind == "circle" and len(points) == 1 and len(points[0]) == 3:
-        return circle_zone(*points[0])
-    if kind == "polygon" and all(len(point) == 2 for point in points):
-        return polygon_zone(points)
-    raise InputError(f"--keep-out {text!r} is no zone: give circle=X,Y,RADIUS or polygon=X,Y;X,Y;X,Y.")
-
-
-def angles(text: str) -> tuple[float, float]:
-    """A range of angles in degrees from words such as ``-10..10``; a single number is that angle alone."""
-    low, dots, high = text.partition("..")
-    least, most = (number(word.strip()) for word in ((low, high) if dots else (low, low)))
-    if not (isfinite(least) and isfinite(most)):
-        raise InputError(f"--angle {text!r} is no range of angles: give it in degrees, such as -10..10.")
-    return least, most
 
 
 def asked_tolerance(text: str | None, unit: Unit) -> Tolerance | None:
@@ -272,30 +231,9 @@ def asked_loads(loads: list[str] | None, file: str | None, unit: Unit) -> tuple[
     return typed + (() if file is None else read_loads(file, unit.millimetres))
 
 
-SEATING = "Seating"
-
-
-@frozen
+@frozen(these=options_of(OF_SEATING))
 class SeatingWords:
     """The options of seating, as typed; None for those not given."""
-
-    seating: str | None = option(
-        SEATING,
-        "K",
-        "Of the first K fixtures report from how far open, or with the clamp how far drawn back, the part is "
-        "caught and where else it can rest, and order them by that too (see workhold seat).",
-    )
-    opening: str | None = option(
-        SEATING,
-        "LENGTH",
-        "List only those of them that catch the part with the jaws open, or the clamp drawn back, by so "
-        "much more than where they hold it; places beyond it do not count.",
-    )
-    foolproof: bool = flag(
-        SEATING,
-        "List only those of them that have no wrong place to rest in, or a caliper shows each.",
-        "--foolproof",
-    )
 
     def asked(self, unit: Unit) -> dict[str, Any]:
         """Keyword arguments of a query.
@@ -305,10 +243,9 @@ class SeatingWords:
         InputError
             For words that are no number or length, and for rules of seating where that is not asked for.
         """
-        count = optional_count("--seating", self.seating)
-        opening = optional_positive_length("--opening", self.opening, unit)
-        if count is None and (opening is not None or self.foolproof):
+        asked = read_words(OF_SEATING, self, unit)
+        if asked["seating"] is None and any(asked.values()):
             raise InputError(
                 "--opening and --foolproof need --seating K: of how many fixtures, the first, to look at it."
             )
-        return {"seating": count, "opening": opening, "foolproof": self.foolproof}
+        return asked

@@ -9,11 +9,12 @@ import typer
 from attrs import asdict
 
 from workhold.cli.commands import option, print_remark
+from workhold.cli.declared import read_zone
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
 from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output
 from workhold.cli.progress import progress_bar
-from workhold.cli.search_options import FRICTION, JAW_FORCE, zone
+from workhold.cli.search_options import FRICTION, JAW_FORCE
 from workhold.cli.setup_sheets import PART_FILE, asked_models, write_bodies
 from workhold.cli.support_words import (
     friction_words,
@@ -159,8 +160,8 @@ def supports(
         "head_radius": optional_length("--head-radius", head_radius, shown),
         "reach": [lengths("--reach", text, ",", 4, shown) for text in reach] if reach else None,
         "band": None if band is None else lengths("--band", band, ":", 2, shown),
-        "bottom_zones": [zone(text, shown) for text in keep_out_below or ()],
-        "top_zones": [zone(text, shown) for text in keep_out_above or ()],
+        "bottom_zones": [read_zone(KEEP_OFF[0], text, shown) for text in keep_out_below or ()],
+        "top_zones": [read_zone(KEEP_OFF[1], text, shown) for text in keep_out_above or ()],
         "point": None if clamp_at is None else lengths("--clamp-at", clamp_at, ",", 2, shown),
     }
     asked = {name: value for name, value in own.items() if value is not None}

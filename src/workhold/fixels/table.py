@@ -8,10 +8,11 @@ noun : of a table, what its files and requests call a toolkit; kinds that differ
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any, Literal
 
 from attrs import evolve, field, frozen
+
+from workhold.asking.declaring import REQUIRED, Choice, Declaration, Form, PageLabel
 
 __all__ = [
     "CLAMPS_SECTION",
@@ -27,62 +28,11 @@ __all__ = [
     "ToolkitField",
 ]
 
-# What a value looks like: a whole number; lengths, one or two for x and y, or the least and the most; a
-# flat's distance with or without half its width; the heights between which something touches; names of holes;
-# directions or pairs of them; rings about points; a stress in MPa.
-Form = Literal[
-    "count", "length", "pitch", "span", "flat", "heights", "holes", "directions", "rings", "stress"
-]
-# What stands for a value of a form in the help of the command.
-METAVARS: Mapping[Form, str] = {
-    "count": "N",
-    "length": "LENGTH",
-    "pitch": "X[,Y]",
-    "span": "LEAST,MOST",
-    "flat": "DISTANCE[,WIDTH/2]",
-    "heights": "LOW,HIGH",
-    "holes": "HOLES",
-    "directions": "LIST",
-    "rings": "X,Y,LEAST,MOST",
-    "stress": "MPA",
-}
 # Forms of which files say nothing where there is none.
 SILENT: frozenset[Form] = frozenset({"flat", "heights"})
 # Sections of the command's help.
 TOOLKIT_SECTION, CLAMPS_SECTION = "The toolkit", "The clamps of a plate or fence"
 HEIGHTS_SECTION = "Heights other than those of all pegs"
-# The default of a field that must be given.
-REQUIRED = object()
-
-
-@frozen
-class Choice:
-    """One of several values of a field, and what the page calls it."""
-
-    value: Any
-    words: str
-
-
-@frozen
-class PageLabel:
-    """What the page shows of a field.
-
-    Parameters
-    ----------
-    label : what the page calls it.
-    hint : what stands in it while it is empty, which it may be then; None where it must be filled in.
-    is_usual : whether it is seen without being asked for.
-    several : whether more than one of the choices may be taken.
-    choices : the values to choose among; none where a value is typed.
-    when : values of other fields with which the page shows it.
-    """
-
-    label: str
-    hint: str | None = None
-    is_usual: bool = False
-    several: bool = False
-    choices: tuple[Choice, ...] = ()
-    when: Mapping[str, Any] = {}
 
 
 @frozen
@@ -102,21 +52,14 @@ class Lifted:
 
 
 @frozen
-class ToolkitField:
-    """A field of a toolkit.
+class ToolkitField(Declaration):
+    """A field of a toolkit; what any field has, :class:`workhold.asking.declaring.Declaration` says.
 
     Parameters
     ----------
-    name : the key in files and requests, and the constructor's argument.
-    form : what its values look like; see ``Form``.
-    help : of the command line's option, for which "{option}" stands in it.
-    labels : what the page shows of it, more than once where that depends on another field.
-    default : in requests and in result files; ``REQUIRED`` where it must be given.
     entry : what to write in a toolkit's file; empty where the form says enough.
     missing : what is not given where it must be, in a sentence.
     belongs_to : the part of a toolkit that it describes, which toolkits without this field have not.
-    least : what a length must be: "above 0", "0" or "any".
-    most : the largest count that a server takes; None for no limit of its own.
     figure : what it is called among the figures of a toolkit; empty where it is shown in another way.
     unset : what stands there for a value of None; where it is empty, a default is no figure.
     follows : the field whose value is the default of this one, with which it is no figure; of a pitch that in
@@ -128,21 +71,11 @@ class ToolkitField:
     lifted : how the limit that it sets is lifted, for which its default stands; None where it sets none.
     carriers, carrier_noun : of holes the names of the carriers that have them, and what one of these is
         called.
-    section : of the command's help.
-    word : its name as an option, where that is not the field's own.
-    metavar : what stands for its value in the help, where that does not follow from the form.
     """
 
-    name: str
-    form: Form
-    help: str
-    labels: tuple[PageLabel, ...]
-    default: Any = field(default=None, kw_only=True)
     entry: str = field(default="", kw_only=True)
     missing: str = field(default="", kw_only=True)
     belongs_to: str = field(default="", kw_only=True)
-    least: Literal["above 0", "0", "any"] = field(default="above 0", kw_only=True)
-    most: int | None = field(default=None, kw_only=True)
     figure: str = field(default="", kw_only=True)
     unset: str = field(default="", kw_only=True)
     follows: str = field(default="", kw_only=True)
@@ -153,26 +86,7 @@ class ToolkitField:
     lifted: Lifted | None = field(default=None, kw_only=True)
     carriers: tuple[str, ...] = field(default=(), kw_only=True)
     carrier_noun: str = field(default="", kw_only=True)
-    section: str = field(default=TOOLKIT_SECTION, kw_only=True)
-    word: str = field(default="", kw_only=True)
-    metavar: str = field(kw_only=True)
-
-    @metavar.default
-    def usual_metavar(self) -> str:
-        return METAVARS[self.form]
-
-    @property
-    def option(self) -> str:
-        return f"--{(self.word or self.name).replace('_', '-')}"
-
-    @property
-    def words(self) -> str:
-        """The name in sentences."""
-        return self.name.replace("_", " ")
-
-    @property
-    def is_required(self) -> bool:
-        return self.default is REQUIRED
+    section: str | None = field(default=TOOLKIT_SECTION, kw_only=True)
 
     def shown(self, *labels: PageLabel, **changes: Any) -> ToolkitField:
         """Returns the field of another kind of toolkit, with other labels on the page and further changes."""

@@ -9,7 +9,7 @@ is in the frame of the search; the way back to the toolkit's own is the last ste
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from attrs import define, evolve, fields
@@ -112,7 +112,7 @@ def bodies_clear(c: Candidates, frame: Frame) -> BoolArray:
     return clear
 
 
-def at_angle(theta: Array, angles: tuple[tuple[float, float], ...], frame: Frame) -> BoolArray:
+def at_angle(theta: Array, angles: Sequence[Sequence[float]], frame: Frame) -> BoolArray:
     """Which orientations (N,) in radians lie, seen from the toolkit, in one of some ranges in degrees; in any
     when there are none."""
     if not angles:

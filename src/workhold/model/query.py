@@ -5,14 +5,13 @@ result.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from math import isfinite
 from typing import Any, cast
 
 from attrs import evolve, field, frozen
 
+from workhold.asking.search import SearchQuestion
 from workhold.errors import InputError, refuse_kind
 from workhold.fixels.toolkit import Toolkit
-from workhold.limits import counting_number, real, refuse_long, refuse_strong
 from workhold.model.first_choice import figures_ranked_by, has_house_order
 from workhold.model.own_outlines import met_by
 from workhold.model.program import Program
@@ -35,7 +34,6 @@ from workhold.model.workpiece import Workpiece
 
 __all__ = ["Query"]
 
-LISTINGS = ("best", "all")
 LOAD_KEYS = (FIGURES[LOAD_REACTION].key, FIGURES[JAW_FORCE_NEEDED].key)
 SEATING_KEYS = {figure.key for figure in SEATING_FIGURES}
 
@@ -75,7 +73,7 @@ def refuse_other_kinds(query: Query) -> None:
 
 
 @frozen
-class Query:
+class Query(SearchQuestion):
     """What to hold, what to hold it in, and what is asked of the fixtures.
 
     Parameters
@@ -119,20 +117,11 @@ class Query:
     workpiece: Workpiece
     toolkit: Toolkit
     arrangements: tuple[str, ...] = field(default=None, converter=words)
-    contact_margin: float = 0.0
     restrictions: Restrictions = field(default=None, converter=restrictions_of)
     ranking: tuple[str, ...] = field(default=None, converter=words)
     tolerance: Tolerance = field(default=None, converter=tolerance_given)
     loads: tuple[Load, ...] = field(default=(), converter=loads_of)
-    best: int | None = None
-    jaw_force: float | None = None
-    listing: str | None = None
-    seating: int | None = None
-    opening: float | None = None
-    foolproof: bool = False
     program: Program | None = None
-    peg_height: float | None = None
-    thickness: float | None = None
 
     def __attrs_post_init__(self) -> None:
         given: Any = self.tolerance
@@ -144,7 +133,6 @@ class Query:
         known = self.toolkit.types
         object.__setattr__(self, "arrangements", chosen_arrangements(self.arrangements, known))
         pairs = self.toolkit.travels > 1
-        object.__setattr__(self, "seating", counting_number("seating", self.seating))
         asked = self.is_loaded, pairs, self.seating is not None, self.toolkit.reaching is not None
         object.__setattr__(self, "ranking", chosen_ranking(self.ranking, *asked))
         if PROGRAM_FIGURE.key in self.ranking and self.program is None:
@@ -153,12 +141,6 @@ class Query:
             object.__setattr__(self, "program", self.program.pressing_on(self.workpiece.outer_loops))
         if self.program is not None or self.peg_height is not None:
             object.__setattr__(self, "peg_height", height_of_pegs(self.peg_height, self.workpiece))
-        if self.thickness is not None:
-            thickness = real(self.thickness)
-            if not (isfinite(thickness) and thickness > 0):
-                raise InputError(f"thickness {thickness:g} is not a length: give more than 0, in mm.")
-            refuse_long("thickness", thickness)
-            object.__setattr__(self, "thickness", thickness)
         if self.workpiece.solid is not None:
             object.__setattr__(self, "thickness", None)
             if self.program is None:
@@ -168,29 +150,12 @@ class Query:
                 "how far pegs bend is known where it is known how high they touch the part: give its thickness, "
                 "or how high the pegs are."
             )
-        if self.listing is not None and (not pairs or self.listing not in LISTINGS):
-            remedy = f"choose {' or '.join(LISTINGS)}" if pairs else "only fixtures with two clamps have one"
-            raise InputError(f"the listing cannot be {self.listing!r}: {remedy}.")
+        if self.listing is not None and not pairs:
+            raise InputError(
+                f"the listing cannot be {self.listing!r}: only fixtures with two clamps have one."
+            )
         if pairs and self.listing is None:
-            object.__setattr__(self, "listing", LISTINGS[0])
-        margin = self.contact_margin
-        if not (isinstance(margin, int | float) and isfinite(real(margin)) and margin >= 0):
-            raise InputError(f"contact margin {margin} is not a length: give 0 or more, in mm.")
-        refuse_long("contact margin", margin)
-        object.__setattr__(self, "contact_margin", float(margin))
-        object.__setattr__(self, "best", counting_number("best", self.best))
-        if self.jaw_force is not None:
-            force = real(self.jaw_force)
-            if not (isfinite(force) and force >= 0):
-                raise InputError(f"jaw force {force:g} cannot be used: give 0 or more, in N.")
-            refuse_strong("jaw force", force)
-            object.__setattr__(self, "jaw_force", force)
-        if self.opening is not None:
-            opening = real(self.opening)
-            if not (isfinite(opening) and opening > 0):
-                raise InputError(f"opening {opening:g} is not a length: give more than 0, in mm.")
-            refuse_long("opening", opening)
-            object.__setattr__(self, "opening", opening)
+            object.__setattr__(self, "listing", "best")
         if self.has_seating_rules and self.seating is None:
             raise InputError(
                 "which fixtures catch the part at an opening, or are foolproof, their seating states, and "
@@ -303,10 +268,7 @@ def height_of_pegs(given: float | None, workpiece: Workpiece) -> float:
             f"{workpiece.name} is an outline without heights, so nobody knows what of the program passes "
             "over the pegs: give its thickness, and the peg height where pegs are not as high as the part."
         )
-    height = real(given) if given is not None else solid.peg_height if solid is not None else 0.0
-    if not (isfinite(height) and height > 0):
-        raise InputError(f"peg height {height:g} is not a length: give more than 0, in mm.")
-    refuse_long("peg height", height)
+    height = given if given is not None else solid.peg_height if solid is not None else 0.0
     if solid is not None and height != solid.peg_height:
         raise InputError(
             f"pegs of {height:g} mm are asked for, and the outline is what pegs of {solid.peg_height:g} mm "

@@ -15,6 +15,7 @@ import numpy as np
 from attrs import evolve, field, frozen
 from numpy.typing import NDArray
 
+from workhold.asking.search import RuledOut
 from workhold.delegates import delegate
 from workhold.errors import InputError
 from workhold.geometry.loop import (
@@ -229,21 +230,12 @@ def zone_of(vertices: Sequence[Sequence[float]]) -> Zone:
     return Zone(checked)
 
 
-def angle_pairs(ranges: Iterable[Iterable[float]]) -> tuple[Angles, ...]:
-    return tuple((float(low), float(high)) for low, high in ranges)
-
-
 def all_zones(zones: Iterable[Zone]) -> tuple[Zone, ...]:
     return tuple(zones)
 
 
-def ascending(numbers: Iterable[int]) -> tuple[int, ...]:
-    """Numbers in order, each once."""
-    return tuple(sorted(set(numbers)))
-
-
 @frozen
-class Restrictions:
+class Restrictions(RuledOut):
     """What fixtures must keep clear of.
 
     Parameters
@@ -258,10 +250,6 @@ class Restrictions:
     InputError
         For a range of angles that is not one.
     """
-
-    avoid: tuple[int, ...] = field(default=(), converter=ascending)
-    zones: tuple[Zone, ...] = field(default=(), converter=all_zones)
-    angles: tuple[Angles, ...] = field(default=(), converter=angle_pairs)
 
     def __attrs_post_init__(self) -> None:
         for low, high in ((real(low), real(high)) for low, high in self.angles):

@@ -10,6 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import partial, reduce
 from math import inf
 from threading import Event
+from typing import Any
 
 import numpy as np
 from attrs import evolve, frozen
@@ -92,29 +93,25 @@ def design(
     loads: Sequence[Load] = (),
     best: int | None = None,
     jaw_force: float | None = None,
-    listing: str | None = None,
-    seating: int | None = None,
-    opening: float | None = None,
-    foolproof: bool = False,
     thickness: float | None = None,
-    peg_height: float | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
     cancel: Event | None = None,
     preview: Preview | None = None,
+    **further: Any,
 ) -> Result:
     """Finds every fixture of a workpiece in a toolkit, such as a vise.
 
     Parameters
     ----------
-    workpiece, toolkit, contact_margin, restrictions, tolerance, loads, best, jaw_force, listing : see
-        :class:`workhold.model.query.Query`.
-    seating, opening, foolproof, thickness, peg_height : the same.
+    workpiece, toolkit, contact_margin, restrictions, tolerance, loads, best, jaw_force, thickness : see
+        :class:`workhold.Query`.
     types : names of arrangements: of a vise "I" (two pegs on each jaw), "II" (three and one), or both; None
         is all.
     rank_by : the query's ranking.
     prefer : instead of a ranking, what is wanted most: "square", "strong", "precise" or "roomy".
     threads, progress, cancel, preview : see :func:`answer`.
+    further : any other field of :class:`workhold.Query`, such as ``seating``, ``opening``, ``listing`` or ``program``.
 
     Returns
     -------
@@ -138,16 +135,19 @@ def design(
     ['L-A1', 'L-A2', 'R-A1', 'R-A2']
     """
     ranking = asked_ranking(rank_by, prefer, loads)
-    asked = types, contact_margin, restrictions, ranking, tolerance, loads, best, jaw_force, listing
     query = Query(
         workpiece,
         toolkit,
-        *asked,
-        seating,
-        opening,
-        foolproof,
-        peg_height=peg_height,
+        types,
+        restrictions,
+        ranking,
+        tolerance,
+        loads,
+        contact_margin=contact_margin,
+        best=best,
+        jaw_force=jaw_force,
         thickness=thickness,
+        **further,
     )
     return answer(query, threads=threads, progress=progress, cancel=cancel, preview=preview)
 

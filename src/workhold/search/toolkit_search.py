@@ -167,7 +167,7 @@ def tables_of(
 
 
 def may_lie_at(
-    edges: Array, angles: Collection[tuple[float, float]], half_turns: int, turned: float = 0.0
+    edges: Array, angles: Collection[Sequence[float]], half_turns: int, turned: float = 0.0
 ) -> NDArray[np.bool_]:
     """Which cells (K,) between edges (K + 1,) of psi hold orientations of the part in some ranges in degrees.
 

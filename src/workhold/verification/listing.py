@@ -18,6 +18,8 @@ from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.archive import is_archive, mapped_archive
+from workhold.asking.declaring import declarations_of
+from workhold.asking.search import SearchQuestion
 from workhold.errors import InputError
 from workhold.files.result.fixture_forms import checked_seating, seatings_of
 from workhold.files.result.forms import Head
@@ -327,12 +329,15 @@ def keys_missing(head: Head) -> list[str]:
         "workpiece.unclear_heights",
         *(f"workpiece.{key}" for key in BESIDE_TOP),
     } | ({"solid", "workpiece.bands"} if head.solid is None else set())
-    if head.seating is None:
-        spared |= {"seating", "opening", "foolproof"}
-    if head.program is None:
-        spared |= {"program", "peg_height"}
-    if getattr(head.toolkit, "clamps", 1) == 1:
-        spared |= {"listing", "toolkit.clamps"}
+    has_pairs = getattr(head.toolkit, "clamps", 1) > 1
+    stated = {"contact_margin", "best", "jaw_force"} | ({"listing"} if has_pairs else set())
+    if getattr(head, "seating", None) is not None:
+        stated |= {"seating", "opening", "foolproof"}
+    if head.program is not None:
+        stated.add("peg_height")
+    spared |= {row.name for row in declarations_of(SearchQuestion)} - stated
+    spared |= set() if has_pairs else {"toolkit.clamps"}
+    spared |= {"program"} if head.program is None else set()
     return [f"the key {key} is missing" for key in head.not_given() if key not in spared]
 
 

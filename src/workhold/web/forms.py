@@ -10,6 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from attrs import evolve
 from pydantic import Field, TypeAdapter
 
+from workhold.asking.declaring import declarations_of
+from workhold.asking.search import LOADS, RANKING, RULING_OUT, SEARCH, SEATING, SearchQuestion
+from workhold.files.declared_forms import given_in, with_fields
 from workhold.files.input_forms import forms_by_noun, one_of, optional
 from workhold.files.result.forms import LoadPart, RestrictionsPart, TolerancePart
 from workhold.fixels.contacts import DIRECTIONS
@@ -45,10 +48,9 @@ __all__ = [
 
 
 MOST_NAMES, MOST_TOOLKITS = 500, 60
-# Fixtures whose seating is worked out in one search.
-MOST_SEATED = 1_000
-# Best fixtures that may be asked for instead of all.
-MOST_BEST = 10_000
+# What a comparison of toolkits asks as well, and what a search in one asks besides.
+OF_SEARCHES = declarations_of(SearchQuestion, (RULING_OUT, LOADS, RANKING))
+OF_ONE = declarations_of(SearchQuestion, (SEARCH, SEATING))
 
 DirectionPair = Annotated[list[Name], Field(min_length=2, max_length=2)]
 
@@ -157,17 +159,15 @@ def asked_loads(text: str | None) -> tuple[Load, ...] | None:
     return tuple(form.load() for form in of_address(SeveralLoads, "loads", text))
 
 
+@with_fields(OF_SEARCHES, LARGEST)
 class SearchForm(Form):
     """What a search in one toolkit and a comparison of several have in common."""
 
     workpiece: WorkpieceForm
     types: list[Name] | None = Field(default=None, max_length=10)
-    contact_margin: Annotated[float, Field(ge=0, le=LARGEST)] = 0.0
     restrictions: RestrictionsForm = RestrictionsForm()
     ranking: list[Name] | None = Field(default=None, max_length=10)
     prefer: Name | None = None
-    jaw_force: Annotated[float, Field(ge=0, le=LARGEST)] | None = None
-    listing: Literal["best", "all"] | None = None
     tolerance: ToleranceForm | None = None
     loads: list[LoadForm] = Field(default=[], max_length=MOST_LOADS)
     program: ProgramForm | None = None
@@ -181,18 +181,17 @@ class SearchForm(Form):
             workpiece,
             toolkit,
             self.types,
-            self.contact_margin,
             self.restrictions.restrictions(),
             asked_ranking(self.ranking, self.prefer, is_loaded, program is not None),
             None if self.tolerance is None else self.tolerance.tolerance(),
             loads,
-            jaw_force=self.jaw_force,
-            listing=None if toolkit.closes_at_once else self.listing,
-            program=program,
+            program,
             peg_height=height,
+            **given_in(self, OF_SEARCHES),
         )
 
 
+@with_fields(OF_ONE, LARGEST)
 class JobForm(SearchForm):
     """A search for every fixture or only the best.
 
@@ -200,17 +199,15 @@ class JobForm(SearchForm):
     """
 
     toolkit: HeldIn
-    best: int | None = Field(default=None, ge=1, le=MOST_BEST)
     every: bool = Field(default=False, description="find all fixtures, even where there are over 200,000")
-    seating: int | None = Field(default=None, ge=1, le=MOST_SEATED)
-    opening: Annotated[float, Field(gt=0, le=LARGEST)] | None = None
-    foolproof: bool = False
 
     def queries(self, most_segments: int) -> tuple[tuple[str, Query], ...]:
         """The query, which has no name."""
-        query = self.query(self.toolkit.toolkit(), most_segments)
-        query = evolve(query, best=self.best)
-        return (("", evolve(query, seating=self.seating, opening=self.opening, foolproof=self.foolproof)),)
+        toolkit = self.toolkit.toolkit()
+        asked = given_in(self, OF_ONE)
+        if toolkit.closes_at_once:
+            asked["listing"] = None
+        return (("", evolve(self.query(toolkit, most_segments), **asked)),)
 
 
 class ExploreForm(SearchForm):

@@ -7,7 +7,10 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from workhold.asking.declaring import declarations_of
+from workhold.asking.search import SearchQuestion
 from workhold.errors import InputError
+from workhold.files.declared_forms import given_in, with_fields
 from workhold.files.input_forms import LONGEST_NAME, TAGS, forms_by_noun, one_of, optional
 from workhold.fixels.kinds import USUAL, table_of, toolkit_of
 from workhold.fixels.table import Form, ToolkitField
@@ -24,6 +27,7 @@ from workhold.model.workpiece import Workpiece
 __all__ = ["MISSING", "Head", "LoadPart", "ProofPart", "RestrictionsPart", "TolerancePart", "first_fault"]
 
 LONGEST_STANDARD = 40
+OF_SEARCH = declarations_of(SearchQuestion)
 # What is wrong with a key that is not there.
 MISSING = "it is missing"
 Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
@@ -156,7 +160,7 @@ class RestrictionsPart(FormPart):
     angles: list[Pair] = []
 
     def restrictions(self) -> Restrictions:
-        return Restrictions(self.avoid, map(zone_of, self.zones), self.angles)
+        return Restrictions(self.avoid, [*map(zone_of, self.zones)], self.angles)
 
 
 class FitPart(FormPart):
@@ -232,6 +236,7 @@ class ProofPart(FormPart):
         return Proof(*counts, tuple(item.undecided() for item in self.undecided))
 
 
+@with_fields(OF_SEARCH, bounded=False)
 class Head(FormPart):
     """Everything in the file but the fixtures."""
 
@@ -245,7 +250,6 @@ class Head(FormPart):
     toolkit: ToolkitPart | None = None
     counts: Counts
     types: list[str] | None = None
-    contact_margin: float = 0.0
     found: Counts | None = None
     distinct: Counts | None = None
     complete: bool = True
@@ -256,15 +260,7 @@ class Head(FormPart):
     ranking: list[str] | None = None
     tolerance: TolerancePart | None = None
     loads: list[LoadPart] = []
-    best: int | None = None
-    jaw_force: float | None = None
-    listing: str | None = None
-    seating: Annotated[int, Field(ge=1)] | None = None
-    opening: float | None = None
-    foolproof: bool = False
     program: dict[str, Any] | None = None
-    peg_height: float | None = None
-    thickness: float | None = None
     pairs: Annotated[int, Field(ge=0)] | None = None
     seats: Annotated[int, Field(ge=0)] | None = None
     least_effective_error: Annotated[float, Field(ge=0)] | None = Field(
@@ -296,20 +292,12 @@ class Head(FormPart):
             workpiece,
             toolkit,
             self.types,
-            contact_margin=self.contact_margin,
             restrictions=self.restrictions.restrictions(),
             ranking=["closure_margin"] if self.ranking is None else self.ranking,
             tolerance=None if self.tolerance is None else self.tolerance.tolerance(),
             loads=(part.load() for part in self.loads),
-            best=self.best,
-            jaw_force=self.jaw_force,
-            listing=self.listing,
-            seating=self.seating,
-            opening=self.opening,
-            foolproof=self.foolproof,
             program=self.asked_program(),
-            peg_height=self.peg_height,
-            thickness=self.thickness,
+            **given_in(self, OF_SEARCH),
         )
 
     def asked_program(self) -> Program | None:

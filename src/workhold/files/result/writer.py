@@ -18,6 +18,8 @@ from typing import Any
 
 from attrs import asdict
 
+from workhold.asking.declaring import declarations_of
+from workhold.asking.search import SearchQuestion
 from workhold.files.atomic import text_file
 from workhold.files.result.fixture_text import as_written, fixture_lines, rounded_degrees
 from workhold.fixels.carrier import Holes
@@ -236,20 +238,17 @@ def asked_entry(query: Query, with_pieces: bool = True) -> dict[str, Any]:
         "ranking": list(query.ranking),
         "tolerance": asdict(query.tolerance),
         "loads": [load_entry(load) for load in query.loads],
-        "best": query.best,
     }
-    if query.listing is not None:
-        asked["listing"] = query.listing
-    asked["jaw_force"] = query.jaw_force
-    if query.seating is not None:
-        asked |= {"seating": query.seating, "opening": query.opening, "foolproof": query.foolproof}
-    if query.thickness is not None:
-        asked["thickness"] = query.thickness
-    if query.program is None and query.peg_height is not None:
-        asked["peg_height"] = query.peg_height
+    always = {"best", "jaw_force"} | ({"opening", "foolproof"} if query.seating is not None else set())
+    asked |= {
+        row.name: value
+        for row in declarations_of(SearchQuestion)
+        if row.name not in asked
+        and ((value := getattr(query, row.name)) != row.default or row.name in always)
+    }
     if query.program is not None:
         program = query.program.to_dict() if with_pieces else query.program.head()
-        asked |= {"peg_height": query.peg_height, "program": program}
+        asked["program"] = program
     return asked
 
 
