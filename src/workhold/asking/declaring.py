@@ -1,0 +1,226 @@
+"""What a field of a question to the program is to all who ask it: declared once, beside its value.
+
+A question is an attrs class, such as a query or what stands on a setup sheet. A field that is made by :func:`declare` says what
+its values look like, what they must be and what they mean. From that come the checks of the constructor, the option of the
+command, the forms of requests, agents and files, their schemas, and what the page shows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from functools import partial
+from math import isfinite
+from typing import Any, Literal
+
+from attrs import Attribute, evolve, field, fields, frozen
+from attrs import Converter as AttrsConverter
+
+from workhold.errors import InputError
+from workhold.limits import counting_number, real, refuse_long, refuse_strong
+
+__all__ = [
+    "METAVARS",
+    "REQUIRED",
+    "Choice",
+    "Declaration",
+    "Form",
+    "Least",
+    "PageLabel",
+    "check_fields",
+    "declarations_of",
+    "declare",
+]
+
+# What a value looks like: a whole number; lengths, one or two for x and y, or the least and the most; a flat's distance with or
+# without half its width; the heights between which something touches; a place; a force in N; a plain number; a stress in MPa;
+# one of several words; whether something is so; text; a day; and lists of names of holes, of directions or pairs of them, of
+# rings about points, of numbers of faces, of zones, of ranges of angles, and of names.
+Form = Literal[
+    "count", "length", "pitch", "span", "flat", "heights", "place", "force", "number", "stress", "choice", "flag", "text", "day",
+    "holes", "directions", "rings", "faces", "zones", "angles", "names",
+]  # fmt: skip
+# What stands for a value of a form in the help of the command.
+METAVARS: Mapping[Form, str] = {
+    "count": "N",
+    "length": "LENGTH",
+    "pitch": "X[,Y]",
+    "span": "LEAST,MOST",
+    "flat": "DISTANCE[,WIDTH/2]",
+    "heights": "LOW,HIGH",
+    "place": "X,Y",
+    "force": "FORCE",
+    "number": "NUMBER",
+    "stress": "MPA",
+    "text": "WORDS",
+    "day": "YYYY-MM-DD",
+    "holes": "HOLES",
+    "directions": "LIST",
+    "rings": "X,Y,LEAST,MOST",
+    "faces": "FACES",
+    "zones": "ZONE",
+    "angles": "FROM..TO",
+    "names": "NAME",
+}
+Least = Literal["above 0", "0", "any"]
+# What a number must be, by the least that it may be.
+WANTED: Mapping[Least, str] = {"above 0": "more than 0", "0": "0 or more", "any": "a finite number"}
+# The default of a field that must be given.
+REQUIRED = object()
+# Where the declaration stands in the metadata of an attrs field.
+KEY = "declaration"
+
+
+@frozen
+class Choice:
+    """One of several values of a field, and what the page calls it."""
+
+    value: Any
+    words: str
+
+
+@frozen
+class PageLabel:
+    """What the page shows of a field.
+
+    Parameters
+    ----------
+    label : what the page calls it.
+    hint : what stands in it while it is empty, which it may be then; None where it must be filled in.
+    is_usual : whether it is seen without being asked for.
+    several : whether more than one of the choices may be taken.
+    choices : the values to choose among; none where a value is typed.
+    when : values of other fields with which the page shows it.
+    """
+
+    label: str
+    hint: str | None = None
+    is_usual: bool = False
+    several: bool = False
+    choices: tuple[Choice, ...] = ()
+    when: Mapping[str, Any] = {}
+
+
+@frozen
+class Declaration:
+    """A field of a question.
+
+    Parameters
+    ----------
+    name : the key in files and requests, and the constructor's argument.
+    form : what its values look like; see ``Form``.
+    help : what it means, in a sentence or two.
+    labels : what the page shows of it, more than once where that depends on another field; none where it shows it in another way.
+    default : of the constructor, in requests and in files; ``REQUIRED`` where it must be given.
+    least : what a number must be.
+    most : the largest count that a server takes; None for no limit of its own.
+    choices : the words that there are.
+    section : of the command's help.
+    word : its name as an option, where that is not the field's own.
+    typed : the help of the option, where that is another than ``help``.
+    metavar : what stands for its value in the help, where that does not follow from the form.
+    """
+
+    name: str
+    form: Form
+    help: str
+    labels: tuple[PageLabel, ...] = ()
+    default: Any = field(default=None, kw_only=True)
+    least: Least = field(default="above 0", kw_only=True)
+    most: int | None = field(default=None, kw_only=True)
+    choices: tuple[str, ...] = field(default=(), kw_only=True)
+    section: str | None = field(default=None, kw_only=True)
+    word: str = field(default="", kw_only=True)
+    typed: str = field(default="", kw_only=True)
+    metavar: str = field(kw_only=True)
+
+    @metavar.default
+    def usual_metavar(self) -> str:
+        return "|".join(self.choices) or METAVARS.get(self.form, "")
+
+    @property
+    def argument(self) -> str:
+        """The name of the option, as the name of an argument."""
+        return self.word or self.name
+
+    @property
+    def option(self) -> str:
+        return f"--{self.argument.replace('_', '-')}"
+
+    @property
+    def words(self) -> str:
+        """The name in sentences."""
+        return self.name.replace("_", " ")
+
+    @property
+    def is_required(self) -> bool:
+        return self.default is REQUIRED
+
+    def checked(self, value: Any) -> Any:
+        """Convert a value of the constructor, and refuse what it cannot be; None stands for nothing given."""
+        if value is None and self.default is None:
+            return None
+        match self.form:
+            case "length":
+                number = self.number(value, "is not a length", ", in mm")
+                refuse_long(self.words, number)
+                return number
+            case "force":
+                number = self.number(value, "cannot be used", ", in N")
+                refuse_strong(self.words, number)
+                return number
+            case "number":
+                return self.number(value, "cannot be used", "")
+            case "count":
+                return counting_number(self.words, value)
+            case "choice" if value not in self.choices:
+                few = f"{', '.join(self.choices[:-1])} or {self.choices[-1]}"
+                raise InputError(f"the {self.words} cannot be {value!r}: choose {few}.")
+        return value
+
+    def number(self, value: Any, wrong: str, unit: str) -> float:
+        """Convert a number, and refuse one that is not finite or too small."""
+        number = real(value)
+        is_low = number <= 0 if self.least == "above 0" else number < 0 and self.least == "0"
+        if not isfinite(number) or is_low:
+            raise InputError(f"{self.words} {number:g} {wrong}: give {WANTED[self.least]}{unit}.")
+        return number
+
+
+def declare(
+    form: Form, help: str, *labels: PageLabel, default: Any = None, converter: Any = None, **more: Any
+) -> Any:
+    """Make a field of a question, an attrs class with :func:`check_fields` as its transformer.
+
+    Parameters
+    ----------
+    converter : of its values, where it is not the one of their form.
+    more : further parameters of :class:`Declaration`.
+    """
+    said = Declaration("", form, help, labels, default=default, **more)
+    return field(default=default, converter=converter, metadata={KEY: said})
+
+
+def check_fields(question: type, those: list[Attribute[Any]]) -> list[Attribute[Any]]:
+    """Let the constructor of a question check its declared fields: a field transformer of attrs."""
+    return [
+        one if KEY not in one.metadata or one.converter is not None else one.evolve(converter=checker_of(one))
+        for one in those
+    ]
+
+
+def checker_of(one: Attribute[Any]) -> Any:
+    return AttrsConverter(partial(Declaration.checked, evolve(one.metadata[KEY], name=one.name)))
+
+
+def declarations_of(question: type, sections: Iterable[str | None] | None = None) -> tuple[Declaration, ...]:
+    """List the declared fields of a question in their order, of all sections if None are named.
+
+    Examples
+    --------
+    >>> from workhold.asking.search import SearchQuestion
+    >>> [row.option for row in declarations_of(SearchQuestion, ["Seating"])]
+    ['--seating', '--opening', '--foolproof']
+    """
+    rows = (evolve(one.metadata[KEY], name=one.name) for one in fields(question) if KEY in one.metadata)
+    wanted = None if sections is None else set(sections)
+    return tuple(row for row in rows if wanted is None or row.section in wanted)

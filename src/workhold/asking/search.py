@@ -1,0 +1,119 @@
+"""The question of a search: what is asked of the fixtures besides part and toolkit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
+from attrs import frozen
+
+from workhold.asking.declaring import PageLabel, check_fields, declare
+
+if TYPE_CHECKING:
+    from workhold.model.requirements import Zone
+
+__all__ = ["HEIGHTS", "LOADS", "RANKING", "RULING_OUT", "SEARCH", "SEATING", "RuledOut", "SearchQuestion"]
+
+# Sections of the command's help. What is ruled out, loads and ranking are asked of a comparison of toolkits as well.
+RULING_OUT, LOADS, RANKING, SEATING, SEARCH = "Ruling out", "Loads", "Ranking", "Seating", "The search"
+# Of heights, which stand with the part or its program.
+HEIGHTS = "Heights"
+
+
+def ascending(numbers: Iterable[int]) -> tuple[int, ...]:
+    """Numbers in order, each once."""
+    return tuple(sorted(set(numbers)))
+
+
+def angle_pairs(ranges: Iterable[Iterable[float]]) -> tuple[tuple[float, float], ...]:
+    return tuple((float(low), float(high)) for low, high in ranges)
+
+
+@frozen(field_transformer=check_fields)
+class RuledOut:
+    """What fixtures must keep clear of; :class:`workhold.Restrictions` explains the fields."""
+
+    avoid: Sequence[int] = declare(
+        "faces",
+        "Faces that no peg may touch.",
+        default=(),
+        converter=ascending,
+        section=RULING_OUT,
+        typed="Faces that no peg may touch, such as 3,7 (see workhold features).",
+    )
+    zones: Sequence[Zone] = declare(
+        "zones",
+        "Where no peg may stand.",
+        default=(),
+        converter=tuple,
+        section=RULING_OUT,
+        word="keep_out",
+        typed="Where no peg may stand, in the drawing's coordinates: circle=X,Y,RADIUS or polygon=X,Y;X,Y;X,Y. May be repeated.",
+    )
+    angles: Sequence[Sequence[float]] = declare(
+        "angles",
+        "Angles the part may lie at, in degrees.",
+        default=(),
+        converter=angle_pairs,
+        section=RULING_OUT,
+        word="angle",
+        typed="Angles the part may lie at, in degrees: -10..10. May be repeated.",
+    )
+
+
+@frozen(field_transformer=check_fields, kw_only=True)
+class SearchQuestion:
+    """What is asked of the fixtures; :class:`workhold.Query` explains the fields."""
+
+    contact_margin: float = declare(
+        "length",
+        "Smallest distance from a contact to the end of its face.",
+        PageLabel("Edge margin", "0"),
+        default=0.0,
+        least="0",
+        section=RULING_OUT,
+    )
+    best: int | None = declare("count", "Keep only the best K.", section=SEARCH, most=10_000, metavar="K")
+    listing: str | None = declare(
+        "choice",
+        "Of two clamps: best: for each seat of the locators its best pair of clamps, and how many there are; all: every pair. "
+        "best if not given.",
+        choices=("best", "all"),
+        section=SEARCH,
+    )
+    jaw_force: float | None = declare(
+        "force",
+        "Force that closes the vise, or of the clamp, in N or with its unit (3kN, 700lbf), of two clamps the sum of theirs, to "
+        "warn of pegs that let go under the loads.",
+        least="0",
+        section=LOADS,
+    )
+    seating: int | None = declare(
+        "count",
+        "Of the first K fixtures report from how far open, or with the clamp how far drawn back, the part is caught and where "
+        "else it can rest, and order them by that too.",
+        PageLabel("Of the first", "none", is_usual=True),
+        section=SEATING,
+        most=1_000,
+        typed="Of the first K fixtures report from how far open, or with the clamp how far drawn back, the part is caught and "
+        "where else it can rest, and order them by that too (see workhold seat).",
+        metavar="K",
+    )
+    opening: float | None = declare(
+        "length",
+        "List only those of them that catch the part with the jaws open, or the clamp drawn back, by so much more than where "
+        "they hold it; places beyond it do not count.",
+        PageLabel("Caught from", "any", is_usual=True),
+        section=SEATING,
+    )
+    foolproof: bool = declare(
+        "flag",
+        "List only those of them that have no wrong place to rest in, or a caliper shows each.",
+        PageLabel("Only where a caliper tells every wrong place", is_usual=True),
+        default=False,
+        section=SEATING,
+    )
+    thickness: float | None = declare("length", "How thick the part is.", section=HEIGHTS)
+    peg_height: float | None = declare(
+        "length", "How far pegs reach above the plane on which the part lies.", section=HEIGHTS
+    )

@@ -1,0 +1,177 @@
+"""Options of declared fields: how each stands in a command's signature, and how what is typed for it is read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from datetime import date
+from math import isfinite
+from typing import TYPE_CHECKING, Any
+
+from attrs import field
+
+from workhold.asking.declaring import Declaration, Form
+from workhold.cli.commands import flag, option
+from workhold.cli.values import (
+    choice,
+    length,
+    length_from_zero,
+    number,
+    optional_count,
+    optional_force,
+    optional_positive_length,
+    positive_number,
+    two_lengths,
+    whole_number,
+)
+from workhold.errors import InputError
+from workhold.units import Unit
+
+if TYPE_CHECKING:
+    from workhold.model.requirements import Zone
+
+__all__ = ["one_flag", "one_word", "option_of", "options_of", "read_words", "read_zone", "several_words"]
+
+# Forms of which an option may be given more than once.
+SEVERAL: frozenset[Form] = frozenset({"faces", "zones", "angles", "names", "rings"})
+
+
+def option_of(row: Declaration) -> Any:
+    """Make the option of a field: the default of a parameter."""
+    words = row.typed or row.help
+    if row.form == "flag":
+        return flag(row.section, words, row.option)
+    return option(row.section, row.metavar, words, row.option, default=typed_default(row))
+
+
+def typed_default(row: Declaration) -> str | None:
+    """The default as it would be typed; None where the help says what counts."""
+    if row.default is None or row.form in SEVERAL:
+        return None
+    return f"{row.default:g}" if isinstance(row.default, float) else str(row.default)
+
+
+def one_word(option: Any) -> Any:
+    """Make the attribute of an option that is no field of a question."""
+    kind: Any = str | None
+    return field(default=option, type=kind)
+
+
+def one_flag(option: Any) -> Any:
+    """Make the attribute of an option without a value that is no field."""
+    return field(default=option, type=bool)
+
+
+def several_words(option: Any) -> Any:
+    """Make the attribute of such an option that may be given more than once."""
+    kind: Any = list[str] | None
+    return field(default=option, type=kind)
+
+
+def options_of(rows: Iterable[Declaration], **beside: Any) -> dict[str, Any]:
+    """Make the attributes of a group of options: those of fields, and beside them options that are no fields.
+
+    Parameters
+    ----------
+    beside : by its name an option of :func:`one_word` or :func:`several_words`, or by the field before which they stand a
+        mapping of such.
+    """
+    out: dict[str, Any] = {}
+    for row in rows:
+        out |= beside.pop(row.name, {})
+        kind: Any = bool if row.form == "flag" else list[str] | None if row.form in SEVERAL else str | None
+        out[row.argument] = field(default=option_of(row), type=kind)
+    return out | beside
+
+
+def read_length(row: Declaration, text: str, unit: Unit) -> float | None:
+    match row.least:
+        case "above 0":
+            return optional_positive_length(row.option, text, unit)
+        case "0":
+            return length_from_zero(row.option, text, unit)
+    return length(row.option, text, unit)
+
+
+def read_day(row: Declaration, text: str, unit: Unit) -> date:
+    try:
+        return date.fromisoformat(text)
+    except ValueError:
+        raise InputError(
+            f"{row.option} {text!r} is not a date: give it as YYYY-MM-DD, such as 2026-03-31."
+        ) from None
+
+
+def read_faces(row: Declaration, texts: list[str], unit: Unit) -> tuple[int, ...]:
+    return tuple(whole_number(row.option, word) for text in texts for word in text.split(","))
+
+
+def read_angles(row: Declaration, texts: list[str], unit: Unit) -> tuple[tuple[float, float], ...]:
+    """Ranges of angles in degrees from words such as ``-10..10``; a single number is that angle alone."""
+    return tuple(read_angle(row.option, text) for text in texts)
+
+
+def read_angle(option_name: str, text: str) -> tuple[float, float]:
+    low, dots, high = text.partition("..")
+    least, most = (number(word.strip()) for word in ((low, high) if dots else (low, low)))
+    if not (isfinite(least) and isfinite(most)):
+        raise InputError(
+            f"{option_name} {text!r} is no range of angles: give it in degrees, such as -10..10."
+        )
+    return least, most
+
+
+def read_zone(option_name: str, text: str, unit: Unit) -> Zone:
+    """Read a zone from words such as ``circle=10,5,8`` or ``polygon=0,0;10,0;10,8``."""
+    from workhold.model.requirements import circle_zone, polygon_zone
+
+    kind, _, rest = text.partition("=")
+    points = [
+        [length(option_name, word, unit) for word in words.split(",")]
+        for words in rest.split(";")
+        if words.strip()
+    ]
+    kind = kind.strip().lower()
+    if kind == "circle" and len(points) == 1 and len(points[0]) == 3:
+        return circle_zone(*points[0])
+    if kind == "polygon" and all(len(point) == 2 for point in points):
+        return polygon_zone(points)
+    raise InputError(f"{option_name} {text!r} is no zone: give circle=X,Y,RADIUS or polygon=X,Y;X,Y;X,Y.")
+
+
+# How the words of an option are read, by the form of its field; words of other forms stay as they are.
+READERS: Mapping[Form, Callable[[Declaration, Any, Unit], Any]] = {
+    "count": lambda row, text, unit: optional_count(row.option, text),
+    "length": read_length,
+    "force": lambda row, text, unit: optional_force(row.option, text),
+    "number": lambda row, text, unit: positive_number(row.option, text),
+    "choice": lambda row, text, unit: choice(row.option, text, row.choices),
+    "place": lambda row, text, unit: two_lengths(
+        row.option, text, unit, "a place: give it as X,Y, such as -312.5,-88."
+    ),
+    "day": read_day,
+    "faces": read_faces,
+    "zones": lambda row, texts, unit: tuple(read_zone(row.option, text, unit) for text in texts),
+    "angles": read_angles,
+}
+
+
+def read_words(rows: Iterable[Declaration], typed: Any, unit: Unit) -> dict[str, Any]:
+    """Read what was typed for fields: their values by name; of those not given the default.
+
+    Parameters
+    ----------
+    typed : an object with the words of each field as an attribute.
+
+    Raises
+    ------
+    InputError
+        For words that mean nothing.
+    """
+    return {row.name: read(row, getattr(typed, row.argument), unit) for row in rows}
+
+
+def read(row: Declaration, words: Any, unit: Unit) -> Any:
+    if words is None or words == []:
+        return row.default
+    reader = READERS.get(row.form)
+    return words if reader is None else reader(row, words, unit)

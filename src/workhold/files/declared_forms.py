@@ -1,0 +1,71 @@
+"""Forms of pydantic for declared fields: those of requests, of agents and of files.
+
+They are a module of their own because pydantic takes long to import.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from datetime import date
+from typing import Annotated, Any, Literal, TypeVar
+
+from pydantic import BaseModel, Field, create_model
+
+from workhold.asking.declaring import Declaration, Form
+
+__all__ = ["given_in", "with_fields"]
+
+Kind = TypeVar("Kind", bound=BaseModel)
+NUMBERS: Mapping[Form, type] = {"count": int, "length": float, "force": float, "number": float}
+TYPES: Mapping[Form, Any] = {
+    "flag": bool,
+    "text": str,
+    "day": date,
+    "place": Annotated[list[float], Field(min_length=2, max_length=2)],
+}
+LIMITS = {"above 0": {"gt": 0}, "0": {"ge": 0}, "any": {}}
+
+
+def with_fields(
+    rows: Iterable[Declaration], largest: float | None = None, *, bounded: bool = True
+) -> Callable[[type[Kind]], type[Kind]]:
+    """Make a decorator that gives a form the declared fields, which its own entries of the same name replace.
+
+    Parameters
+    ----------
+    largest : of numbers, for a server; None for no limit of its own.
+    bounded : whether the form refuses what the constructor would; a file leaves that to the constructor.
+    """
+
+    def made(form: type[Kind]) -> type[Kind]:
+        entries: dict[str, Any] = {
+            row.name: entry_of(row, largest, bounded) for row in rows if row.name not in form.model_fields
+        }
+        return create_model(
+            form.__name__, __base__=form, __module__=form.__module__, __doc__=form.__doc__, **entries
+        )
+
+    return made
+
+
+def entry_of(row: Declaration, largest: float | None, bounded: bool) -> tuple[Any, Any]:
+    """Type and default of a field, with what it means."""
+    kind: Any = Literal[row.choices] if row.form == "choice" and bounded else TYPES.get(row.form, str)
+    if row.form in NUMBERS:
+        bounds: dict[str, Any] = limits_of(row, largest) if bounded else {}
+        kind = Annotated[NUMBERS[row.form], Field(**bounds)] if bounds else NUMBERS[row.form]
+    if row.default is None:
+        kind = kind | None
+    return kind, Field(default=row.default, description=row.help)
+
+
+def limits_of(row: Declaration, largest: float | None) -> dict[str, Any]:
+    if row.form == "count":
+        return {"ge": 1} | ({} if largest is None or row.most is None else {"le": row.most})
+    ends = {} if largest is None else {"le": largest} | ({"ge": -largest} if row.least == "any" else {})
+    return LIMITS[row.least] | ends
+
+
+def given_in(form: BaseModel, rows: Iterable[Declaration]) -> dict[str, Any]:
+    """Returns the values of declared fields in a form, by name."""
+    return {row.name: getattr(form, row.name) for row in rows}
