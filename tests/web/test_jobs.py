@@ -219,7 +219,7 @@ def test_loads_that_are_none_are_refused(server: RunningServer, job: str, body: 
 @pytest.mark.parametrize(
     ("kind", "start", "content_type"),
     [
-        ("sheet.pdf?unit=inch&paper=letter&date=2026-03-31&jaw_force=500", b"%PDF", "application/pdf"),
+        ("sheet.pdf?unit=inch&paper=letter&day=2026-03-31&jaw_force=500", b"%PDF", "application/pdf"),
         ("sheet.svg?date=2026-03-31", b"<svg", "image/svg+xml"),
         ("setup.dxf", b"  0\nSECTION", "image/vnd.dxf"),
         ("picture.svg", b"<svg", "image/svg+xml"),
@@ -304,7 +304,7 @@ def test_warnings_of_what_cannot_be_are_refused(server: RunningServer, job: str,
 
 
 @pytest.mark.parametrize(
-    "query", ["sheet.pdf?paper=a3", "sheet.pdf?unit=foot", "sheet.pdf?date=today", "sheet.exe"]
+    "query", ["sheet.pdf?paper=a3", "sheet.pdf?unit=foot", "sheet.pdf?day=today", "sheet.exe"]
 )
 def test_papers_that_there_are_not_are_refused(server: RunningServer, job: str, query: str) -> None:
     refused(server.client.get(f"{job}/fixtures/1/{query}"))

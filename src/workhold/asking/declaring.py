@@ -29,6 +29,7 @@ __all__ = [
     "check_fields",
     "declarations_of",
     "declare",
+    "values_of",
 ]
 
 # What a value looks like: a whole number; lengths, one or two for x and y, or the least and the most; a flat's distance with or
@@ -117,6 +118,7 @@ class Declaration:
     section : of the command's help.
     word : its name as an option, where that is not the field's own.
     typed : the help of the option, where that is another than ``help``.
+    typed_default : of the option, as it would be typed, where it follows from no default; "" otherwise.
     metavar : what stands for its value in the help, where that does not follow from the form.
     """
 
@@ -131,6 +133,7 @@ class Declaration:
     section: str | None = field(default=None, kw_only=True)
     word: str = field(default="", kw_only=True)
     typed: str = field(default="", kw_only=True)
+    typed_default: str = field(default="", kw_only=True)
     metavar: str = field(kw_only=True)
 
     @metavar.default
@@ -224,3 +227,8 @@ def declarations_of(question: type, sections: Iterable[str | None] | None = None
     rows = (evolve(one.metadata[KEY], name=one.name) for one in fields(question) if KEY in one.metadata)
     wanted = None if sections is None else set(sections)
     return tuple(row for row in rows if wanted is None or row.section in wanted)
+
+
+def values_of(question: Any) -> dict[str, Any]:
+    """Returns the values of a question's declared fields by name."""
+    return {row.name: getattr(question, row.name) for row in declarations_of(type(question))}

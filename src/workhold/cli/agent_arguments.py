@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from workhold.asking.declaring import declarations_of
 from workhold.asking.search import LOADS, RANKING, RULING_OUT, SEARCH, SEATING, SearchQuestion
+from workhold.asking.sheet import SheetQuestion
 from workhold.errors import InputError
 from workhold.files.declared_forms import with_fields
 from workhold.files.input_forms import LoadTable
@@ -28,6 +29,7 @@ __all__ = [
 
 # What a search asks but heights, which stand with the reading of the part and with the program.
 OF_SEARCH = declarations_of(SearchQuestion, (RULING_OUT, LOADS, RANKING, SEATING, SEARCH))
+OF_SHEET = declarations_of(SheetQuestion)
 Arguments = TypeVar("Arguments", bound="ToolArguments")
 Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
 Positive = Annotated[float, Field(gt=0)]
@@ -218,6 +220,7 @@ class ShowArguments(ToolArguments):
     picture: bool = Field(default=True, description="show a picture, too")
 
 
+@with_fields(OF_SHEET)
 class SheetArguments(ToolArguments):
     """A setup sheet, or a set-up for a CAM system."""
 
@@ -225,27 +228,10 @@ class SheetArguments(ToolArguments):
     rank: Rank = 1
     path: str = Field(description="the file to write: .pdf, .svg, .png, .dxf, .step or .csv (a list of pins)")
     force: MayReplace = False
-    paper: Literal["a4", "letter"] = "a4"
     unit: Literal["mm", "inch"] = "mm"
-    part_name: str | None = None
-    jaw_force: ClosingForce = None
-    seating: bool | None = Field(
-        default=None, description="whether it says if the part ends up there; if known when null"
-    )
     jaw: Literal["screw", "constant"] | Annotated[float, Field(ge=0)] = "screw"
-    friction: Positive | None = None
     zero: str | Pair | None = Field(
         default=None, description='part zero: "corner", "centre", "hole 2", or x and y'
-    )
-    machine_position: Pair | None = Field(default=None, description="of hole A1 in the machine's coordinates")
-    thickness: Positive | None = None
-    peg_length: Positive | None = None
-    peg_height: Positive | None = None
-    dowel: str | None = Field(
-        default=None, description="what the pegs are and how they fit, such as 6 mm m6 in H7"
-    )
-    clearance: float = Field(
-        default=1.0, ge=0, description="how far the cutter is to keep off the pegs of a .dxf"
     )
 
 

@@ -45,6 +45,8 @@ def option_of(row: Declaration) -> Any:
 
 def typed_default(row: Declaration) -> str | None:
     """The default as it would be typed; None where the help says what counts."""
+    if row.typed_default:
+        return row.typed_default
     if row.default is None or row.form in SEVERAL:
         return None
     return f"{row.default:g}" if isinstance(row.default, float) else str(row.default)
@@ -146,7 +148,7 @@ READERS: Mapping[Form, Callable[[Declaration, Any, Unit], Any]] = {
     "number": lambda row, text, unit: positive_number(row.option, text),
     "choice": lambda row, text, unit: choice(row.option, text, row.choices),
     "place": lambda row, text, unit: two_lengths(
-        row.option, text, unit, "a place: give it as X,Y, such as -312.5,-88."
+        row.option, text, unit, "a position: give it as X,Y, such as -312.5,-88."
     ),
     "day": read_day,
     "faces": read_faces,
@@ -171,7 +173,7 @@ def read_words(rows: Iterable[Declaration], typed: Any, unit: Unit) -> dict[str,
 
 
 def read(row: Declaration, words: Any, unit: Unit) -> Any:
-    if words is None or words == []:
+    if not words and words != "":
         return row.default
     reader = READERS.get(row.form)
     return words if reader is None else reader(row, words, unit)

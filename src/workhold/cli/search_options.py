@@ -12,8 +12,9 @@ from attrs import evolve, frozen
 
 from workhold.asking.declaring import declarations_of
 from workhold.asking.search import LOADS, RANKING, RULING_OUT, SEATING, RuledOut, SearchQuestion
+from workhold.asking.sheet import SheetQuestion
 from workhold.cli.commands import option
-from workhold.cli.declared import one_word, options_of, read_words, several_words
+from workhold.cli.declared import one_word, option_of, options_of, read_words, several_words
 from workhold.cli.values import length
 from workhold.errors import InputError
 from workhold.units import Unit
@@ -77,24 +78,9 @@ def parse_load(text: str, unit_scale: float = 1.0) -> Load:
 
 LOAD = option(LOADS, "LOAD", LOAD_HELP)
 LOADS_FILE = option(LOADS, "FILE", "Loads from a TOML file.")
-JAW_FORCE = option(
-    LOADS,
-    "FORCE",
-    "Force that closes the vise, or of the clamp, in N or with its unit (3kN, 700lbf), of two clamps the "
-    "sum of theirs; the one needed so that no peg lets go if not given.",
-)
-JAW = option(
-    LOADS,
-    "KIND",
-    "screw: the closed jaw is locked, as a vise's is; constant: it keeps its force (hydraulic, pneumatic); "
-    "or how many times as stiff as one contact the locked jaw is.",
-    default="screw",
-)
-FRICTION = option(
-    LOADS, "MU", "Coefficient of friction, to report what friction could add; none counts elsewhere."
-)
-
-
+# Of loads on a fixture that is known, as its sheet has them.
+ABOUT_LOADS = {row.name: row for row in declarations_of(SheetQuestion, [LOADS])}
+JAW_FORCE, JAW, FRICTION = (option_of(ABOUT_LOADS[name]) for name in ("jaw_force", "jaw", "friction"))
 # What a search in one toolkit and a comparison of several both ask; beside these fields stand options that are no fields.
 OF_RESTRICTIONS = declarations_of(RuledOut)
 OF_SEARCHES = declarations_of(SearchQuestion, (RULING_OUT, LOADS, RANKING))

@@ -12,6 +12,7 @@ from typing import Any
 
 from attrs import evolve, field, frozen
 
+from workhold.asking.sheet import SheetQuestion
 from workhold.drawing.scene import LengthUnit
 from workhold.drawing.seating_words import SeatingSentences, sentence
 from workhold.errors import InputError
@@ -53,6 +54,8 @@ __all__ = [
 ]
 
 # Width and height in mm, upright: ISO 216 and ANSI/ASME Y14.1.
+# What of the question stands on the sheet as it was asked for.
+AS_ASKED = ("paper", "part_name", "machine_position", "peg_length", "dowel", "plate_thickness")
 PAPERS = {"a4": (210.0, 297.0), "letter": (215.9, 279.4)}
 
 
@@ -66,7 +69,7 @@ class SheetDetails:
     day : the date written on the sheet.
     result_hash : SHA-256 of the result file in hexadecimal; empty for a result of no file.
     version : of the program.
-    paper : "a4" or "letter"; "" is letter for lengths in inches, else A4.
+    paper : "a4" or "letter"; None is letter for lengths in inches, else A4.
     unit : of lengths.
     part_name : written instead of the workpiece's own name.
     tolerance : how far pegs and faces may be off, which the location error is for.
@@ -102,7 +105,7 @@ class SheetDetails:
     day: date
     result_hash: str
     version: str
-    paper: str = ""
+    paper: str | None = None
     unit: Unit = MILLIMETRE
     part_name: str | None = None
     tolerance: Tolerance = field(factory=Tolerance)
@@ -327,22 +330,15 @@ def result_details(
     rank: int,
     *,
     result_hash: str = "",
-    day: date = date.min,
     unit: Unit = MILLIMETRE,
-    jaw_force: float | None = None,
-    friction: float | None = None,
-    jaw: str | float = "screw",
     loads: Sequence[Load] | None = None,
-    zero: str | Sequence[float] | None = None,
-    peg_height: float | None = None,
     others: int | None = None,
     number: int | None = None,
     count: int | None = None,
-    seating: bool | None = None,
     supports: ChosenSupports | None = None,
-    support_height: float | None = None,
-    at: str | None = None,
-    **further: Any,
+    first_side: FirstSide | None = None,
+    listed_as: str = "Fixture",
+    **asked: Any,
 ) -> tuple[Fixture, SheetDetails]:
     """One fixture with all figures of quality, and the further details of its setup sheet.
 
@@ -350,18 +346,12 @@ def result_details(
     ----------
     rank : of the fixture, from 1.
     loads : instead of those of the result, if given.
-    jaw : what closes the vise, see :func:`workhold.statics.loads.jaw_stiffness`.
-    zero : part zero, see :func:`workhold.model.setup.part_zero`; its numbers are in ``unit``.
     others : how many other fixtures use the same holes; counted in the result if None.
     number, count : the rank in a larger result and how many that lists, for a fixture taken out of it.
-    seating : whether the sheet shows where else the pegs can hold the part; None shows it where the result
-        has it.
     supports : see :class:`SheetDetails`; with these the sheet is of their fixture in holes that all have
         names.
-    at : the hole in which the lowest column and the lowest row of the set-up meet, such as "D4"; None is the
-        middle of its plate.
-    result_hash, day, unit, jaw_force, friction, peg_height, support_height : see :class:`SheetDetails`.
-    further : any others of :class:`SheetDetails`, such as ``paper`` or ``thickness``.
+    result_hash, unit, first_side, listed_as : see :class:`SheetDetails`.
+    asked : the fields of a :class:`workhold.asking.sheet.SheetQuestion`.
 
     Raises
     ------
@@ -371,9 +361,12 @@ def result_details(
     from workhold.seating.solver import Solver
     from workhold.statics.quality import measured_fixture
 
-    asked = result.query.loads if loads is None else loads
-    jaw_force = result.query.jaw_force if jaw_force is None else jaw_force
-    fixture = measured_fixture(result, rank - 1, asked, jaw_force)
+    question = SheetQuestion(**asked)
+    at, jaw, friction, seating = question.at, question.jaw, question.friction, question.seating
+    peg_height, support_height = question.peg_height, question.support_height
+    loads = result.query.loads if loads is None else loads
+    jaw_force = result.query.jaw_force if question.jaw_force is None else question.jaw_force
+    fixture = measured_fixture(result, rank - 1, loads, jaw_force)
     workpiece, toolkit = result.workpiece, result.toolkit
     known, not_seated = result[rank - 1].seating if seating is not False else None, ""
     if supports is not None and at is not None:
@@ -402,28 +395,26 @@ def result_details(
         cutting = cutting.in_holes(*named)
     if passing is not None:
         passing = passing.in_holes(*named)
-    cases = load_cases(fixture, workpiece, toolkit, asked, jaw_force, friction, jaw)
-    if result.query.thickness is not None:
-        further.setdefault("thickness", None)
-        further["thickness"] = further["thickness"] or result.query.thickness
+    cases = load_cases(fixture, workpiece, toolkit, loads, jaw_force, friction, jaw)
+    thickness = question.thickness or result.query.thickness
     lift = lift_of(supports, support_height)
     bent = bent_pegs(
         fixture,
         workpiece,
         toolkit,
-        pressed_up_to=pressed_height(further.get("thickness"), peg_height, supports, lift),
+        pressed_up_to=pressed_height(thickness, peg_height, supports, lift),
         jaw_force=jaw_force,
         lift=lift,
     )
-    if program is not None and zero is None:
+    if program is not None and question.zero is None:
         # Where the program counts from is what the machinist sets.
         place = PartZero(program.zero, "place given" if any(program.zero) else "origin of the drawing")
     else:
-        place = part_zero(workpiece, zero, unit)
+        place = part_zero(workpiece, question.zero, unit)
     details = SheetDetails(
         number=rank if number is None else number,
         count=len(result) if count is None else count,
-        day=day,
+        day=date.min if question.day is None else question.day,
         result_hash=result_hash,
         version=__version__,
         unit=unit,
@@ -446,6 +437,9 @@ def result_details(
         moved=move,
         is_asked_place=at is not None,
         bent=bent,
-        **further,
+        thickness=thickness,
+        first_side=first_side,
+        listed_as=listed_as,
+        **{name: getattr(question, name) for name in AS_ASKED},
     )
     return fixture, details

@@ -8,12 +8,14 @@ from hashlib import file_digest
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from workhold.asking.declaring import values_of
+from workhold.asking.sheet import SheetQuestion
 from workhold.conventions import AGREEMENT
 from workhold.drawing.fixture_pictures import best_at_a_glance, draw_fixture
 from workhold.drawing.part_pictures import draw_features
 from workhold.drawing.path_drawn import planned_path
 from workhold.drawing.render import render
-from workhold.drawing.sheet_facts import PAPERS, placing_of
+from workhold.drawing.sheet_facts import placing_of
 from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
 from workhold.files.replacing import refuse_output
@@ -148,7 +150,7 @@ def save_sheet(
     refuse_output(path, (result_file, part), overwrite)
     if result_file is not None:
         refuse_other_result(result_file, fixture)
-    settings = {"zero": None, "dowel": None, **dict.fromkeys(SIZES), **asked, "unit": unit_named(unit)}
+    settings = {**values_of(SheetQuestion(clearance=clearance, **asked)), "unit": unit_named(unit)}
     if supports is not None:
         if ending in MODEL_ENDINGS and ending not in STEP_ENDINGS:
             raise InputError(f"{path} has no supports: let the name end in .pdf, .svg, .png or .step.")
@@ -160,11 +162,8 @@ def save_sheet(
             )
         settings["shape"] = shape_in(part, listed.result.workpiece)
     if ending in MODEL_ENDINGS:
-        write_model(path, listed.result, listed.row + 1, settings, clearance)
+        write_model(path, listed.result, listed.row + 1, settings)
         return
-    paper = settings.get("paper", "")
-    if paper and paper not in PAPERS:
-        raise InputError(f"the paper {str(paper)[:40]!r} is not known: choose {' or '.join(PAPERS)}.")
     settings["jaw"] = jaw_stiffness(settings.get("jaw", "screw"))
     settings.setdefault("day", date.today())
     settings |= {"number": listed.rank, "count": listed.count, "others": listed.others}
@@ -255,18 +254,14 @@ def hash_of(result_file: str | Path | None) -> str:
         raise InputError(f"{result_file} cannot be read: {error.strerror or error}.") from error
 
 
-def write_model(
-    path: str | Path, result: Result, rank: int, settings: dict[str, Any], clearance: float | None
-) -> None:
+def write_model(path: str | Path, result: Result, rank: int, settings: dict[str, Any]) -> None:
     """Writes the set-up for a CAM system, or the list of its pins.
 
     Parameters
     ----------
     path : of a file whose name ends in .dxf, .step, .stp or .csv.
-    settings : ``unit``, ``zero``, ``dowel``, ``at``, ``thickness``, ``peg_length`` and ``peg_height``.
-        Of a STEP file also ``supports``, a set that was chosen, their ``support_height``, and
-        the ``shape`` of the part. Lengths are in mm.
-    clearance : how far the cutter is to keep off the pegs of a DXF, in mm; None is the usual length.
+    settings : the fields of a :class:`workhold.asking.sheet.SheetQuestion`, and the ``unit``. Of a STEP file also ``supports``,
+        a set that was chosen, and the ``shape`` of the part.
 
     Raises
     ------
@@ -274,16 +269,14 @@ def write_model(
         For a part zero that cannot be, and when the file cannot be written.
     """
     ending = Path(path).suffix.lower()
-    write_bytes(path, model_bytes(result[rank - 1], result, ending, settings, clearance))
+    write_bytes(path, model_bytes(result[rank - 1], result, ending, settings))
 
 
-def model_bytes(
-    fixture: Fixture, result: Result, ending: str, settings: dict[str, Any], clearance: float | None
-) -> bytes:
+def model_bytes(fixture: Fixture, result: Result, ending: str, settings: dict[str, Any]) -> bytes:
     """Makes the file of a set-up for a CAM system, or of the list of its pins; see :func:`write_model`."""
     toolkit, unit = result.toolkit, settings["unit"]
     zero = part_zero(result.workpiece, settings["zero"], unit)
-    at, chosen = settings.get("at"), settings.get("supports")
+    at, clearance, chosen = settings["at"], settings["clearance"], settings.get("supports")
     if chosen is None:
         fixture = moved_on(fixture, toolkit, placing_of(fixture, result, at))
     elif at is not None:

@@ -7,14 +7,19 @@ from typing import Annotated, Any, Literal
 
 from attrs import evolve
 from fastapi import APIRouter, Path, Query, Request
+from pydantic import Field
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
+from workhold.asking.declaring import Declaration, declarations_of
+from workhold.asking.sheet import SheetQuestion
 from workhold.errors import InputError
+from workhold.files.declared_forms import given_in, with_fields
+from workhold.limits import MOST_LENGTH
 from workhold.model.result import Result
 from workhold.model.seating import Seating
 from workhold.seating.clamping import ByHand
-from workhold.units import unit_named
+from workhold.units import Unit, unit_named
 from workhold.web.answers import contact_answer, rows_answer
 from workhold.web.fixture_tasks import (
     AT_ONCE,
@@ -30,7 +35,7 @@ from workhold.web.fixture_tasks import (
 from workhold.web.forms import LoadsForm, asked_loads
 from workhold.web.job_routes import attachment, found_job, result_of_job
 from workhold.web.program_forms import forces_answer, passing_answer
-from workhold.web.request_forms import ChosenSupportsForm, FirstSideForm, SupportsForm, asked_of
+from workhold.web.request_forms import AddressForm, ChosenSupportsForm, FirstSideForm, SupportsForm, asked_of
 from workhold.web.state import CheckedRoute, at_desk, at_desk_while_heard, state_of
 from workhold.web.support_tasks import SupportsOrder
 
@@ -47,19 +52,41 @@ Jaw = Annotated[
 Loads = Annotated[
     str | None, Query(max_length=20_000, description="instead of the search's, JSON as in a search")
 ]
-InJson = Annotated[
-    str | None,
-    Query(
-        max_length=20_000,
-        description="JSON: supports as in a request for them with the set ``chosen``, and the first side as "
-        "its ``job``, ``rank`` and ``cut`` faces",
-    ),
-]
-Words = Annotated[str | None, Query(max_length=100)]
-Size = Annotated[float | None, Query(gt=0, le=1e6)]
 Revision = Annotated[
     int | None, Query(ge=0, description="what the caller has seen; 409 when it is another by now")
 ]
+
+
+@with_fields(declarations_of(SheetQuestion), MOST_LENGTH)
+class PaperForm(AddressForm):
+    """What is asked of a paper; lengths in the unit asked for."""
+
+    unit: UnitName = "mm"
+    loads: Loads = None
+    supports: str | None = Field(
+        default=None, max_length=20_000, description="JSON: as in a request for them, with the set ``chosen``"
+    )
+    first_side: str | None = Field(
+        default=None,
+        max_length=20_000,
+        description="JSON: the set-up before as its ``job``, ``rank`` and ``cut`` faces",
+    )
+    revision: Revision = None
+
+    def question(self) -> SheetQuestion:
+        """What stands on the sheet, in mm; its day is today where none is asked for."""
+        rows, unit = declarations_of(SheetQuestion), unit_named(self.unit)
+        given = {
+            row.name: in_mm(row, value, unit)
+            for row, value in zip(rows, given_in(self, rows).values(), strict=True)
+        }
+        return SheetQuestion(**given | {"day": given["day"] or date.today()})
+
+
+def in_mm(row: Declaration, value: Any, unit: Unit) -> Any:
+    if row.form == "length" and value is not None:
+        return unit.length(value)
+    return tuple(map(unit.length, value)) if row.form == "place" and value is not None else value
 
 
 def ranked(result: Result, rank: int) -> int:
@@ -199,70 +226,26 @@ async def paper(
     kind: Literal[
         "sheet.pdf", "sheet.svg", "setup.dxf", "setup.step", "picture.svg", "pins.csv", "assembly.glb"
     ],
-    paper: Literal["", "a4", "letter"] = "",
-    unit: UnitName = "mm",
-    jaw_force: JawForce = None,
-    jaw: Jaw = "screw",
-    loads: Loads = None,
-    friction: Annotated[float | None, Query(gt=0, le=100)] = None,
-    part_name: Words = None,
-    zero: Words = None,
-    dowel: Words = None,
-    machine_x: Annotated[float | None, Query(ge=-1e6, le=1e6)] = None,
-    machine_y: Annotated[float | None, Query(ge=-1e6, le=1e6)] = None,
-    thickness: Size = None,
-    peg_length: Size = None,
-    peg_height: Size = None,
-    clearance: Annotated[float | None, Query(ge=0, le=1e6)] = None,
-    seating: Annotated[
-        bool | None, Query(description="whether the sheet states where else the part can rest")
-    ] = None,
-    day: Annotated[date | None, Query(alias="date")] = None,
-    supports: InJson = None,
-    first_side: InJson = None,
-    revision: Revision = None,
+    asked: Annotated[PaperForm, Query()],
 ) -> Response:
     """A paper of a fixture; all but pictures and bodies wait for the search to be over.
 
     Lengths are in the unit asked for, loads JSON as in a search, and the date is today's if not given.
     """
     job = found_job(request, name)
-    result = result_of_job(job, revision, when_over=kind not in AT_ONCE)
+    result = result_of_job(job, asked.revision, when_over=kind not in AT_ONCE)
     ranked(result, rank)
-    given = unit_named(unit)
-    sizes = {
-        "thickness": thickness,
-        "peg_length": peg_length,
-        "peg_height": peg_height,
-        "clearance": clearance,
-    }
-    machine = (
-        None if machine_x is None or machine_y is None else (given.length(machine_x), given.length(machine_y))
-    )
-    wishes = {
-        "jaw_force": jaw_force,
-        "jaw": jaw,
-        "loads": asked_loads(loads),
-        "friction": friction,
-        "part_name": part_name,
-        "zero": zero,
-        "dowel": dowel,
-        "machine_position": machine,
-        "seating": seating,
-        **{name: None if size is None else given.length(size) for name, size in sizes.items()},
-    }
-    chosen = asked_of(ChosenSupportsForm, "supports", supports)
-    before = before_of(request, asked_of(FirstSideForm, "first_side", first_side))
+    chosen = asked_of(ChosenSupportsForm, "supports", asked.supports)
+    before = before_of(request, asked_of(FirstSideForm, "first_side", asked.first_side))
     order = PaperOrder(
         kind,
         # Only a sheet names the other fixtures.
         result if kind.startswith("sheet") else result.part(slice(rank - 1, rank)),
         rank,
         len(result),
-        paper,
-        unit,
-        day or date.today(),
-        wishes,
+        asked.question(),
+        unit_named(asked.unit),
+        asked_loads(asked.loads),
         job.result_hash,
         chosen,
         before,

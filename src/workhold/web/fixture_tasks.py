@@ -6,7 +6,6 @@ Papers are setup sheets, drawings for the CAM system and pictures.
 from __future__ import annotations
 
 from collections.abc import Callable
-from datetime import date
 from hashlib import sha256
 from importlib.util import find_spec
 from math import inf
@@ -16,6 +15,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from attrs import evolve, frozen
 from pydantic import Field
 
+from workhold.asking.declaring import values_of
+from workhold.asking.sheet import SheetQuestion
 from workhold.drawing.scene import LengthUnit
 from workhold.drawing.seating_words import SeatingSentences
 from workhold.drawing.seats import caption
@@ -31,13 +32,14 @@ from workhold.model.workpiece import Workpiece
 from workhold.presenting.data import finite
 from workhold.seating.clamping import ByHand, by_hand
 from workhold.seating.pattern import Pattern
-from workhold.units import unit_named
+from workhold.units import Unit, unit_named
 from workhold.web.request_forms import LARGEST, ChosenSupportsForm, Form, Number
 from workhold.web.support_tasks import SupportsOrder, chosen_supports
 from workhold.web.worker import Order
 
 if TYPE_CHECKING:
     from workhold.files.step.part_shape import PartShape
+    from workhold.model.requirements import Load
 
 __all__ = [
     "AT_ONCE",
@@ -71,12 +73,9 @@ class PaperOrder:
     kind : one of :data:`KINDS`.
     result : all fixtures for a sheet, which names the others; else one of no other.
     rank, count : of the fixture, from 1, and how many there are.
-    paper : "a4" or "letter".
-    unit : "mm" or "inch".
-    day : written on the sheet.
-    wishes : what is asked of a sheet or a set-up, named as in
-        :func:`workhold.drawing.sheet_facts.result_details` and :func:`workhold.files.dxf.writer.setup_dxf`;
-        lengths in mm.
+    question : what stands on a sheet or in a set-up.
+    unit : of lengths.
+    loads : instead of those of the result; None for those.
     result_hash : of the result's file, or None where it is not known yet.
     supports : what supports and clamp on top are asked for, and which set of them; None for none.
     before : the set-up of the other side before; None for none.
@@ -87,10 +86,9 @@ class PaperOrder:
     result: Result
     rank: int
     count: int
-    paper: str
-    unit: str
-    day: date
-    wishes: dict[str, Any]
+    question: SheetQuestion
+    unit: Unit
+    loads: tuple[Load, ...] | None
     result_hash: str | None
     supports: ChosenSupportsForm | None = None
     before: Before | None = None
@@ -131,22 +129,15 @@ def sheet(order: PaperOrder) -> tuple[bytes, str | None]:
     from workhold.presenting.papers import pages_bytes
 
     digest = order.result_hash or hash_of(order.result)
-    wishes = {name: wish for name, wish in order.wishes.items() if name != "clearance"}
+    asked: dict[str, Any] = values_of(order.question) | {"loads": order.loads, "unit": order.unit}
     chosen = order.chosen_supports()
     if chosen is not None:
-        wishes |= {"supports": chosen, "thickness": chosen.supports.request.thickness}
+        asked |= {"supports": chosen, "thickness": chosen.supports.request.thickness}
     if order.before is not None:
-        wishes["first_side"] = first_side(order.fixture, order.result.query, *order.before)
-    pages = result_sheet(
-        order.result,
-        order.rank,
-        result_hash=digest,
-        day=order.day,
-        paper=order.paper,
-        unit=unit_named(order.unit),
-        **wishes,
-    )
-    return pages_bytes(pages, Path(order.kind).suffix, order.day), digest
+        asked["first_side"] = first_side(order.fixture, order.result.query, *order.before)
+    pages = result_sheet(order.result, order.rank, result_hash=digest, **asked)
+    assert order.question.day is not None
+    return pages_bytes(pages, Path(order.kind).suffix, order.question.day), digest
 
 
 def hash_of(result: Result) -> str:
@@ -168,14 +159,14 @@ def set_up(order: PaperOrder) -> tuple[bytes, str | None]:
         raise InputError(
             f"this server writes no STEP files: take the DXF, or install {REQUIREMENT} beside it."
         )
-    settings = {**order.wishes, "unit": unit_named(order.unit)}
+    settings = values_of(order.question) | {"unit": order.unit}
     if ending == ".csv":
         settings["zero"] = None
     chosen = order.chosen_supports() if ending == ".step" else None
     if chosen is not None:
         settings |= {"supports": chosen, "thickness": None}
     settings["shape"] = order.shape
-    return model_bytes(order.fixture, order.result, ending, settings, order.wishes["clearance"]), None
+    return model_bytes(order.fixture, order.result, ending, settings), None
 
 
 def picture(order: PaperOrder) -> tuple[bytes, str | None]:
@@ -200,7 +191,7 @@ def bodies(order: PaperOrder) -> tuple[bytes, str | None]:
 
     chosen = order.chosen_supports()
     names = ("peg_length", "peg_height", *(("thickness",) if chosen is None else ()))
-    lengths = {name: order.wishes[name] for name in names}
+    lengths = {name: getattr(order.question, name) for name in names}
     assembly = Assembly.of(order.fixture, order.result, lengths, chosen, order.shape)
     return assembly.content(".glb"), None
 

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "LARGEST",
+    "AddressForm",
     "MOST_LOADS",
     "MOST_POINTS",
     "MOST_RANGES",
@@ -91,6 +92,12 @@ class Form(BaseModel):
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
+
+
+class AddressForm(BaseModel):
+    """The base of what stands behind an address as its query, text that stands for numbers."""
+
+    model_config = ConfigDict(allow_inf_nan=False)
 
 
 def of_address(adapter: TypeAdapter[Asked], name: str, text: str) -> Asked:

@@ -1,0 +1,152 @@
+"""The question of a setup sheet: what is asked of it besides the fixture, its loads and the unit of its lengths."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from datetime import date
+from typing import Any
+
+from attrs import frozen
+
+from workhold.asking.declaring import Choice, PageLabel, check_fields, declare
+from workhold.asking.search import LOADS
+
+__all__ = ["BODIES", "ON_PAPER", "SUPPORTS", "SheetQuestion"]
+
+# Sections of the command's help.
+ON_PAPER, BODIES, SUPPORTS = "On the paper", "Part and pegs", "Supports and the other side"
+# What stands in a field of the page that is empty, where the sheet then has a line to write on.
+LINE = "a line for it"
+PAPERS = Choice("a4", "A4"), Choice("letter", "Letter")
+
+
+@frozen(field_transformer=check_fields, kw_only=True)
+class SheetQuestion:
+    """What stands on a setup sheet; lengths in mm, forces in N, None for what nobody said.
+
+    Parameters
+    ----------
+    paper : "a4" or "letter".
+    part_name : written instead of the workpiece's own name.
+    day : the date on the sheet; None is today.
+    zero : part zero: "corner", "centre", "hole 2", or x and y of the drawing in the unit of the sheet.
+    at : the hole in which the lowest column and the lowest row of the set-up meet, such as "D4".
+    machine_position : (x, y) of the hole that places are measured from, in the machine's own coordinates.
+    thickness : of the part.
+    peg_length, peg_height : of the pegs, and how far they stand out of the jaws.
+    dowel : what the pegs are and how they fit their holes, in words.
+    clearance : how far the cutter is to keep off the pegs.
+    plate_thickness : of the plates that pegs stand through.
+    support_height : of supports under the part.
+    seating : whether the sheet shows where else the pegs can hold the part; None shows it where it is known.
+    jaw_force : with which the vise or the clamps are closed.
+    jaw : "screw", "constant", or how many times as stiff as a contact the closed jaw is.
+    friction : coefficient, to report what friction could add.
+
+    Raises
+    ------
+    InputError
+        For a value that cannot be.
+    """
+
+    paper: str | None = declare(
+        "choice",
+        "a4 or letter; letter for lengths in inches if not given, else a4.",
+        choices=tuple(one.value for one in PAPERS),
+        section=ON_PAPER,
+        metavar="SIZE",
+    )
+    part_name: str | None = declare(
+        "text",
+        "What to call the part; its own name if not given.",
+        PageLabel("Part’s name", ""),
+        section=ON_PAPER,
+        metavar="NAME",
+    )
+    day: date | None = declare(
+        "day", "The date of the sheet; today if not given.", section=ON_PAPER, word="date"
+    )
+    zero: str | Sequence[float] | None = declare(
+        "text",
+        "Part zero: corner (lower left, as drawn), centre, hole N, or X,Y of the drawing. If not given, the "
+        "origin of the drawing where that is on the part, else the corner.",
+        PageLabel("X0 Y0", "origin or corner"),
+        metavar="POINT",
+    )
+    at: str | None = declare(
+        "text",
+        "Where on the plate all of it stands: the hole of its lowest column and row, such as D4. In the middle of "
+        "the plate if not given.",
+        PageLabel("Lowest hole", "middle of the plate"),
+        metavar="HOLE",
+    )
+    machine_position: Sequence[float] | None = declare(
+        "place",
+        "Where the machine stands over hole A1 of the fixed jaw: gives the lines G10 L2 and G68.",
+        PageLabel("Machine over the first hole,", "not known"),
+        section=ON_PAPER,
+    )
+    thickness: float | None = declare(
+        "length",
+        "Thickness of the part; that of its solid, or a line to write it on, if not given.",
+        PageLabel("Part thickness", LINE),
+        section=BODIES,
+    )
+    peg_length: float | None = declare(
+        "length", "Length of the pegs.", PageLabel("Pegs’ length", LINE), section=BODIES
+    )
+    peg_height: float | None = declare(
+        "length", "How far the pegs stand out of the jaws.", PageLabel("Standing out", LINE), section=BODIES
+    )
+    dowel: str | None = declare(
+        "text",
+        "What the pegs are and how they fit, such as '6 mm m6 in H7'; what the toolkit says if not given.",
+        PageLabel("Dowel and fit", "6 mm m6 in H7"),
+        section=BODIES,
+        typed="What the pegs are and how they fit, such as '6 mm m6 in H7'; what --vise said if not given.",
+    )
+    clearance: float | None = declare(
+        "length",
+        "How far the cutter is to keep off the pegs, on the layer KEEP_OUT of a .dxf; 1 mm if not given.",
+        PageLabel("Cutter keeps off", "1 mm in the DXF"),
+        least="0",
+        section=BODIES,
+        typed="How far the cutter is to keep off the pegs, on the layer KEEP_OUT of a .dxf.",
+        typed_default="1mm",
+    )
+    plate_thickness: float | None = declare(
+        "length",
+        "How far pegs go into the plate; 10 mm is assumed if not given.",
+        PageLabel("Into the plate", "10 mm"),
+        section=BODIES,
+    )
+    support_height: float | None = declare(
+        "length", "How high the supports lift the part; 10 mm is assumed if not given.", section=SUPPORTS
+    )
+    seating: bool | None = declare(
+        "flag",
+        "Say whether the part ends up there: how far to open, and how it looks where it does not.",
+        PageLabel("Will it end up there?"),
+        section=ON_PAPER,
+    )
+    jaw_force: float | None = declare(
+        "force",
+        "Force that closes the vise, or of the clamp, in N or with its unit (3kN, 700lbf), of two clamps the sum of "
+        "theirs; the one needed so that no peg lets go if not given.",
+        section=LOADS,
+    )
+    jaw: Any = declare(
+        "text",
+        "screw: the closed jaw is locked, as a vise's is; constant: it keeps its force (hydraulic, pneumatic); or "
+        "how many times as stiff as one contact the locked jaw is.",
+        default="screw",
+        section=LOADS,
+        metavar="KIND",
+    )
+    friction: float | None = declare(
+        "number",
+        "Coefficient of friction, to report what friction could add; none counts elsewhere.",
+        PageLabel("Friction", "none"),
+        section=LOADS,
+        metavar="MU",
+    )
