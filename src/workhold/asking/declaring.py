@@ -117,6 +117,7 @@ class Declaration:
     choices : the words that there are.
     section : of the command's help.
     word : its name as an option, where that is not the field's own.
+    needs : the field without which it is not asked.
     typed : the help of the option, where that is another than ``help``.
     typed_default : of the option, as it would be typed, where it follows from no default; "" otherwise.
     metavar : what stands for its value in the help, where that does not follow from the form.
@@ -132,6 +133,7 @@ class Declaration:
     choices: tuple[str, ...] = field(default=(), kw_only=True)
     section: str | None = field(default=None, kw_only=True)
     word: str = field(default="", kw_only=True)
+    needs: str = field(default="", kw_only=True)
     typed: str = field(default="", kw_only=True)
     typed_default: str = field(default="", kw_only=True)
     metavar: str = field(kw_only=True)

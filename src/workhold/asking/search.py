@@ -105,6 +105,7 @@ class SearchQuestion:
         "they hold it; places beyond it do not count.",
         PageLabel("Caught from", "any", is_usual=True),
         section=SEATING,
+        needs="seating",
     )
     foolproof: bool = declare(
         "flag",
@@ -112,6 +113,7 @@ class SearchQuestion:
         PageLabel("Only where a caliper tells every wrong place", is_usual=True),
         default=False,
         section=SEATING,
+        needs="seating",
     )
     thickness: float | None = declare("length", "How thick the part is.", section=HEIGHTS)
     peg_height: float | None = declare(

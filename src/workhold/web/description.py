@@ -221,6 +221,7 @@ EXAMPLES = {
     "GET /api/v1/toolkits": ApiExample(
         answer=[{"kind": "translating-clamp", "title": "Plate with one clamp or two"}]
     ),
+    "GET /api/v1/questions": ApiExample(answer={"search": [{"name": "contact_margin", "form": "length"}]}),
     "GET /api/v1/presets": ApiExample(answer=[{"name": "clamp-plate-20mm", "unit": "mm"}]),
     "GET /api/v1/figures": ApiExample(answer=[{"key": "closure_margin", "more_is_better": True}]),
     "POST /api/v1/jobs": ApiExample(query={"when_left": "keep"}, body=SEARCH, status=202, answer=BEGUN),

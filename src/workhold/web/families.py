@@ -9,7 +9,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 from attrs import evolve, frozen
 from pydantic import Field
 
+from workhold.asking.declaring import declarations_of
+from workhold.asking.search import RULING_OUT, SearchQuestion
 from workhold.errors import InputError
+from workhold.files.declared_forms import given_in, with_fields
 from workhold.model.quality import asked_ranking
 from workhold.model.query import Query
 from workhold.presenting.data import finite
@@ -24,6 +27,7 @@ if TYPE_CHECKING:
 __all__ = ["PAPERS", "FamilyForm", "FamilyFound", "FamilyPaper", "find_family", "make_family_paper"]
 
 MOST_PARTS = 50
+OF_FAMILY = declarations_of(SearchQuestion, [RULING_OUT])
 # Of the time for a search, the share in which the proof must end.
 PROOF = 0.25
 # What can be made of a family: its content type.
@@ -35,13 +39,13 @@ PAPERS = {
 }
 
 
+@with_fields(OF_FAMILY, LARGEST)
 class FamilyForm(Form):
     """Parts that are to be held in one toolkit with few set-ups."""
 
     workpieces: Annotated[list[WorkpieceForm], Field(min_length=1, max_length=MOST_PARTS)]
     toolkit: HeldIn
     types: list[Name] | None = Field(default=None, max_length=10)
-    contact_margin: Annotated[float, Field(ge=0, le=LARGEST)] = 0.0
     ranking: list[Name] | None = Field(default=None, max_length=10)
     prefer: Name | None = None
     tolerance: ToleranceForm | None = None
@@ -57,11 +61,8 @@ class FamilyForm(Form):
         ranking = asked_ranking(self.ranking, self.prefer, ()) or usual
         tolerance = None if self.tolerance is None else self.tolerance.tolerance()
         parts = [form.workpiece(most_segments) for form in self.workpieces]
-        asked = {"contact_margin": self.contact_margin, "ranking": ranking, "tolerance": tolerance}
-        return tuple(
-            (part.name, Query(part, toolkit, self.types, **asked))  # type: ignore[arg-type]
-            for part in parts
-        )
+        asked = given_in(self, OF_FAMILY) | {"ranking": ranking, "tolerance": tolerance}
+        return tuple((part.name, Query(part, toolkit, self.types, **asked)) for part in parts)
 
 
 @frozen(eq=False)

@@ -221,6 +221,14 @@ async def toolkits() -> list[dict[str, Any]]:
     return kinds_answer()
 
 
+@router.get("/questions", summary="What is asked of a search and of a sheet")
+async def questions() -> dict[str, list[dict[str, Any]]]:
+    """The fields of each that the page shows, in mm and N, with what each means."""
+    from workhold.web.toolkits import questions_answer
+
+    return questions_answer()
+
+
 @router.get("/presets", summary="The toolkits that come with the program")
 async def presets() -> list[dict[str, Any]]:
     """Toolkits that people own, by name; lengths in mm."""

@@ -14,15 +14,17 @@ from typing import Any
 
 from attrs import asdict, frozen
 
+from workhold.asking.declaring import Choice, Declaration, declarations_of
+from workhold.asking.search import SearchQuestion
+from workhold.asking.sheet import SheetQuestion
 from workhold.drawing.panel import arrangement_words
 from workhold.files.result.writer import toolkit_fields
 from workhold.files.toolkit_file import LoadedToolkit
 from workhold.fixels.kinds import PAGES, kind_of, table_of, toolkit_of
 from workhold.fixels.setup_words import PageWords
 from workhold.fixels.support_hardware import HARDWARE
-from workhold.fixels.table import Choice, ToolkitField
 
-__all__ = ["DESCRIBED", "Described", "kinds_answer", "page_kind", "toolkit_answer"]
+__all__ = ["DESCRIBED", "Described", "kinds_answer", "page_kind", "questions_answer", "toolkit_answer"]
 
 
 # How the page reads a form of field where it has no form of its own for it; choices are taken by "one" or
@@ -32,9 +34,9 @@ PAGE_FORMS: Mapping[str, str] = {"flat": "length", "heights": "span"}
 
 @frozen
 class PageField:
-    """A field of the page; :class:`workhold.fixels.table.PageLabel` explains what the toolkit's field lacks.
+    """A field of the page; :class:`workhold.asking.declaring.PageLabel` explains what the declaration lacks.
 
-    Fields of hardware stand in a ``table`` of the toolkit.
+    Fields of hardware stand in a ``table`` of the toolkit, those of a question in one of its name.
     """
 
     name: str
@@ -48,7 +50,7 @@ class PageField:
     table: str | None = None
 
 
-def page_fields(row: ToolkitField, table: str | None = None) -> Iterator[PageField]:
+def page_fields(row: Declaration, table: str | None = None) -> Iterator[PageField]:
     for one in row.labels:
         choosing = "several" if one.several else "one"
         form = choosing if one.choices else PAGE_FORMS.get(row.form, row.form)
@@ -110,6 +112,19 @@ class Described:
             "hardware": hardware_answer(),
             "roles": self.roles,
         }
+
+
+def questions_answer() -> dict[str, list[dict[str, Any]]]:
+    """What the page asks of a search and of a sheet, field by field, with the section that each is in."""
+    questions = {"search": SearchQuestion, "sheet": SheetQuestion}
+    return {
+        name: [
+            asdict(one) | {"section": row.section, "help": row.help, "needs": row.needs}
+            for row in declarations_of(question)
+            for one in page_fields(row, name)
+        ]
+        for name, question in questions.items()
+    }
 
 
 def hardware_answer() -> list[dict[str, Any]]:

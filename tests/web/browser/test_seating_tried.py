@@ -191,27 +191,27 @@ def test_a_search_asks_for_seating(walk: Walk) -> None:
     """Of the first fixtures, and only those that catch the part so far open; the list shows it, and a link keeps it."""
     page = walk.page
     walk.take()
-    assert page.is_disabled("#seated-opening") and page.is_disabled("#seated-foolproof")
-    page.fill("#seated-first", "0")
-    page.press("#seated-first", "Tab")
-    assert page.get_attribute("#seated-first", "aria-invalid") == "true"
-    page.fill("#seated-first", "6")
-    page.press("#seated-first", "Tab")
+    assert page.is_disabled("#search-opening") and page.is_disabled("#search-foolproof")
+    page.fill("#search-seating", "0")
+    page.press("#search-seating", "Tab")
+    assert page.get_attribute("#search-seating", "aria-invalid") == "true"
+    page.fill("#search-seating", "6")
+    page.press("#search-seating", "Tab")
     walk.search()
     first = walk.server.client.get(f"/api/jobs/{walk.job()}").json()["request"]
     assert (first["seating"], first["opening"], first["foolproof"]) == (6, None, False)
     assert "caught" in walk.seen(".row .row-figures").inner_text()
-    page.fill("#seated-opening", "1")
-    page.press("#seated-opening", "Tab")
-    page.check("#seated-foolproof")
+    page.fill("#search-opening", "1")
+    page.press("#search-opening", "Tab")
+    page.check("#search-foolproof")
     walk.search()
     told = walk.server.client.get(f"/api/jobs/{walk.job()}").json()["request"]
     assert (told["seating"], told["opening"], told["foolproof"]) == (6, 1.0, True)
     rows = walk.server.client.get(f"/api/jobs/{walk.job()}/fixtures").json()["rows"]
     assert 0 < len(rows) <= 6 and all(row["caught"]["opening"] > 1.0 for row in rows)
     walk.reload()
-    assert (page.input_value("#seated-first"), page.input_value("#seated-opening")) == ("6", "1")
-    assert page.is_checked("#seated-foolproof")
+    assert (page.input_value("#search-seating"), page.input_value("#search-opening")) == ("6", "1")
+    assert page.is_checked("#search-foolproof")
 
 
 # Which pegs stand in the part, at the openings that were wished for and that a trial begins with.

@@ -15,8 +15,8 @@ GIVEN = {
     "peg-height": "8",
     "dowel": "6 mm m6 in H7",
     "clearance": "3",
-    "machine-x": "-312.5",
-    "machine-y": "-88",
+    "machine-position-x": "-312.5",
+    "machine-position-y": "-88",
     "friction": "0.15",
     "part-name": "door handle",
 }
@@ -33,7 +33,12 @@ def open_sheet(walk: Walk) -> None:
 def asked(walk: Walk) -> dict[str, str]:
     """What the link to the sheet asks for."""
     query = parse_qs(urlsplit(str(walk.page.get_attribute("#take-sheet", "href"))).query)
-    return {name: values[0] for name, values in query.items()}
+    return {name: values[0] for name, values in query.items() if len(values) == 1} | {
+        f"{name}_{axis}": value
+        for name, values in query.items()
+        if len(values) == 2
+        for axis, value in zip("xy", values, strict=True)
+    }
 
 
 def test_everything_of_the_sheet_can_be_given(walk: Walk) -> None:
@@ -41,8 +46,8 @@ def test_everything_of_the_sheet_can_be_given(walk: Walk) -> None:
     page = walk.page
     open_sheet(walk)
     for name, value in GIVEN.items():
-        page.fill(f"#{name}", value)
-    page.press("#part-name", "Tab")
+        page.fill(f"#sheet-{name}", value)
+    page.press("#sheet-part-name", "Tab")
     page.check("#sheet-seating")
     page.select_option("#paper", "letter")
     query = asked(walk)
@@ -65,11 +70,11 @@ def test_everything_of_the_sheet_can_be_given(walk: Walk) -> None:
     assert walk.saved("#take-pins").decode().count("6 mm m6 in H7") == 3
     page.select_option("#unit", "inch")
     assert float(asked(walk)["thickness"]) == pytest.approx(12 / 25.4)
-    assert float(page.input_value("#clearance")) == pytest.approx(3 / 25.4)
+    assert float(page.input_value("#sheet-clearance")) == pytest.approx(3 / 25.4)
     page.select_option("#unit", "mm")
     walk.reload()
     walk.searched()
-    assert {name: page.input_value(f"#{name}") for name in GIVEN} == GIVEN
+    assert {name: page.input_value(f"#sheet-{name}") for name in GIVEN} == GIVEN
     assert asked(walk) == query and page.is_checked("#sheet-seating")
     assert page.input_value("#paper") == "letter"
 
@@ -80,18 +85,18 @@ def test_the_cutter_keeps_off_the_pegs(walk: Walk) -> None:
     open_sheet(walk)
     circles = page.locator("#drawing-fixture .keep-out")
     assert circles.count() == 0
-    page.fill("#clearance", "2.5")
-    page.press("#clearance", "Tab")
+    page.fill("#sheet-clearance", "2.5")
+    page.press("#sheet-clearance", "Tab")
     walk.seen("#drawing-fixture .keep-out")
     sizes = sorted(float(circle.get_attribute("r") or "nan") for circle in circles.all())
     # Three dowels of 6 mm and a tip of 10 mm.
     assert sizes == [5.5, 5.5, 5.5, 7.5]
-    page.fill("#clearance", "-1")
-    page.press("#clearance", "Tab")
-    assert page.get_attribute("#clearance", "aria-invalid") == "true"
+    page.fill("#sheet-clearance", "-1")
+    page.press("#sheet-clearance", "Tab")
+    assert page.get_attribute("#sheet-clearance", "aria-invalid") == "true"
     assert asked(walk)["clearance"] == "2.5"
-    page.fill("#clearance", "")
-    page.press("#clearance", "Tab")
+    page.fill("#sheet-clearance", "")
+    page.press("#sheet-clearance", "Tab")
     page.wait_for_selector("#drawing-fixture .keep-out", state="detached")
     assert "clearance" not in asked(walk)
 
@@ -100,12 +105,12 @@ def test_what_the_sheet_is_refused_for_is_told_on_the_page(walk: Walk) -> None:
     """A zero that there is not is a sentence beside the button, gone with the next sheet."""
     page = walk.page
     open_sheet(walk)
-    page.fill("#zero", "hole 9")
-    page.press("#zero", "Tab")
+    page.fill("#sheet-zero", "hole 9")
+    page.press("#sheet-zero", "Tab")
     page.click("#take-sheet")
     assert "holes 1 to 3" in walk.seen("#take-trouble").inner_text()
-    page.fill("#zero", "centre")
-    page.press("#zero", "Tab")
+    page.fill("#sheet-zero", "centre")
+    page.press("#sheet-zero", "Tab")
     assert walk.saved("#take-sheet").startswith(b"%PDF")
     assert page.locator("#take-trouble").is_hidden()
     walk.troubles = [line for line in walk.troubles if "400" not in line]

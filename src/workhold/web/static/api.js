@@ -107,7 +107,7 @@ export function sendFile(path, file, how = {}) {
  * @param {Object<string, string>} [query]
  */
 export function downloadPath(job, rank, what, query = {}) {
-  const search = new URLSearchParams(query).toString();
+  const search = new URLSearchParams(Object.entries(query).flatMap(([name, value]) => [value].flat().map((one) => [name, one]))).toString();
   const place = rank === null ? what : `fixtures/${rank}/${what}`;
   return `api/jobs/${encodeURIComponent(job)}/${place}${search ? `?${search}` : ""}`;
 }

@@ -106,7 +106,7 @@ async function search() {
     for (const { part, file } of read) await outlinesOf(part, { file, how: {} });
     if (mine !== latest) return;
     const workpieces = read.map(({ name, part }) => workpieceForm(part, name));
-    const asked = { workpieces, toolkit: state.toolkit, types: state.types, contact_margin: state.contactMargin, tolerance: state.tolerance };
+    const asked = { workpieces, toolkit: state.toolkit, types: state.types, contact_margin: state.asked.contact_margin ?? 0, tolerance: state.tolerance };
     const begun = await send("families", asked);
     if (mine !== latest) {
       ask(`jobs/${encodeURIComponent(begun.job)}`, { method: "DELETE" }).catch(() => {});

@@ -4,12 +4,10 @@
 import { byId, field, make, quiet, show } from "./dom.js";
 import { bandWords, isNever, toggleFace } from "./part-drawing.js";
 import { change, on, state } from "./state.js";
+import { askIn, askedOf } from "./questions.js";
 import { kindOf, kinds } from "./toolkits.js";
-import { fieldLength, forceText, length, number, readLength, readNumber } from "./units.js";
+import { forceText, length, number, readLength, readNumber } from "./units.js";
 import { circleLoop, ZoneTool } from "./zone-tool.js";
-
-/** Fixtures whose seating is worked out in one search. */
-const MOST_SEATED = 1000;
 
 /** @type {ZoneTool|null} */
 let tool = null;
@@ -24,23 +22,27 @@ export function rulesPanel(drawing, showPart) {
     byId(`zone-${kind}`).addEventListener("click", () => startZone(drawing, kind, showPart));
   }
   byId("zone-add").addEventListener("click", addTyped);
-  for (const id of ["angle-low", "angle-high", "contact-margin"]) {
+  for (const id of ["angle-low", "angle-high"]) {
     field(id).addEventListener("input", quiet(read, 250));
     field(id).addEventListener("change", read);
   }
-  for (const id of ["seated-first", "seated-opening"]) field(id).addEventListener("input", quiet(readSeating, 250));
-  for (const id of ["seated-first", "seated-opening", "seated-foolproof"]) field(id).addEventListener("change", readSeating);
-  on(["seating", "unit"], writeSeating);
   on(["part"], () => writeFaces(drawing));
   on(["avoid"], markFaces);
   on(["zones", "unit"], writeZones);
-  on(["angles", "contactMargin", "unit"], write);
+  on(["angles", "unit"], write);
   on(["toolkit", "types"], writeTypes);
   field("every-pair").addEventListener("change", () => change({ listing: field("every-pair").checked ? "all" : null }));
   field("every-fixture").addEventListener("change", () => change({ every: field("every-fixture").checked }));
   on(["toolkit", "listing", "every"], writeListing);
   on(["loads", "unit"], writeLoads);
   on(["view"], () => state.view !== "part" && stopZone());
+}
+
+/** Draw what else is asked, once the server has told what that is. */
+export function askInRules() {
+  const isSeating = ({ section }) => section === "Seating";
+  askIn(byId("search-fields"), "asked", askedOf("search").filter((field) => !isSeating(field)));
+  askIn(byId("seating-fields"), "asked", askedOf("search").filter(isSeating));
 }
 
 /** A button for each face; pressed means forbidden. */
@@ -113,16 +115,12 @@ function writeZones() {
   );
 }
 
-/** Read angles and margin into the state. */
+/** Read angles into the state. */
 function read() {
   const [low, high] = ["angle-low", "angle-high"].map((id) => readNumber(field(id).value));
-  const margin = readLength(field("contact-margin").value) ?? 0;
-  const badMargin = !(margin >= 0);
   const one = (low === null) !== (high === null);
   const badAngle = low !== null && high !== null && !(low <= high);
-  field("contact-margin").setAttribute("aria-invalid", String(badMargin));
   for (const id of ["angle-low", "angle-high"]) field(id).setAttribute("aria-invalid", String(badAngle));
-  if (!badMargin && margin !== state.contactMargin) change({ contactMargin: margin });
   if (badAngle || one) return;
   const angles = low === null ? [] : [[low, high]];
   if (JSON.stringify(angles) !== JSON.stringify(state.angles)) change({ angles });
@@ -133,30 +131,8 @@ function write() {
   const values = {
     "angle-low": state.angles.length ? String(state.angles[0][0]) : "",
     "angle-high": state.angles.length ? String(state.angles[0][1]) : "",
-    "contact-margin": state.contactMargin ? fieldLength(state.contactMargin) : "",
   };
   for (const [id, value] of Object.entries(values)) if (field(id) !== document.activeElement) field(id).value = value;
-}
-
-/** Read of how many fixtures the seating is asked, and what is asked of it. */
-function readSeating() {
-  const [first, opening] = [readNumber(field("seated-first").value), readLength(field("seated-opening").value)];
-  const badFirst = first !== null && !(Number.isInteger(first) && first > 0 && first <= MOST_SEATED);
-  const badOpening = opening !== null && !(opening > 0);
-  field("seated-first").setAttribute("aria-invalid", String(badFirst));
-  field("seated-opening").setAttribute("aria-invalid", String(badOpening));
-  if (badFirst || badOpening) return;
-  const seating = { first, opening, foolproof: field("seated-foolproof").checked };
-  if (JSON.stringify(seating) !== JSON.stringify(state.seating)) change({ seating });
-}
-
-/** Write them; what is asked of it counts once it is known of how many. */
-function writeSeating() {
-  const { first, opening, foolproof } = state.seating;
-  const values = { "seated-first": first ? String(first) : "", "seated-opening": opening ? fieldLength(opening) : "" };
-  for (const [id, value] of Object.entries(values)) if (field(id) !== document.activeElement) field(id).value = value;
-  field("seated-foolproof").checked = foolproof;
-  for (const id of ["seated-opening", "seated-foolproof"]) field(id).disabled = !first;
 }
 
 /** Whether every fixture is listed, and every pair of clamps where there are two. */
@@ -203,5 +179,4 @@ export function writeRules(drawing) {
   write();
   writeTypes();
   writeLoads();
-  writeSeating();
 }

@@ -4,9 +4,11 @@
  * Settings are what a search depends on; when one of them changes, what was found before is stale.
  */
 
+import { askedOfSearch } from "./questions.js";
+
 /** Keys of the state that a search depends on. */
 export const SETTINGS = [
-  "part", "toolkit", "types", "listing", "every", "contactMargin", "avoid", "zones", "angles", "tolerance", "loads", "ranking", "prefer", "seating", "program",
+  "part", "toolkit", "types", "listing", "every", "asked", "avoid", "zones", "angles", "tolerance", "loads", "ranking", "prefer", "program",
 ];
 
 /**
@@ -19,7 +21,7 @@ export const SETTINGS = [
  * @property {string[]|null} types names of the arrangements sought; null is all
  * @property {"all"|null} listing of two clamps every pair of each seat; null is the best of each
  * @property {boolean} every whether all fixtures are wanted, however many there are
- * @property {number} contactMargin in mm
+ * @property {Object<string, any>} asked what else is asked of the fixtures, by the server's names; lengths in mm
  * @property {number[]} avoid faces not to touch
  * @property {number[][][]} zones loops of [x, y, bulge] in part coordinates
  * @property {number[][]} angles ranges in degrees
@@ -27,7 +29,6 @@ export const SETTINGS = [
  * @property {any[]} loads that the search ranks by
  * @property {string[]|null} ranking
  * @property {string|null} prefer what is wanted most, where no figures are named to rank by
- * @property {{first: number|null, opening: number|null, foolproof: boolean}} seating of how many fixtures it is worked out, from how far open in mm they must catch the part, and whether a caliper must tell every wrong seat
  * @property {any} job the search as the server tells it, or null
  * @property {{sort: string, descending: boolean, type: string, face: string, angle: string, each: boolean, unfit: boolean}} list with near copies one by one, and with what is none for a workshop
  * @property {any} selected the fixture shown
@@ -55,7 +56,7 @@ export const state = {
   types: null,
   listing: null,
   every: false,
-  contactMargin: 0,
+  asked: {},
   avoid: [],
   zones: [],
   angles: [],
@@ -63,7 +64,6 @@ export const state = {
   loads: [],
   ranking: null,
   prefer: null,
-  seating: { first: null, opening: null, foolproof: false },
   job: null,
   list: { sort: "rank", descending: false, type: "", face: "", angle: "", each: false, unfit: false },
   selected: null,
@@ -121,13 +121,12 @@ export function request() {
     toolkit: state.toolkit,
     types: state.types,
     listing: state.listing,
-    contact_margin: state.contactMargin,
+    ...askedOfSearch(),
     restrictions: { avoid: state.avoid, zones: state.zones, angles: state.angles },
     ranking: state.ranking,
     prefer: state.ranking ? null : state.prefer,
     tolerance: state.tolerance,
     loads: state.loads,
     ...(state.program ? { program: programRequest(state.program) } : {}),
-    ...(state.seating.first ? { seating: state.seating.first, opening: state.seating.opening, foolproof: state.seating.foolproof } : {}),
   };
 }

@@ -35,7 +35,7 @@ function write() {
   if (!job || !rank) return;
   const date = new Date();
   const day = [date.getFullYear(), date.getMonth() + 1, date.getDate()].map((n) => String(n).padStart(2, "0")).join("-");
-  const sheet = { ...sheetQuery(), date: day, ...loadQuery(), ...supportsQuery(), ...firstSideQuery(state.sides?.shown ?? 0) };
+  const sheet = { ...sheetQuery(), day, ...loadQuery(), ...supportsQuery(), ...firstSideQuery(state.sides?.shown ?? 0) };
   // Files are made of a whole search only; until then a link leads nowhere.
   const over = !searching();
   const point = (id, path) => {
@@ -56,7 +56,7 @@ function write() {
   if (other) {
     const known = { ...other.known, part: other.part, unit: state.unit };
     byId("take-other").textContent = `Sheet of the ${SIDES[other.number].toLowerCase()}`;
-    point("take-other", downloadPath(other.job, other.rank, "sheet.pdf", { ...sheetQuery(known.sheet), date: day, ...loadQuery(known), ...supportsQuery(known), ...firstSideQuery(other.number) }));
+    point("take-other", downloadPath(other.job, other.rank, "sheet.pdf", { ...sheetQuery(known.sheet), day, ...loadQuery(known), ...supportsQuery(known), ...firstSideQuery(other.number) }));
   }
   point("take-json", downloadPath(job, null, "result.json"));
   point("take-csv", downloadPath(job, null, "result.csv"));

@@ -1,17 +1,20 @@
 /**
- * Fields for the values of a toolkit, made from their description: how each looks, is read and is written.
+ * Fields for the values of a toolkit or a question, made from their description: how each looks, is read and is written.
  */
 import { field as input, make } from "./dom.js";
 import { same } from "./toolkits.js";
-import { fieldLength, fieldStress, readLength, readNumber, readStress } from "./units.js";
+import { fieldForce, fieldLength, fieldStress, forceWord, pressureWord, readForce, readLength, readNumber, readStress, unitWord } from "./units.js";
 
 /** @typedef {import("./toolkits.js").Field} Field */
 
 /** Labels of forms that take two inputs. */
-const PAIRS = { pitch: ["x", "y"], span: ["least", "most"] };
+const PAIRS = { pitch: ["x", "y"], place: ["x", "y"], span: ["least", "most"] };
+
+/** Forms of numbers in a unit of their own, besides lengths: how they are written and read. */
+const UNITS = { stress: [fieldStress, readStress], force: [fieldForce, readForce], number: [(value) => String(value ?? ""), readNumber] };
 
 /** The name of a field's element. @param {Field} field */
-function idOf({ name, table }) {
+export function idOf({ name, table }) {
   return [table, name].filter(Boolean).join("-").replaceAll("_", "-");
 }
 
@@ -35,12 +38,14 @@ export function makeFields(field) {
     const options = field.choices.map(({ words }, k) => make("option", { value: k }, words));
     return [make("label", {}, field.label, make("select", { id }, ...options))];
   }
-  const mode = field.form === "count" ? "numeric" : ["holes", "rings"].includes(field.form) ? "text" : "decimal";
-  const unit = ["length", "pitch", "span", "rings"].includes(field.form) ? [" ", make("span.unit")] : [];
-  if (field.form === "stress") unit.push(" ", make("span.pressure"));
+  if (field.form === "flag") return [make("label.check.wide", { title: field.help }, make("input", { type: "checkbox", id }), ` ${field.label}`)];
+  const mode = field.form === "count" ? "numeric" : ["holes", "rings", "text"].includes(field.form) ? "text" : "decimal";
+  const unit = ["length", "pitch", "place", "span", "rings"].includes(field.form) ? [" ", make("span.unit", {}, unitWord())] : [];
+  if (field.form === "stress") unit.push(" ", make("span.pressure", {}, pressureWord()));
+  if (field.form === "force") unit.push(" ", make("span.force-unit", {}, forceWord()));
   return idsOf(field).map((each, k) => {
     const label = PAIRS[field.form] ? `${field.label}${field.form === "span" ? "," : ""} ${PAIRS[field.form][k]}` : field.label;
-    return make("label", {}, label, ...unit.map((part) => (typeof part === "string" ? part : part.cloneNode())),
+    return make("label", { title: field.help }, label, ...unit.map((part) => (typeof part === "string" ? part : part.cloneNode())),
       make("input", { id: each, inputmode: mode, autocomplete: "off", placeholder: field.hint }));
   });
 }
@@ -58,6 +63,8 @@ export function readField(field, known) {
     return { value: chosen.length ? chosen : null, wrong: false };
   }
   if (field.form === "one") return { value: field.choices[Number(input(id).value)]?.value ?? null, wrong: false };
+  if (field.form === "flag") return { value: input(id).checked || null, wrong: false };
+  if (field.form === "text") return { value: input(id).value.trim() || null, wrong: false };
   if (field.form === "holes") {
     const names = input(id).value.split(/[\s,;]+/).filter(Boolean).map((name) => name.toUpperCase());
     return { value: names.length ? names : null, wrong: false };
@@ -73,8 +80,8 @@ export function readField(field, known) {
   const values = ids.map((each, k) => {
     const text = input(each).value;
     if (field.form === "count") return readNumber(text);
-    if (field.form === "stress") return text !== "" && text === fieldStress(before[k]) ? before[k] : readStress(text);
-    return text !== "" && text === fieldLength(before[k]) ? before[k] : readLength(text);
+    const [written, read] = UNITS[field.form] ?? [fieldLength, readLength];
+    return text !== "" && text === written(before[k]) ? before[k] : read(text);
   });
   const empty = values.every((value) => value === null);
   const wrong = values.map((value) => (value === null ? field.hint === null || !empty : !fits(field, value)));
@@ -101,7 +108,7 @@ function ringsOf(text, known) {
 function fits({ form, least }, value) {
   if (!Number.isFinite(value)) return false;
   if (form === "count") return Number.isInteger(value) && value >= 1;
-  return least === "any" || value > 0 || (least === "0" && value === 0);
+  return least === "any" || form === "place" || value > 0 || (least === "0" && value === 0);
 }
 
 /**
@@ -119,14 +126,18 @@ export function writeField(field, value) {
     input(id).value = String(Math.max(0, field.choices.findIndex((choice) => same(choice.value, value))));
     return;
   }
+  if (field.form === "flag") {
+    input(id).checked = value === true;
+    return;
+  }
   const ids = idsOf(field);
   const values = ids.length > 1 ? (value ?? [null, null]) : [value];
   ids.forEach((each, k) => {
     if (input(each) === document.activeElement) return;
     if (field.form === "holes") input(each).value = (value ?? []).join(", ");
     else if (field.form === "rings") input(each).value = ringsText(value);
-    else if (field.form === "count") input(each).value = String(values[k] ?? "");
-    else input(each).value = field.form === "stress" ? fieldStress(values[k]) : fieldLength(values[k]);
+    else if (["count", "text"].includes(field.form)) input(each).value = String(values[k] ?? "");
+    else input(each).value = (UNITS[field.form] ?? [fieldLength])[0](values[k]);
     input(each).setAttribute("aria-invalid", "false");
   });
 }

@@ -93,6 +93,6 @@ function appliedHelp(words, state) {
   if (/^touching faces /.test(words)) return { avoid: [] };
   if (words.startsWith("without the keep-out zones")) return { zones: [] };
   if (words.startsWith("at any angle")) return { angles: [] };
-  if (words.startsWith("without a contact margin")) return { contactMargin: 0 };
+  if (words.startsWith("without a contact margin")) return { asked: { ...state.asked, contact_margin: 0 } };
   return null;
 }
