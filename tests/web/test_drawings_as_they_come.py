@@ -89,10 +89,10 @@ def test_the_page_asks_and_leads_to_a_sheet(server: RunningServer, drawing: Draw
         elif "fit" in asked:
             how["fit"] = FIT
         elif "join_tolerance" in asked and seen["gaps"]:
-            how["join"] = max(gap for gap in seen["gaps"] if gap < 1.0) * (1 + 1e-5)
+            how["join_tolerance"] = max(gap for gap in seen["gaps"] if gap < 1.0) * (1 + 1e-5)
         else:
             assert drawing.layer in [layer["name"] for layer in seen["layers"]], seen["error"]
-            how["layer"] = drawing.layer
+            how["layers"] = drawing.layer
     part = seen["part"]
     assert part is not None, seen["error"]
     x0, y0, x1, y1 = part["bounds"]

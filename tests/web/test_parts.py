@@ -83,12 +83,12 @@ def test_units_and_parts_of_a_drawing_can_be_chosen(server: RunningServer) -> No
     svg = b'<svg xmlns="http://www.w3.org/2000/svg"><path d="M0 0H20V10H0Z"/><path d="M50 0H60V5H50Z"/></svg>'
     wide = upload(server, svg, "two.svg", unit="inch").json()
     assert wide["bounds"][2] - wide["bounds"][0] == pytest.approx(20 * 25.4)
-    small = upload(server, svg, "two.svg", unit="mm", part="2").json()
+    small = upload(server, svg, "two.svg", unit="mm", part_number="2").json()
     assert small["bounds"][2] - small["bounds"][0] == pytest.approx(10)
     assert any("2 separate parts" in remark for remark in small["remarks"])
-    refused(upload(server, svg, "two.svg", unit="mm", part="3"))
+    refused(upload(server, svg, "two.svg", unit="mm", part_number="3"))
     refused(upload(server, svg, "two.svg", unit="furlong"))
-    refused(upload(server, svg, "two.svg", unit="mm", part="0"))
+    refused(upload(server, svg, "two.svg", unit="mm", part_number="0"))
 
 
 @pytest.mark.parametrize(
@@ -204,7 +204,7 @@ def test_a_survey_has_the_part_or_what_is_asked(server: RunningServer) -> None:
     assert told["part"] is None and told["asked"] == ["unit"] and told["size"] == [60, 10]
     assert told["error"] == refused(upload(server, svg, "two.svg"))
     assert [len(stroke) for stroke in told["strokes"]] == [5, 5]
-    told = survey(server, svg, "two.svg", unit="mm", part=2)
+    told = survey(server, svg, "two.svg", unit="mm", part_number=2)
     assert told["part"]["name"] == "two" and told["part"]["bounds"][2] == 60
     assert [(part["number"], part["holes"]) for part in told["parts"]] == [(1, 0), (2, 0)]
 
@@ -230,9 +230,9 @@ def test_gaps_are_joined_and_layers_chosen_as_asked(server: RunningServer) -> No
     content = f'<svg xmlns="http://www.w3.org/2000/svg">{svg}</svg>'.encode()
     told = survey(server, content, "open.svg", unit="mm")
     assert told["part"] is None and told["asked"] == ["join_tolerance"] and told["gaps"] == [0.3]
-    assert survey(server, content, "open.svg", unit="mm", join=0.31)["part"]["faces"]
-    assert upload(server, content, "open.svg", unit="mm", join="0.31").status_code == 200
-    layers = {"layer": ["OUTLINE", "nothing"]}
+    assert survey(server, content, "open.svg", unit="mm", join_tolerance=0.31)["part"]["faces"]
+    assert upload(server, content, "open.svg", unit="mm", join_tolerance="0.31").status_code == 200
+    layers = {"layers": ["OUTLINE", "nothing"]}
     assert "nothing" in str(survey(server, BRACKET.read_bytes(), "bracket.dxf", **layers)["error"])
 
 

@@ -129,7 +129,7 @@ def test_a_part_is_named_after_the_file_that_was_sent_and_its_solid(
     )
     path.write_text(named)
     for part, called in (("lug", "lug of machine part"), ("1", "base of machine part")):
-        answer = sent(server, path, "/api/parts", part=part)
+        answer = sent(server, path, "/api/parts", part_number=part)
         assert answer.status_code == 200, answer.text
         assert answer.json()["name"] == called
     alone = write_step(tmp_path / "alone.step", box(60, 40, 10))

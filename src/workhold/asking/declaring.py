@@ -117,6 +117,7 @@ class Declaration:
     choices : the words that there are.
     section : of the command's help.
     word : its name as an option, where that is not the field's own.
+    spelled : the whole option, where that is another still.
     needs : the field without which it is not asked.
     typed : the help of the option, where that is another than ``help``.
     typed_default : of the option, as it would be typed, where it follows from no default; "" otherwise.
@@ -133,6 +134,7 @@ class Declaration:
     choices: tuple[str, ...] = field(default=(), kw_only=True)
     section: str | None = field(default=None, kw_only=True)
     word: str = field(default="", kw_only=True)
+    spelled: str = field(default="", kw_only=True)
     needs: str = field(default="", kw_only=True)
     typed: str = field(default="", kw_only=True)
     typed_default: str = field(default="", kw_only=True)
@@ -149,7 +151,7 @@ class Declaration:
 
     @property
     def option(self) -> str:
-        return f"--{self.argument.replace('_', '-')}"
+        return self.spelled or f"--{self.argument.replace('_', '-')}"
 
     @property
     def words(self) -> str:

@@ -10,10 +10,11 @@ from typing import Annotated, Any, Literal, TypeVar
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from workhold.asking.declaring import declarations_of
+from workhold.asking.reading import ReadingQuestion
 from workhold.asking.search import LOADS, RANKING, RULING_OUT, SEARCH, SEATING, SearchQuestion
 from workhold.asking.sheet import SheetQuestion
 from workhold.errors import InputError
-from workhold.files.declared_forms import with_fields
+from workhold.files.declared_forms import given_in, with_fields
 from workhold.files.input_forms import LoadTable
 
 __all__ = [
@@ -30,6 +31,7 @@ __all__ = [
 # What a search asks but heights, which stand with the reading of the part and with the program.
 OF_SEARCH = declarations_of(SearchQuestion, (RULING_OUT, LOADS, RANKING, SEATING, SEARCH))
 OF_SHEET = declarations_of(SheetQuestion)
+OF_READING = declarations_of(ReadingQuestion)
 Arguments = TypeVar("Arguments", bound="ToolArguments")
 Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
 Positive = Annotated[float, Field(gt=0)]
@@ -45,14 +47,11 @@ class ToolArguments(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
 
 
+@with_fields(OF_READING)
 class LoadArguments(ToolArguments):
     """A part and how it is read."""
 
     part: str = Field(description="path of a DXF, SVG, JSON or STEP file, or a built-in name such as widget")
-    unit: Literal["mm", "cm", "m", "inch", "px72", "px90", "px96"] | None = Field(
-        default=None,
-        description="of a drawing that does not say its own; of an SVG drawing how many pixels make an inch",
-    )
     layers: list[str] | None = Field(
         default=None, description="DXF layers to read; all visible ones if not given"
     )
@@ -60,36 +59,11 @@ class LoadArguments(ToolArguments):
         default=None,
         description="which part of several, from 1 by decreasing area, or the name of a STEP file's solid",
     )
-    join_tolerance: float = Field(
-        default=1e-3, ge=0, description="largest gap between loose ends to close, in mm"
-    )
-    fit: Positive | None = Field(
-        default=None, description="how far lines and arcs may be from true curves that they stand for, in mm"
-    )
-    axis: Literal["x", "y", "z", "-x", "-y", "-z"] | None = Field(
-        default=None, description="STEP: the direction that points up, to which the pegs are parallel"
-    )
-    section: float | None = Field(default=None, description="STEP: take the section at this height, in mm")
-    peg_height: Positive | None = Field(
-        default=None,
-        description="STEP: how far pegs reach above the plane on which the part lies, in mm; the outline "
-        "is what they meet there, and only upright faces are touched",
-    )
-    head_room: float | None = Field(
-        default=None,
-        ge=0,
-        description="with peg_height: what is kept free above the pegs, in mm; usually 0.5",
-    )
-    least_band: float | None = Field(
-        default=None,
-        ge=0,
-        description="with peg_height: how high an upright face must be to be touched, in mm; usually 1",
-    )
     picture: bool = Field(default=False, description="show a picture, too")
 
     def reading(self) -> dict[str, Any]:
         """Returns the arguments of :func:`workhold.load` but the part."""
-        return self.model_dump(include=set(LoadArguments.model_fields) - {"part", "picture"})
+        return given_in(self, OF_READING)
 
 
 class Circle(ToolArguments):

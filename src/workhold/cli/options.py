@@ -14,18 +14,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from attrs import frozen
 
+from workhold.asking.declaring import declarations_of
+from workhold.asking.reading import ReadingQuestion
 from workhold.cli.commands import option, print_remark
-from workhold.cli.values import (
-    choice,
-    length,
-    length_unit,
-    optional_length,
-    optional_positive_length,
-    usual_unit,
-    whole_number,
-)
+from workhold.cli.declared import one_word, options_of, read_words
+from workhold.cli.values import length_unit, usual_unit, whole_number
 from workhold.errors import InputError
-from workhold.model.solid import AXES
 
 if TYPE_CHECKING:
     from workhold.files.part.loaded import Loaded
@@ -65,25 +59,20 @@ def result_with(path: str, rank: int) -> Result:
     return result
 
 
-READING = "Reading the part"
-# With its unit, so that it is the same whatever --unit says.
-JOIN_TOLERANCE = "0.001mm"
-
+OF_READING = declarations_of(ReadingQuestion)
 # What the questions of a part's readers are called here.
-CALLED = {
+CALLED = {row.name: row.option for row in OF_READING} | {
     "unit": "--unit",
     "drawing_unit": "--drawing-unit",
-    "layers": "--layer",
-    "part_number": "--part",
-    "join_tolerance": "--join-tolerance",
-    "fit": "--fit",
-    "axis": "--axis",
-    "section": "--section",
-    "peg_height": "--peg-height",
-    "head_room": "--head-room",
-    "least_band": "--least-band",
     "heights": "the toolkit's own heights",
 }
+LENGTHS_UNIT = option(
+    None,
+    "UNIT",
+    "Unit of lengths given and shown (mm, cm, m, inch), and of a drawing that does not say its own; mm "
+    "if not given. A length may also carry its unit: 0.5in. For an SVG drawing in pixels, how many make "
+    "an inch: px72, px90, px96; lengths are then in mm.",
+)
 
 PartArgument = Annotated[
     str,
@@ -105,85 +94,23 @@ def at_terminal() -> bool:
     return sys.stdin.isatty() and sys.stderr.isatty()
 
 
-@frozen
+@frozen(these=options_of(OF_READING, layers={"unit": one_word(LENGTHS_UNIT)}))
 class PartWords:
     """The options of reading the part, as typed; None for those not given."""
 
-    unit: str | None = option(
-        None,
-        "UNIT",
-        "Unit of lengths given and shown (mm, cm, m, inch), and of a drawing that does not say its own; mm "
-        "if not given. A length may also carry its unit: 0.5in. For an SVG drawing in pixels, how many make "
-        "an inch: px72, px90, px96; lengths are then in mm.",
-    )
-    layer: list[str] | None = option(READING, "NAME", "Read only this layer; may be repeated.")
-    part_number: str | None = option(
-        READING,
-        "N|NAME",
-        "Which part, when a drawing holds several, or which solid of a STEP file, by its number or its name; "
-        "the largest if not given.",
-        "--part",
-    )
-    drawing_unit: str | None = option(
-        READING,
-        "UNIT",
-        "Unit of the drawing, where it is not that of --unit, or where the file says a wrong one.",
-    )
-    axis: str | None = option(
-        READING,
-        "[-]x|y|z",
-        "STEP files: the direction that points up, to which pegs are parallel; z if not given. With - the "
-        "part lies on its other side.",
-    )
-    peg_height: str | None = option(
-        READING,
-        "HEIGHT",
-        "STEP files: how far pegs reach above the plane on which the part lies. The outline is what they can "
-        "meet there, and only upright faces are touched. If not given, no higher than dowels must stand out. "
-        "Of a drawing it says how high the pegs are, for how far they bend.",
-    )
-    head_room: str | None = option(
-        READING, "LENGTH", "With --peg-height: what is kept free above the pegs; 0.5mm if not given."
-    )
-    least_band: str | None = option(
-        READING,
-        "LENGTH",
-        "With --peg-height: how high an upright face must be to be touched; 1mm if not given.",
-    )
-    section: str | None = option(
-        READING,
-        "HEIGHT",
-        "STEP files: take the section at this height above the part's lowest point, not the silhouette.",
-    )
-    join_tolerance: str = option(
-        READING, "LENGTH", "Largest gap between ends of lines that is closed.", default=JOIN_TOLERANCE
-    )
-    fit: str | None = option(
-        READING,
-        "LENGTH",
-        "Put lines and arcs, nowhere farther off than this, in place of splines, ellipses and Bézier curves "
-        "that are none.",
-    )
+    if TYPE_CHECKING:
+        unit: str | None
+        drawing_unit: str | None
+        peg_height: str | None
 
     def options(self) -> dict[str, Any]:
         """Makes the keyword arguments of ``files.part.load.read_workpiece``."""
         from workhold.files.questions import number_or_name
 
-        unit = length_unit(self.unit)
-        return {
-            "unit": self.drawing_unit,
-            "usual_unit": self.unit or usual_unit(),
-            "layers": self.layer or None,
-            "part_number": number_or_name(self.part_number),
-            "join_tolerance": length(CALLED["join_tolerance"], self.join_tolerance, unit),
-            "fit": optional_positive_length(CALLED["fit"], self.fit, unit),
-            "axis": None if self.axis is None else choice(CALLED["axis"], self.axis, AXES),
-            "section": optional_length(CALLED["section"], self.section, unit),
-            "peg_height": optional_positive_length(CALLED["peg_height"], self.peg_height, unit),
-            "head_room": optional_length(CALLED["head_room"], self.head_room, unit),
-            "least_band": optional_length(CALLED["least_band"], self.least_band, unit),
-            "called": CALLED,
-        }
+        rows = [row for row in OF_READING if row.name != "unit"]
+        asked = read_words(rows, self, length_unit(self.unit)) | {"unit": self.drawing_unit}
+        asked["part_number"] = number_or_name(asked["part_number"])
+        return asked | {"usual_unit": self.unit or usual_unit(), "called": CALLED}
 
     def load(
         self,

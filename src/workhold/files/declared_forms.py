@@ -20,6 +20,7 @@ NUMBERS: Mapping[Form, type] = {"count": int, "length": float, "force": float, "
 TYPES: Mapping[Form, Any] = {
     "flag": bool,
     "text": str,
+    "names": list[str],
     "day": date,
     "place": Annotated[list[float], Field(min_length=2, max_length=2)],
 }

@@ -8,7 +8,6 @@ They are a module of their own because pydantic takes long to import. What a loa
 from __future__ import annotations
 
 import re
-import sys
 from collections.abc import Callable, Mapping
 from difflib import get_close_matches
 from functools import reduce
@@ -87,8 +86,6 @@ def forms_by_noun(
             **{row.name: entry(row) for row in table.fields},
             **(HARDWARE_KEYS if hardware is None else hardware),
         )
-        # Another process finds a form that it is handed by module and name.
-        setattr(sys.modules[base.__module__], forms[noun].__name__, forms[noun])
     return forms
 
 

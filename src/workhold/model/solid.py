@@ -10,11 +10,11 @@ from typing import Any
 from attrs import evolve, field, frozen
 from attrs.converters import optional
 
+from workhold.asking.reading import AXES
 from workhold.errors import InputError
 from workhold.limits import real
 
 __all__ = [
-    "AXES",
     "BESIDE_TOP",
     "NO_LEVELS",
     "STANDING",
@@ -28,8 +28,6 @@ __all__ = [
     "slides_at_any",
 ]
 
-# The directions of a file that can point up.
-AXES = ("x", "y", "z", "-x", "-y", "-z")
 # What says how a solid stands, as a file of a result has it.
 STANDING = ("axis", "height", "peg_height", "head_room", "least_band")
 # What says where a head or a tip on the upper faces is in the way or hangs, as a file has it.

@@ -16,7 +16,7 @@ from workhold.files.declared_forms import given_in, with_fields
 from workhold.files.input_forms import forms_by_noun, one_of, optional
 from workhold.files.result.forms import LoadPart, RestrictionsPart, TolerancePart
 from workhold.fixels.contacts import DIRECTIONS
-from workhold.fixels.kinds import USUAL, toolkit_of
+from workhold.fixels.kinds import USUAL, table_of, toolkit_of
 from workhold.fixels.support_hardware import HARDWARE
 from workhold.fixels.table import ToolkitField
 from workhold.fixels.toolkit import Toolkit
@@ -63,6 +63,17 @@ class ToolkitRequest(Form):
 
     def toolkit(self) -> Toolkit:
         return toolkit_of(self.kind, self.model_dump(exclude={"kind", "title"}))
+
+    def __reduce__(self) -> Any:
+        # The forms of kinds are made from their tables, so that another process does not find them by name.
+        return form_again, (isinstance(self, NamedToolkitRequest), self.model_dump())
+
+
+def form_again(is_named: bool, said: Mapping[str, Any]) -> ToolkitRequest:
+    """The form of a toolkit as another process had it."""
+    forms = NAMED_FORMS if is_named else FORMS
+    form: ToolkitRequest = forms[table_of(said["kind"]).noun](**said)
+    return form
 
 
 class NamedToolkitRequest(ToolkitRequest):

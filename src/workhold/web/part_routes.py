@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 from urllib.parse import unquote
 
 from fastapi import APIRouter, Depends, Query, Request
+from pydantic import Field
 from starlette.exceptions import HTTPException
 
+from workhold.asking.declaring import declarations_of
+from workhold.asking.reading import ReadingQuestion
+from workhold.files.declared_forms import with_fields
+from workhold.limits import MOST_LENGTH
 from workhold.version import __version__
 from workhold.web.answers import figures_answer
 from workhold.web.fixture_tasks import has_step
 from workhold.web.job_routes import found_job
 from workhold.web.part_tasks import ShapeOrder, Upload
 from workhold.web.program_forms import ProgramQuestion
-from workhold.web.request_forms import WorkpieceForm, asked_heights
+from workhold.web.request_forms import AddressForm, WorkpieceForm, asked_heights
 from workhold.web.state import CheckedRoute, at_desk, at_desk_while_heard, state_of
 
 __all__ = ["router"]
@@ -74,66 +79,52 @@ FILE = {
     },
     "parameters": [{"in": "header", "name": "X-Filename", "required": False, "schema": {"type": "string"}}],
 }
-UnitGiven = Literal["mm", "cm", "m", "inch", "px72", "px90", "px96"] | None
-PartGiven = Annotated[
-    str | None, Query(max_length=200, description="number of a part, or number or name of a solid")
-]
-LayersGiven = Annotated[list[Annotated[str, Query(max_length=300)]] | None, Query(max_length=500)]
-JoinGiven = Annotated[float | None, Query(ge=0, le=1e6, description="largest gap to close, in mm")]
-FitGiven = Annotated[
-    float | None,
-    Query(ge=0.0001, le=100, description="how far arcs may be from true curves that they stand for, in mm"),
-]
-AxisGiven = Literal["x", "y", "z", "-x", "-y", "-z"] | None
-HeightGiven = Annotated[
-    float | None,
-    Query(gt=0, le=1e6, description="how far pegs reach above the plane the part lies on, in mm"),
-]
-DiameterGiven = Annotated[
-    float | None,
-    Query(
-        gt=0,
-        le=1e6,
-        description="of the pegs in mm, which then are no higher than they must be where no height is given",
-    ),
-]
-RoomGiven = Annotated[float | None, Query(ge=0, le=1e6, description="kept free above the pegs, in mm")]
-BandGiven = Annotated[float | None, Query(ge=0, le=1e6, description="least height of a face to touch, in mm")]
-HeightsGiven = Annotated[
-    str | None,
-    Query(
+OF_READING = declarations_of(ReadingQuestion)
+
+
+@with_fields(OF_READING, MOST_LENGTH)
+class UploadForm(AddressForm):
+    """How a file that is sent is to be read; lengths in mm."""
+
+    part_number: str | None = Field(
+        default=None, max_length=200, description="number of a part, or number or name of a solid"
+    )
+    layers: Annotated[list[Annotated[str, Field(max_length=300)]], Field(max_length=500)] | None = None
+    fit: float | None = Field(
+        default=None,
+        ge=0.0001,
+        le=100,
+        description="how far arcs may be from true curves that they stand for, in mm",
+    )
+    heights: str | None = Field(
+        default=None,
         max_length=2_000,
         description="JSON: by role between which heights carriers with their own touch, in mm",
-    ),
-]
+    )
+    peg_diameter: float | None = Field(
+        default=None,
+        gt=0,
+        le=MOST_LENGTH,
+        description="of the pegs in mm, which then are no higher than they must be where no height is given",
+    )
 
 
-async def sent(
-    request: Request,
-    unit: UnitGiven = None,
-    part: PartGiven = None,
-    layer: LayersGiven = None,
-    join: JoinGiven = None,
-    fit: FitGiven = None,
-    axis: AxisGiven = None,
-    peg_height: HeightGiven = None,
-    head_room: RoomGiven = None,
-    least_band: BandGiven = None,
-    heights: HeightsGiven = None,
-    peg_diameter: DiameterGiven = None,
-) -> Upload:
+# What is said of other files too.
+OF_ALL_FILES = ("unit", "part_number", "layers", "join_tolerance")
+
+
+async def sent(request: Request, asked: Annotated[UploadForm, Query()]) -> Upload:
     """Collects a file that is sent, and the options of how to read it."""
     content = await request.body()
-    given: dict[str, Any] = {"unit": unit, "part_number": part, "layers": layer, "join_tolerance": join}
     name = shown_name(request.headers.get("x-filename", ""))
-    if fit is not None and not name.lower().endswith(".json"):
-        given["fit"] = fit
-    if name.lower().endswith((".step", ".stp")):
-        given |= {"axis": axis, "peg_height": peg_height, "head_room": head_room, "least_band": least_band}
-        given["heights"] = asked_heights(heights)
-        given["peg_diameter"] = peg_diameter
-    options = {key: value for key, value in given.items() if value is not None}
-    return Upload(content, name, state_of(request).limits.segments, options)
+    given = asked.model_dump(exclude_none=True, exclude={"heights"})
+    if not name.lower().endswith((".step", ".stp")):
+        given = {key: value for key, value in given.items() if key in (*OF_ALL_FILES, "fit")}
+    elif asked.heights is not None:
+        given["heights"] = asked_heights(asked.heights)
+    if name.lower().endswith(".json"):
+        given.pop("fit", None)
+    return Upload(content, name, state_of(request).limits.segments, given)
 
 
 Sent = Annotated[Upload, Depends(sent)]

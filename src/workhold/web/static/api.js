@@ -78,7 +78,7 @@ export function send(path, body, options = {}) {
 /**
  * See what a file holds and leaves open, with the part if it can be read.
  * @param {File} file
- * @param {Object<string, any>} how unit, part, layer (several), join, axis, heights; those that are undefined are not sent
+ * @param {Object<string, any>} how unit, part_number, layers (several), join_tolerance, axis, heights; those that are undefined are not sent
  */
 export function surveyPart(file, how = {}) {
   return sendFile("parts/survey", file, how);

@@ -7,7 +7,7 @@ import { standingQuestion } from "./standing-question.js";
 import { state } from "./state.js";
 import { bareLength, countText, length, number, unitWord } from "./units.js";
 
-/** @typedef {{unit?: string, part?: number, layer?: string[], join?: number, fit?: number, axis?: string, peg_height?: number, head_room?: number, least_band?: number, peg_diameter?: number}} How what has been answered so far */
+/** @typedef {{unit?: string, part_number?: number, layers?: string[], join_tolerance?: number, fit?: number, axis?: string, peg_height?: number, head_room?: number, least_band?: number, peg_diameter?: number}} How what has been answered so far */
 
 /** Gaps up to this many mm are joined without asking. */
 const JOINED = 0.001;
@@ -84,11 +84,11 @@ function unitQuestion(how, answer) {
 /** Which of several parts. */
 function partQuestion({ parts, part }, how, answer) {
   if (parts.length < 2) return null;
-  const used = how.part ?? 1;
+  const used = how.part_number ?? 1;
   const buttons = parts.slice(0, LISTED).map((each) => {
     const [x0, y0, x1, y1] = each.bounds;
     return make("button", {
-      type: "button", "data-part": each.number, "aria-pressed": String(part !== null && each.number === used), click: () => answer({ part: each.number }),
+      type: "button", "data-part": each.number, "aria-pressed": String(part !== null && each.number === used), click: () => answer({ part_number: each.number }),
     }, `${each.number}: ${bareLength(x1 - x0, 1)} × ${bareLength(y1 - y0, 1)} ${unitWord()}`);
   });
   const more = parts.length > LISTED ? [make("span.faint", {}, `and ${countText(parts.length - LISTED)} smaller ones`)] : [];
@@ -99,9 +99,9 @@ function partQuestion({ parts, part }, how, answer) {
 function gapQuestion({ asked, gaps, size }, how, answer) {
   const open = gaps.filter((gap) => gap > JOINED);
   const slip = open.length && open[0] < SLIP * Math.hypot(...size);
-  if (!slip && !(open.length && (asked.includes("join_tolerance") || how.join !== undefined))) return null;
+  if (!slip && !(open.length && (asked.includes("join_tolerance") || how.join_tolerance !== undefined))) return null;
   const words = make("output", { for: "join" });
-  const at = open.filter((gap) => gap <= (how.join ?? JOINED)).length;
+  const at = open.filter((gap) => gap <= (how.join_tolerance ?? JOINED)).length;
   const slider = /** @type {HTMLInputElement} */ (make("input", { type: "range", id: "join", min: 0, max: open.length, step: 1, value: at, "aria-label": "Join gaps up to" }));
   const tell = () => {
     const count = Number(slider.value);
@@ -110,7 +110,7 @@ function gapQuestion({ asked, gaps, size }, how, answer) {
   };
   slider.addEventListener("input", tell);
   // A little more than the gap, so that rounding leaves none open.
-  slider.addEventListener("change", () => answer({ join: Number(slider.value) ? open[Number(slider.value) - 1] * (1 + 1e-5) : JOINED }));
+  slider.addEventListener("change", () => answer({ join_tolerance: Number(slider.value) ? open[Number(slider.value) - 1] * (1 + 1e-5) : JOINED }));
   tell();
   return question(`There are loose ends, with gaps from ${length(open[0], 3)} to ${length(open[open.length - 1], 3)}. Join gaps up to`, make("div.join", {}, slider, words));
 }
@@ -119,7 +119,7 @@ function gapQuestion({ asked, gaps, size }, how, answer) {
 function layerQuestion({ layers, error }, how, answer) {
   if (layers.length < 2) return null;
   const usual = layers.filter(({ hidden }) => !hidden).map(({ name }) => name);
-  const used = how.layer ?? usual;
+  const used = how.layers ?? usual;
   const box = boundsOf(layers.flatMap(({ strokes }) => strokes.flatMap((chain) => segmentsOf(chain).slice(0, -1))));
   const [wide, high] = [box[2] - box[0] || 1, box[3] - box[1] || 1];
   const rows = layers.map(({ name, hidden, strokes }) => {
@@ -132,10 +132,10 @@ function layerQuestion({ layers, error }, how, answer) {
   const list = make("div.layers", {
     change: () => {
       const chosen = [...list.querySelectorAll("input")].filter((tick) => tick.checked).map((tick) => tick.value);
-      if (chosen.length) answer({ layer: String(chosen) === String(usual) ? undefined : chosen });
+      if (chosen.length) answer({ layers: String(chosen) === String(usual) ? undefined : chosen });
     },
   }, ...rows);
-  return make("details", { open: Boolean(error) || how.layer !== undefined }, make("summary", {}, `Layers: ${used.length} of ${layers.length} read`), list);
+  return make("details", { open: Boolean(error) || how.layers !== undefined }, make("summary", {}, `Layers: ${used.length} of ${layers.length} read`), list);
 }
 
 /** How far lines and arcs may be from curves that are neither. */

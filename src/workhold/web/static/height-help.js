@@ -126,7 +126,7 @@ async function tried(part, height, gone) {
 function take({ read, other }, part) {
   const avoid = ruledOut(other, part);
   resumeFile(read);
-  usePart(other, { ...read.survey, chosen: read.how.part ?? null });
+  usePart(other, { ...read.survey, chosen: read.how.part_number ?? null });
   change({ cut: state.sides?.shown ? [] : null, avoid });
   start();
 }

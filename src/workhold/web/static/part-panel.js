@@ -83,7 +83,7 @@ async function readFile() {
     survey.solid = isStep(chosen);
     lastSurvey = survey;
     if (survey.part) {
-      usePart(survey.part, { ...survey, chosen: how.part ?? null });
+      usePart(survey.part, { ...survey, chosen: how.part_number ?? null });
     } else await refuse(survey, chosen);
     if (askQuestions(survey, how, answered)) showSection("stage");
   } catch (error) {
@@ -135,7 +135,7 @@ async function refuse({ error, place, strokes, parts, asked }, chosen) {
   show(byId("part-trouble"), !plain);
   const shown = strokes.length ? strokes : await previewOf(chosen).catch(() => []);
   show(byId("stage-empty"), !shown.length && !place);
-  drawing.others = asked.includes("unit") ? null : { parts, take: (part) => answered({ part }) };
+  drawing.others = asked.includes("unit") ? null : { parts, take: (part) => answered({ part_number: part }) };
   if (shown.length || place) drawing.showTrouble(shown, place, error);
 }
 
@@ -211,7 +211,7 @@ export function usePart(part, { name = "", parts = [], strokes = [], gaps = [], 
   show(byId("part-trouble"), false);
   choice("builtin").value = name;
   const others = parts.length > 1 ? parts.filter((each) => each.number !== (chosen ?? 1)) : [];
-  drawing.others = { parts: others, strokes: gaps.length ? strokes : [], take: (other) => answered({ part: other }), isChosen: chosen !== null };
+  drawing.others = { parts: others, strokes: gaps.length ? strokes : [], take: (other) => answered({ part_number: other }), isChosen: chosen !== null };
   change({ part, avoid: [], zones: [], cut: null, supports: { ...state.supports, below: [], above: [] }, force: null, loads: [], view: "part" });
 }
 

@@ -117,7 +117,7 @@ async function turnOver() {
     rememberCut(part, cut);
     change({ sides: { shown: 1, kept: [{ ...first, known: { ...first.known, cut } }, null] } });
     resumeFile(read);
-    usePart(other, { ...read.survey, chosen: read.how.part ?? null });
+    usePart(other, { ...read.survey, chosen: read.how.part_number ?? null });
     change({ cut: [], avoid: sameFaces(other, part, cut) });
     await start();
   } catch (error) {

@@ -50,15 +50,15 @@ export function standingQuestion({ solid, part, heights = [], solids: listed = [
 /** Which of several solids. */
 function which(how, answer) {
   if (solids.length < 2) return [];
-  const used = how.part ?? 1;
+  const used = how.part_number ?? 1;
   const words = ({ number: own, name, size }) => `${own}${name && ` ${name}`}: ${size.map((one) => bareLength(one, 1)).join(" × ")} ${unitWord()}`;
   if (solids.length > MOST_BUTTONS) {
     const options = solids.map((each) => make("option", { value: each.number, selected: each.number === used }, words(each)));
-    const list = /** @type {HTMLSelectElement} */ (make("select", { id: "which-solid", change: () => answer({ part: Number(list.value) }) }, ...options));
+    const list = /** @type {HTMLSelectElement} */ (make("select", { id: "which-solid", change: () => answer({ part_number: Number(list.value) }) }, ...options));
     return [make("label", {}, `Of its ${solids.length} solids`, list)];
   }
   const button = (each) => make("button", {
-    type: "button", "data-solid": each.number, "aria-pressed": String(each.number === used), click: () => answer({ part: each.number }),
+    type: "button", "data-solid": each.number, "aria-pressed": String(each.number === used), click: () => answer({ part_number: each.number }),
   }, words(each));
   return [make("div.row-of-buttons", {}, make("span", {}, "Of its solids:"), ...solids.map(button))];
 }
