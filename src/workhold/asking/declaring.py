@@ -1,8 +1,9 @@
 """What a field of a question to the program is to all who ask it: declared once, beside its value.
 
-A question is an attrs class, such as a query or what stands on a setup sheet. A field that is made by :func:`declare` says what
-its values look like, what they must be and what they mean. From that come the checks of the constructor, the option of the
-command, the forms of requests, agents and files, their schemas, and what the page shows.
+A question is an attrs class, such as a query or what stands on a setup sheet. A field that is made by
+:func:`declare` says what its values look like, what they must be and what they mean. From that come the checks
+of the constructor, the option of the command, the forms of requests, agents and files, their schemas, and what
+the page shows.
 """
 
 from __future__ import annotations
@@ -32,13 +33,16 @@ __all__ = [
     "values_of",
 ]
 
-# What a value looks like: a whole number; lengths, one or two for x and y, or the least and the most; a flat's distance with or
-# without half its width; the heights between which something touches; a place; a force in N; a plain number; a stress in MPa;
-# one of several words; whether something is so; text; a day; and lists of names of holes, of directions or pairs of them, of
+# What a value looks like: a whole number; lengths, one or two for x and y, or the least and the most; a
+# flat's distance with or
+# without half its width; the heights between which something touches; a place; a point; a force in N; a
+# power in kW; a plain number; a stress in MPa;
+# one of several words; whether something is so; text; a day; and lists of names of holes, of directions or
+# pairs of them, of
 # rings about points, of numbers of faces, of zones, of ranges of angles, and of names.
 Form = Literal[
-    "count", "length", "pitch", "span", "flat", "heights", "place", "force", "number", "stress", "choice", "flag", "text", "day",
-    "holes", "directions", "rings", "faces", "zones", "angles", "names",
+    "count", "length", "pitch", "span", "flat", "heights", "place", "point", "force", "power", "number",
+    "stress", "choice", "flag", "text", "day", "holes", "directions", "rings", "faces", "zones", "angles", "names",
 ]  # fmt: skip
 # What stands for a value of a form in the help of the command.
 METAVARS: Mapping[Form, str] = {
@@ -49,7 +53,9 @@ METAVARS: Mapping[Form, str] = {
     "flat": "DISTANCE[,WIDTH/2]",
     "heights": "LOW,HIGH",
     "place": "X,Y",
+    "point": "X,Y,Z",
     "force": "FORCE",
+    "power": "KW",
     "number": "NUMBER",
     "stress": "MPA",
     "text": "WORDS",
@@ -110,7 +116,8 @@ class Declaration:
     name : the key in files and requests, and the constructor's argument.
     form : what its values look like; see ``Form``.
     help : what it means, in a sentence or two.
-    labels : what the page shows of it, more than once where that depends on another field; none where it shows it in another way.
+    labels : what the page shows of it, more than once where that depends on another field; none where the page
+        has another way.
     default : of the constructor, in requests and in files; ``REQUIRED`` where it must be given.
     least : what a number must be.
     most : the largest count that a server takes; None for no limit of its own.

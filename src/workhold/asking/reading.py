@@ -30,7 +30,8 @@ class ReadingQuestion:
     )
     part_number: int | str | None = declare(
         "text",
-        "Which part, when a drawing holds several, or which solid of a STEP file, by its number or its name; the largest if not "
+        "Which part, when a drawing holds several, or which solid of a STEP file, by its number or its "
+        "name; the largest if not "
         "given.",
         section=READING,
         spelled="--part",
@@ -38,7 +39,8 @@ class ReadingQuestion:
     )
     unit: str | None = declare(
         "choice",
-        "Unit of a drawing that does not say its own, or says a wrong one; of an SVG drawing in pixels, how many make an inch.",
+        "Unit of a drawing that does not say its own, or says a wrong one; of an SVG drawing in pixels, "
+        "how many make an inch.",
         choices=UNITS,
         section=READING,
         word="drawing_unit",
@@ -47,7 +49,8 @@ class ReadingQuestion:
     )
     axis: str | None = declare(
         "choice",
-        "STEP files: the direction that points up, to which pegs are parallel; z if not given. With - the part lies on its other "
+        "STEP files: the direction that points up, to which pegs are parallel; z if not given. With - the "
+        "part lies on its other "
         "side.",
         choices=AXES,
         section=READING,
@@ -55,11 +58,14 @@ class ReadingQuestion:
     )
     peg_height: float | None = declare(
         "length",
-        "STEP files: how far pegs reach above the plane on which the part lies. The outline is what they can meet there, and "
+        "STEP files: how far pegs reach above the plane on which the part lies. The outline is what they "
+        "can meet there, and "
         "only upright faces are touched. If not given, no higher than dowels must stand out.",
         section=READING,
-        typed="STEP files: how far pegs reach above the plane on which the part lies. The outline is what they can meet there, "
-        "and only upright faces are touched. If not given, no higher than dowels must stand out. Of a drawing it says how high "
+        typed="STEP files: how far pegs reach above the plane on which the part lies. The outline is what "
+        "they can meet there, "
+        "and only upright faces are touched. If not given, no higher than dowels must stand out. Of a "
+        "drawing it says how high "
         "the pegs are, for how far they bend.",
         metavar="HEIGHT",
     )
@@ -95,6 +101,7 @@ class ReadingQuestion:
     )
     fit: float | None = declare(
         "length",
-        "Put lines and arcs, nowhere farther off than this, in place of splines, ellipses and Bézier curves that are none.",
+        "Put lines and arcs, nowhere farther off than this, in place of splines, ellipses and Bézier "
+        "curves that are none.",
         section=READING,
     )

@@ -14,7 +14,8 @@ if TYPE_CHECKING:
 
 __all__ = ["HEIGHTS", "LOADS", "RANKING", "RULING_OUT", "SEARCH", "SEATING", "RuledOut", "SearchQuestion"]
 
-# Sections of the command's help. What is ruled out, loads and ranking are asked of a comparison of toolkits as well.
+# Sections of the command's help. What is ruled out, loads and ranking are asked of a comparison of toolkits
+# as well.
 RULING_OUT, LOADS, RANKING, SEATING, SEARCH = "Ruling out", "Loads", "Ranking", "Seating", "The search"
 # Of heights, which stand with the part or its program.
 HEIGHTS = "Heights"
@@ -48,7 +49,8 @@ class RuledOut:
         converter=tuple,
         section=RULING_OUT,
         word="keep_out",
-        typed="Where no peg may stand, in the drawing's coordinates: circle=X,Y,RADIUS or polygon=X,Y;X,Y;X,Y. May be repeated.",
+        typed="Where no peg may stand, in the drawing's coordinates: circle=X,Y,RADIUS or "
+        "polygon=X,Y;X,Y;X,Y. May be repeated.",
     )
     angles: Sequence[Sequence[float]] = declare(
         "angles",
@@ -76,32 +78,37 @@ class SearchQuestion:
     best: int | None = declare("count", "Keep only the best K.", section=SEARCH, most=10_000, metavar="K")
     listing: str | None = declare(
         "choice",
-        "Of two clamps: best: for each seat of the locators its best pair of clamps, and how many there are; all: every pair. "
+        "Of two clamps: best: for each seat of the locators its best pair of clamps, and how many there "
+        "are; all: every pair. "
         "best if not given.",
         choices=("best", "all"),
         section=SEARCH,
     )
     jaw_force: float | None = declare(
         "force",
-        "Force that closes the vise, or of the clamp, in N or with its unit (3kN, 700lbf), of two clamps the sum of theirs, to "
+        "Force that closes the vise, or of the clamp, in N or with its unit (3kN, 700lbf), of two clamps "
+        "the sum of theirs, to "
         "warn of pegs that let go under the loads.",
         least="0",
         section=LOADS,
     )
     seating: int | None = declare(
         "count",
-        "Of the first K fixtures report from how far open, or with the clamp how far drawn back, the part is caught and where "
+        "Of the first K fixtures report from how far open, or with the clamp how far drawn back, the part "
+        "is caught and where "
         "else it can rest, and order them by that too.",
         PageLabel("Of the first", "none", is_usual=True),
         section=SEATING,
         most=1_000,
-        typed="Of the first K fixtures report from how far open, or with the clamp how far drawn back, the part is caught and "
+        typed="Of the first K fixtures report from how far open, or with the clamp how far drawn back, the "
+        "part is caught and "
         "where else it can rest, and order them by that too (see workhold seat).",
         metavar="K",
     )
     opening: float | None = declare(
         "length",
-        "List only those of them that catch the part with the jaws open, or the clamp drawn back, by so much more than where "
+        "List only those of them that catch the part with the jaws open, or the clamp drawn back, by so "
+        "much more than where "
         "they hold it; places beyond it do not count.",
         PageLabel("Caught from", "any", is_usual=True),
         section=SEATING,

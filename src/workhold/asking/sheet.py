@@ -75,7 +75,8 @@ class SheetQuestion:
     )
     at: str | None = declare(
         "text",
-        "Where on the plate all of it stands: the hole of its lowest column and row, such as D4. In the middle of "
+        "Where on the plate all of it stands: the hole of its lowest column and row, such as D4. In the "
+        "middle of "
         "the plate if not given.",
         PageLabel("Lowest hole", "middle of the plate"),
         metavar="HOLE",
@@ -131,13 +132,15 @@ class SheetQuestion:
     )
     jaw_force: float | None = declare(
         "force",
-        "Force that closes the vise, or of the clamp, in N or with its unit (3kN, 700lbf), of two clamps the sum of "
+        "Force that closes the vise, or of the clamp, in N or with its unit (3kN, 700lbf), of two clamps "
+        "the sum of "
         "theirs; the one needed so that no peg lets go if not given.",
         section=LOADS,
     )
     jaw: Any = declare(
         "text",
-        "screw: the closed jaw is locked, as a vise's is; constant: it keeps its force (hydraulic, pneumatic); or "
+        "screw: the closed jaw is locked, as a vise's is; constant: it keeps its force (hydraulic, "
+        "pneumatic); or "
         "how many times as stiff as one contact the locked jaw is.",
         default="screw",
         section=LOADS,

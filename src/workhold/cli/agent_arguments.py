@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal, TypeVar
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from workhold.asking.declaring import declarations_of
+from workhold.asking.program import CuttingQuestion, ProgramQuestion, StockQuestion
 from workhold.asking.reading import ReadingQuestion
 from workhold.asking.search import LOADS, RANKING, RULING_OUT, SEARCH, SEATING, SearchQuestion
 from workhold.asking.sheet import SheetQuestion
@@ -78,32 +79,17 @@ class Polygon(ToolArguments):
     polygon: list[Pair] = Field(min_length=3)
 
 
+@with_fields(declarations_of(CuttingQuestion))
 class CuttingArguments(ToolArguments):
     """How the tools cut of which the table does not say it; one of force, power and material."""
 
-    cutting_force: Annotated[float, Field(ge=0)] | None = Field(
-        default=None, description="at the periphery of every tool, in N"
-    )
-    power: Positive | None = Field(default=None, description="at the spindle, in kW")
-    material: str | None = Field(
-        default=None, description="such as steel, aluminium or titanium, or kc1.1,mc such as 1500,0.22"
-    )
-    teeth: int | None = Field(default=None, ge=1)
-    cut_depth: Positive | None = Field(default=None, description="along the tools' axes, in mm")
-    cut_width: Positive | None = Field(default=None, description="across the feed, in mm")
-    direction: Literal["any", "feed"] | None = None
 
-
+@with_fields(declarations_of(StockQuestion))
 class StockArguments(ToolArguments):
     """What the part is cut from, on which alone tools press."""
 
-    side: float = Field(default=5.0, ge=0, description="around the outline, in mm; 0 where it comes finished")
-    top: float = Field(default=5.0, ge=0, description="on top, in mm; 0 where it comes finished")
-    shape: Literal["outline", "block"] = Field(
-        default="outline", description="the part's outline, or the block around it"
-    )
 
-
+@with_fields(declarations_of(ProgramQuestion))
 class ProgramArguments(ToolArguments):
     """The program of the mill, whose tools the fixtures are to keep clear of."""
 
@@ -111,7 +97,6 @@ class ProgramArguments(ToolArguments):
     tools: str | None = Field(
         default=None, description="path of its table of tools; what the program's comments say if not given"
     )
-    zero: Pair = Field(default=[0.0, 0.0], description="where its X0 Y0 is on the part, in mm")
     z_zero: Literal["top", "bottom"] | float = Field(
         default="top", description="where its Z0 is, or a height above the part's lower side in mm"
     )
@@ -119,13 +104,6 @@ class ProgramArguments(ToolArguments):
         default=None, description="of the part, in mm; that of its solid if not given"
     )
     peg_height: Positive | None = Field(default=None, description="of pegs, in mm; as the part if not given")
-    clearance: float = Field(default=1.0, ge=0, description="what tools keep from what holds the part, in mm")
-    rapid: Literal["straight", "box"] = "straight"
-    unit: Literal["mm", "inch"] | None = Field(default=None, description="of a program without G20 and G21")
-    start: Annotated[list[float], Field(min_length=3, max_length=3)] | None = Field(
-        default=None, description="where the tip is at the start, from the program's own zero, in mm"
-    )
-    whole_numbers: Literal["units", "thousandths"] = "units"
     cutting: CuttingArguments | None = Field(
         default=None, description="how tools cut, for their forces on the part"
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Mapping
 from datetime import date
 from math import isfinite
@@ -13,6 +14,7 @@ from workhold.asking.declaring import Declaration, Form
 from workhold.cli.commands import flag, option
 from workhold.cli.values import (
     choice,
+    in_unit,
     length,
     length_from_zero,
     number,
@@ -20,6 +22,7 @@ from workhold.cli.values import (
     optional_force,
     optional_positive_length,
     positive_number,
+    three_lengths,
     two_lengths,
     whole_number,
 )
@@ -29,7 +32,16 @@ from workhold.units import Unit
 if TYPE_CHECKING:
     from workhold.model.requirements import Zone
 
-__all__ = ["one_flag", "one_word", "option_of", "options_of", "read_words", "read_zone", "several_words"]
+__all__ = [
+    "one_flag",
+    "one_word",
+    "lengths_between",
+    "option_of",
+    "options_of",
+    "read_words",
+    "read_zone",
+    "several_words",
+]
 
 # Forms of which an option may be given more than once.
 SEVERAL: frozenset[Form] = frozenset({"faces", "zones", "angles", "names", "rings"})
@@ -94,6 +106,20 @@ def read_length(row: Declaration, text: str, unit: Unit) -> float | None:
     return length(row.option, text, unit)
 
 
+def read_rings(row: Declaration, texts: list[str], unit: Unit) -> list[tuple[float, ...]]:
+    return [lengths_between(row.option, text, ",", 4, unit) for text in texts]
+
+
+def lengths_between(option_name: str, text: str, mark: str, count: int, unit: Unit) -> tuple[float, ...]:
+    """Read some lengths with a mark between them; returns them in mm."""
+    words = text.split(mark)
+    if len(words) != count:
+        raise InputError(
+            f"{option_name} {text!r} cannot be used: give {count} lengths with {mark!r} between them."
+        )
+    return tuple(length(option_name, word, unit) for word in words)
+
+
 def read_day(row: Declaration, text: str, unit: Unit) -> date:
     try:
         return date.fromisoformat(text)
@@ -140,17 +166,43 @@ def read_zone(option_name: str, text: str, unit: Unit) -> Zone:
     raise InputError(f"{option_name} {text!r} is no zone: give circle=X,Y,RADIUS or polygon=X,Y;X,Y;X,Y.")
 
 
+POWER_WORDS = re.compile(r"\s*(?P<number>.*?)\s*(?P<unit>kW|hp)?\s*", re.IGNORECASE | re.DOTALL)
+# kW in a unit; 550 foot-pounds a second.
+POWERS = {"kw": 1.0, "hp": 0.7456998715822702}
+
+
+def read_power(option_name: str, text: str) -> float:
+    """Read a power in kW.
+
+    Examples
+    --------
+    >>> read_power("--power", "2.2"), round(read_power("--power", "3 hp"), 3)
+    (2.2, 2.237)
+    """
+    remedy = "a power above 0: give it in kW, such as 2.2, or as 3hp."
+    return in_unit(option_name, text, POWER_WORDS, POWERS, "kw", remedy)
+
+
+def read_force(row: Declaration, text: str, unit: Unit) -> float | None:
+    return 0.0 if row.least == "0" and text.strip() == "0" else optional_force(row.option, text)
+
+
 # How the words of an option are read, by the form of its field; words of other forms stay as they are.
 READERS: Mapping[Form, Callable[[Declaration, Any, Unit], Any]] = {
     "count": lambda row, text, unit: optional_count(row.option, text),
     "length": read_length,
-    "force": lambda row, text, unit: optional_force(row.option, text),
+    "force": read_force,
+    "power": lambda row, text, unit: read_power(row.option, text),
     "number": lambda row, text, unit: positive_number(row.option, text),
     "choice": lambda row, text, unit: choice(row.option, text, row.choices),
     "place": lambda row, text, unit: two_lengths(
         row.option, text, unit, "a position: give it as X,Y, such as -312.5,-88."
     ),
+    "point": lambda row, text, unit: three_lengths(
+        row.option, text, unit, "a place: give three lengths, such as 0,0,50."
+    ),
     "day": read_day,
+    "rings": read_rings,
     "faces": read_faces,
     "zones": lambda row, texts, unit: tuple(read_zone(row.option, text, unit) for text in texts),
     "angles": read_angles,

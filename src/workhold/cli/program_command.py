@@ -6,26 +6,13 @@ from collections import Counter
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from attrs import asdict
+from attrs import asdict, evolve, frozen
 
-from workhold.cli.commands import option
+from workhold.cli.commands import option, spread
+from workhold.cli.declared import one_word, options_of
 from workhold.cli.options import SHOWN_UNIT
 from workhold.cli.outputs import FORCE, JSON, asked_picture, print_json, write_picture
-from workhold.cli.program_options import (
-    CUT_DEPTH,
-    CUT_WIDTH,
-    CUTTING_DIRECTION,
-    CUTTING_FORCE,
-    MATERIAL,
-    POWER,
-    START_WORDS,
-    STOCK,
-    TEETH,
-    WHOLE_NUMBERS_WORDS,
-    ProgramWords,
-    asked_reading,
-    asked_zero,
-)
+from workhold.cli.program_options import OF_CUTTING, OF_PROGRAM, STOCK, asked_reading, asked_zero
 from workhold.cli.table import Table, print_tables
 from workhold.cli.values import length_unit, optional_positive_length
 
@@ -43,39 +30,54 @@ __all__ = ["program"]
 PLACE, READING = "Where it runs", "How it is read"
 
 
+# What is asked beside a part, in the words and sections of a program alone.
+OWN: dict[str, dict[str, Any]] = {
+    "zero": {"section": PLACE, "typed": "Where the program's X0 Y0 is on the part.", "metavar": "X,Y"},
+    "z_zero": {"section": PLACE},
+    "rapid": {
+        "typed": "Whether rapid moves are straight, or may go anywhere in the box of their ends.",
+        "section": READING,
+    },
+}
+ORDER = ("unit", "rapid", "start", "whole_numbers", "zero", "z_zero")
+OF_RUN = [
+    evolve(row, **{"section": READING} | OWN.get(row.name, {}))
+    for row in sorted((row for row in OF_PROGRAM if row.name in ORDER), key=lambda row: ORDER.index(row.name))
+]
+RUN_TOOLS = option(
+    READING, "FILE", "Table of tools: TOML, CSV, or LinuxCNC's; what the program's comments say if not given."
+)
+RUN_THICKNESS = option(
+    PLACE, "LENGTH", "How thick the part is; heights are those of the program if not given."
+)
+
+
+@frozen(
+    these=options_of(
+        (*OF_RUN, *OF_CUTTING),
+        unit={"tools": one_word(RUN_TOOLS)},
+        cutting_force={"thickness": one_word(RUN_THICKNESS)},
+        stock=one_word(STOCK),
+    )
+)
+class RunWords:
+    """The options of a program that is looked at alone, as typed."""
+
+    if TYPE_CHECKING:
+        tools: str | None
+        thickness: str | None
+        zero: str
+        z_zero: str
+        stock: str | None
+
+
+@spread
 def program(
     program_file: Annotated[
         str, typer.Argument(metavar="PROGRAM", help="A program of RS-274 (G-code), for the mill.")
     ],
-    tools: str | None = option(
-        READING,
-        "FILE",
-        "Table of tools: TOML, CSV, or LinuxCNC's; what the program's comments say if not given.",
-    ),
-    program_unit: str | None = option(READING, "mm|inch", "Unit of a program without G20 and G21."),
-    rapid: str = option(
-        READING,
-        "straight|box",
-        "Whether rapid moves are straight, or may go anywhere in the box of their ends.",
-        default="straight",
-    ),
-    start: str | None = option(READING, "X,Y,Z", START_WORDS),
-    whole_numbers: str = option(READING, "units|thousandths", WHOLE_NUMBERS_WORDS, default="units"),
-    zero: str = option(PLACE, "X,Y", "Where the program's X0 Y0 is on the part.", default="0,0"),
-    z_zero: str = option(
-        PLACE, "top|bottom|LENGTH", "Where its Z0 is: a side of the part, or a height.", default="top"
-    ),
-    thickness: str | None = option(
-        PLACE, "LENGTH", "How thick the part is; heights are those of the program if not given."
-    ),
-    cutting_force: str | None = CUTTING_FORCE,
-    power: str | None = POWER,
-    material: str | None = MATERIAL,
-    teeth: str | None = TEETH,
-    cut_depth: str | None = CUT_DEPTH,
-    cut_width: str | None = CUT_WIDTH,
-    cutting_direction: str | None = CUTTING_DIRECTION,
-    stock: str | None = STOCK,
+    *,
+    words: RunWords,
     draw: str | None = option(None, "FILE", "Draw the paths of the tools (.svg or .png)."),
     force: bool = FORCE,
     unit: str | None = SHOWN_UNIT,
@@ -88,29 +90,12 @@ def program(
     Example: workhold program bracket.nc --tools tools.toml --draw bracket.png
     """
     shown = length_unit(unit)
-    picture = asked_picture(draw, (program_file, tools), force)
-    height = optional_positive_length("--thickness", thickness, shown)
-    typed = ProgramWords(
-        program_file,
-        tools,
-        z_zero=z_zero,
-        rapid=rapid,
-        program_unit=program_unit,
-        start=start,
-        whole_numbers=whole_numbers,
-        cutting_force=cutting_force,
-        power=power,
-        material=material,
-        teeth=teeth,
-        cut_depth=cut_depth,
-        cut_width=cut_width,
-        cutting_direction=cutting_direction,
-        stock=stock,
-    )
-    asked = asked_reading(typed, shown, height, asked_zero(zero, shown))
+    picture = asked_picture(draw, (program_file, words.tools), force)
+    height = optional_positive_length("--thickness", words.thickness, shown)
+    asked = asked_reading(words, shown, height, asked_zero(words.zero, shown))
     from workhold.files.program.reader import read_program_with_calls
 
-    read = read_program_with_calls(program_file, tools, **asked)
+    read = read_program_with_calls(program_file, words.tools, **asked)
     if picture is not None:
         from workhold.drawing.program_picture import draw_program
 
@@ -118,7 +103,7 @@ def program(
     if json_:
         print_json(**data_of(read), written=[str(picture)] if picture else [])
         return
-    report(read, shown, from_z_zero=z_zero == "top" and height is None)
+    report(read, shown, from_z_zero=words.z_zero == "top" and height is None)
     if picture is not None:
         print_tables(f"Written to {picture}.")
 

@@ -5,136 +5,88 @@ How tools cut is asked where the table of tools does not say it.
 
 from __future__ import annotations
 
-import re
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from attrs import evolve, fields, frozen
 
+from workhold.asking.declaring import declarations_of
+from workhold.asking.program import FORCES, PROGRAM, CuttingQuestion, ProgramQuestion
 from workhold.cli.commands import option, print_remark, untyped
+from workhold.cli.declared import one_word, options_of, read_words
 from workhold.cli.options import PartWords
 from workhold.cli.values import (
     choice,
-    in_unit,
     length,
-    optional_force,
     optional_positive_length,
-    three_lengths,
     two_lengths,
-    whole_number,
 )
 from workhold.errors import InputError
 from workhold.units import MILLIMETRE, Unit
 
 if TYPE_CHECKING:
-    from workhold.model.cutting_tool import CuttingData
     from workhold.model.program import Program
     from workhold.model.workpiece import Workpiece
 
 __all__ = [
-    "CUTTING_DIRECTION",
-    "CUTTING_FORCE",
-    "CUT_DEPTH",
-    "CUT_WIDTH",
-    "MATERIAL",
-    "POWER",
+    "OF_CUTTING",
+    "OF_PROGRAM",
     "SOLIDS",
-    "ProgramWords",
-    "START_WORDS",
     "STOCK",
-    "TEETH",
+    "ProgramWords",
     "asked_reading",
     "asked_zero",
-    "WHOLE_NUMBERS_WORDS",
 ]
 
-FORCES = "Cutting forces"
-CUTTING_FORCE = option(
-    FORCES, "FORCE", "Force at the periphery of every tool whose own the table does not give, in N or 1.5kN."
-)
-POWER = option(FORCES, "KW", "Power at the spindle, from which the force follows by S; also 3hp.")
-MATERIAL = option(
-    FORCES,
-    "NAME|KC,MC",
-    "What is cut, such as steel, stainless, cast-iron, aluminium, brass or titanium, or kc1.1 in N/mm2 and "
-    "mc: the force follows from F, S, teeth and the cut.",
-)
-TEETH = option(FORCES, "N", "Teeth of every tool whose own the table does not give.")
-CUT_DEPTH = option(FORCES, "LENGTH", "How deep tools cut at most at once, along their axes.")
-CUT_WIDTH = option(FORCES, "LENGTH", "How broad they cut, across the feed; the tool's diameter if not given.")
-CUTTING_DIRECTION = option(
-    FORCES,
-    "any|feed",
-    "Whether a force may act in any direction, or within 60 degrees of against the feed; any if not given.",
-)
+OF_PROGRAM, OF_CUTTING = declarations_of(ProgramQuestion), declarations_of(CuttingQuestion)
+# What is asked by words of its own, read with the part.
+BY_WORDS = ("zero", "z_zero")
 STOCK = option(
     FORCES,
     "SHAPE,SIDE,TOP",
     "What the part is cut from, on which alone tools press: its outline, or the block around it, with so much "
     "around and on top; outline,5,5 if not given. Give block, 0,0 or block,2,1.",
 )
-POWER_WORDS = re.compile(r"\s*(?P<number>.*?)\s*(?P<unit>kW|hp)?\s*", re.IGNORECASE | re.DOTALL)
-# kW in a unit; 550 foot-pounds a second.
-POWERS = {"kw": 1.0, "hp": 0.7456998715822702}
-PROGRAM = "The program"
-START_WORDS = "Where the tip is at its start, from its own zero, where the program does not say it."
-WHOLE_NUMBERS_WORDS = (
-    "What its lengths without a decimal point count; thousandths are 0.001 mm or 0.0001 inch."
+PROGRAM_FILE = option(
+    PROGRAM,
+    "FILE",
+    "List only fixtures that the tools of this program (G-code) keep clear of; see workhold program.",
+)
+TOOLS = option(
+    PROGRAM,
+    "FILE",
+    "Table of its tools: TOML, CSV, or LinuxCNC's; what the program's comments say if not given.",
+)
+THICKNESS = option(
+    PROGRAM,
+    "LENGTH",
+    "How thick the part is; that of its solid if not given. Pegs are as high, or as --peg-height says.",
 )
 # What the questions of a program's reader are called here.
 CALLED = {"start": "--start X,Y,Z"}
 SOLIDS = (".step", ".stp")
+NO_HEIGHT: dict[str, Any] = {"peg_height": None}
 
 
-@frozen
+@frozen(
+    these=options_of(
+        (*OF_PROGRAM, *OF_CUTTING),
+        zero={"program": one_word(PROGRAM_FILE), "tools": one_word(TOOLS)},
+        stock=one_word(STOCK),
+        thickness=one_word(THICKNESS),
+    )
+)
 class ProgramWords:
     """The options of a program, as typed; None for those not given."""
 
-    program: str | None = option(
-        PROGRAM,
-        "FILE",
-        "List only fixtures that the tools of this program (G-code) keep clear of; see workhold program.",
-    )
-    tools: str | None = option(
-        PROGRAM,
-        "FILE",
-        "Table of its tools: TOML, CSV, or LinuxCNC's; what the program's comments say if not given.",
-    )
-    zero: str = option(
-        PROGRAM,
-        "PLACE",
-        "Where its X0 Y0 is on the part: corner (lower left, as drawn), centre, hole N, or X,Y of the drawing.",
-        default="0,0",
-    )
-    z_zero: str = option(
-        PROGRAM, "top|bottom|LENGTH", "Where its Z0 is: a side of the part, or a height.", default="top"
-    )
-    program_clearance: str = option(
-        PROGRAM, "LENGTH", "What tools keep from pegs, clamps and walls.", default="1mm"
-    )
-    rapid: str = option(
-        PROGRAM,
-        "straight|box",
-        "Whether its rapid moves are straight, or may go anywhere in the box of their ends.",
-        default="straight",
-    )
-    program_unit: str | None = option(PROGRAM, "mm|inch", "Unit of a program without G20 and G21.")
-    start: str | None = option(PROGRAM, "X,Y,Z", START_WORDS)
-    whole_numbers: str = option(PROGRAM, "units|thousandths", WHOLE_NUMBERS_WORDS, default="units")
-    cutting_force: str | None = CUTTING_FORCE
-    power: str | None = POWER
-    material: str | None = MATERIAL
-    teeth: str | None = TEETH
-    cut_depth: str | None = CUT_DEPTH
-    cut_width: str | None = CUT_WIDTH
-    cutting_direction: str | None = CUTTING_DIRECTION
-    stock: str | None = STOCK
-    thickness: str | None = option(
-        PROGRAM,
-        "LENGTH",
-        "How thick the part is; that of its solid if not given. Pegs are as high, or as --peg-height says.",
-    )
+    if TYPE_CHECKING:
+        program: str | None
+        tools: str | None
+        zero: str
+        z_zero: str
+        stock: str | None
+        thickness: str | None
 
     @property
     def files(self) -> tuple[str | None, ...]:
@@ -145,7 +97,7 @@ class ProgramWords:
         """Whether the forces of the tools are asked for, of all or in their table."""
         if self.program is None:
             return False
-        if any(word is not None for word in (self.cutting_force, self.power, self.material)):
+        if any(getattr(self, name) is not None for name in ("cutting_force", "power", "material")):
             return True
         if self.tools is None:
             return False
@@ -157,7 +109,7 @@ class ProgramWords:
     def reading(self, part: str, reading: PartWords) -> PartWords:
         """How a part is read: of a drawing the peg height is no question of the reader but of the fixtures."""
         is_drawing = Path(part).suffix.lower() not in SOLIDS
-        return evolve(reading, peg_height=None) if is_drawing else reading
+        return evolve(reading, **NO_HEIGHT) if is_drawing else reading
 
     def asked(self, unit: Unit, peg_height: str | None, workpiece: Workpiece | None = None) -> dict[str, Any]:
         """Keyword arguments of a query; reads the program, and prints remarks on it on stderr.
@@ -215,23 +167,6 @@ class ProgramWords:
         }
 
 
-def asked_cutting(typed: ProgramWords, unit: Unit) -> CuttingData:
-    from workhold.model.cutting_tool import CuttingData
-
-    given: dict[str, Any] = {
-        "cutting_force": no_force(typed.cutting_force),
-        "power": asked_power(typed.power),
-        "material": typed.material,
-        "teeth": None if typed.teeth is None else whole_number("--teeth", typed.teeth),
-        "cut_depth": optional_positive_length("--cut-depth", typed.cut_depth, unit),
-        "cut_width": optional_positive_length("--cut-width", typed.cut_width, unit),
-        "direction": None,
-    }
-    if typed.cutting_direction is not None:
-        given["direction"] = choice("--cutting-direction", typed.cutting_direction, ("any", "feed"))
-    return CuttingData(**given)
-
-
 def asked_stock(text: str, unit: Unit) -> dict[str, Any]:
     """What the part is cut from, as ``model.stock.Stock.of`` takes it.
 
@@ -253,25 +188,6 @@ def asked_stock(text: str, unit: Unit) -> dict[str, Any]:
     return given | {"side": side, "top": top}
 
 
-def no_force(text: str | None) -> float | None:
-    """A cutting force in N, 0 included; None where it is not given."""
-    return 0.0 if text is not None and text.strip() == "0" else optional_force("--cutting-force", text)
-
-
-def asked_power(text: str | None) -> float | None:
-    """A power in kW, or None where it is not given.
-
-    Examples
-    --------
-    >>> asked_power("2.2"), round(asked_power("3 hp"), 3)
-    (2.2, 2.237)
-    """
-    if text is None:
-        return None
-    remedy = "a power above 0: give it in kW, such as 2.2, or as 3hp."
-    return in_unit("--power", text, POWER_WORDS, POWERS, "kw", remedy)
-
-
 def asked_zero(text: str, unit: Unit) -> tuple[float, float]:
     """The place of the program's zero on the part, in mm."""
     return two_lengths("--zero", text, unit, "a place here: give two lengths, such as 10,5.")
@@ -290,24 +206,27 @@ def zero_on(workpiece: Workpiece | None, text: str, unit: Unit) -> tuple[float, 
 
 
 def asked_reading(
-    words: ProgramWords, unit: Unit, thickness: float | None, zero: tuple[float, float]
+    words: Any, unit: Unit, thickness: float | None, zero: tuple[float, float]
 ) -> dict[str, Any]:
-    """Keyword arguments of ``files.program.reader.read_program``; ``thickness`` and ``zero`` are in mm."""
-    named, height = words.program_unit, words.z_zero
+    """Keyword arguments of ``files.program.reader.read_program``; ``thickness`` and ``zero`` are in mm.
+
+    Parameters
+    ----------
+    words : options of a program; what they do not have is as usual.
+    """
+    from workhold.model.cutting_tool import CuttingData
+
+    height = words.z_zero
     if height == "top" and thickness is None:
         # Of a part that nobody knows the top is where the program begins to count.
         height = "0"
-    place = "a place: give three lengths, such as 0,0,50."
-    return {
-        "unit": None if named is None else choice("--program-unit", named, ("mm", "inch")),
+    rows = [row for row in OF_PROGRAM if row.name not in BY_WORDS and hasattr(words, row.argument)]
+    return read_words(rows, words, unit) | {
         "zero": zero,
         "z_zero": height if height in ("top", "bottom") else length("--z-zero", height, unit),
         "thickness": thickness,
-        "rapid": choice("--rapid", words.rapid, ("straight", "box")),
-        "start": None if words.start is None else three_lengths("--start", words.start, unit, place),
-        "whole_numbers": choice("--whole-numbers", words.whole_numbers, ("units", "thousandths")),
         "called": CALLED,
-        "cutting": asked_cutting(words, unit),
+        "cutting": CuttingData(**read_words(OF_CUTTING, words, unit)),
         "stock": None if words.stock is None else asked_stock(words.stock, unit),
     }
 
@@ -316,11 +235,10 @@ def asked_reading(
 def read_once(words: ProgramWords, unit: Unit, thickness: float | None, zero: tuple[float, float]) -> Program:
     """Reads the program, and prints remarks on it; ``thickness`` of the part and ``zero`` in mm."""
     assert words.program is not None
-    kept = length("--program-clearance", words.program_clearance, unit)
     asked = asked_reading(words, unit, thickness, zero)
     from workhold.files.program.reader import read_program
 
-    program = read_program(words.program, words.tools, clearance=kept, **asked)
+    program = read_program(words.program, words.tools, **asked)
     for note in program.notes:
         print_remark(note)
     return program

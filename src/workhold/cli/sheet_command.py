@@ -182,7 +182,8 @@ def write(asked: Asked) -> None:
 
 
 def held_by(asked: Asked) -> tuple[Result, int, dict[str, Any], tuple[Load, ...]]:
-    """The result and rank of the fixture, what stands on its sheet besides what was typed, and the loads on it."""
+    """The result and rank of the fixture, what stands on its sheet besides what was typed, and the loads "
+    "on it."""
     settings, loads = asked.settings, asked.loads
     if asked.on_supports:
         chosen = chosen_of_file(asked.result_file, asked.rank, settings, loads)

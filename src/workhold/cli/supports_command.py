@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
 import typer
-from attrs import asdict
+from attrs import asdict, frozen
 
-from workhold.cli.commands import option, print_remark
-from workhold.cli.declared import read_zone
+from workhold.cli.commands import option, print_remark, spread
+from workhold.cli.declared import (
+    lengths_between,
+    one_word,
+    options_of,
+    read_words,
+    read_zone,
+    several_words,
+)
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
 from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output
@@ -26,7 +33,6 @@ from workhold.cli.support_words import (
 )
 from workhold.cli.table import Table, print_tables
 from workhold.cli.values import (
-    length,
     length_unit,
     optional_count,
     optional_force,
@@ -35,9 +41,14 @@ from workhold.cli.values import (
     printed_unit,
 )
 from workhold.errors import InputError
+from workhold.fixels.support_hardware import CLAMP, CLAMP_SECTION, PADS, SUPPORTS_SECTION
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
+    from workhold.model.fixture import Fixture
     from workhold.model.result import Result
+    from workhold.model.support_request import SpatialLoad, SupportRequest
     from workhold.model.support_triples import Supports, Triple
     from workhold.model.workpiece import Workpiece
     from workhold.units import Unit
@@ -48,82 +59,120 @@ __all__ = ["asked_thickness", "report_supported", "supports"]
 MOST_SUPPORTED = 20
 # What keeps pads and the clamp off places.
 KEEP_OFF = ("--keep-out-below", "--keep-out-above")
-PART, SUPPORTS, CLAMP = "Heights of the part", "Supports", "The clamp on top"
+PART = "Heights of the part"
 
 
+THICKNESS = option(PART, "LENGTH", "How thick the part is; that of its solid if not given.")
+BAND = option(
+    PART,
+    "LOW:HIGH",
+    "Heights at which pegs may press on its faces; those of its solid, or all, if not given.",
+)
+BELOW = option(
+    SUPPORTS_SECTION, "ZONE", "A place that no pad may stand under, circle=X,Y,RADIUS or polygon=X,Y;X,Y;X,Y."
+)
+ABOVE = option(CLAMP_SECTION, "ZONE", "A place that the tip may not stand on, such as where the cutter goes.")
+CLAMP_AT = option(CLAMP_SECTION, "X,Y", "Where the clamp presses; its best place if not given.")
+LOADS_IN_SPACE = option(
+    "Loads",
+    "LOAD",
+    "A load as in show, and with it z=HEIGHT or z=LOW..HIGH, axial=FORCE or axial=LOW..HIGH downward, "
+    "and tilt=ABOUTX,ABOUTY; those of the result, at the part's upper side, if not given.",
+)
+SUPPORT_HEIGHT = option(
+    SUPPORTS_SECTION,
+    "LENGTH",
+    "How far supports stand out of the plates, in --glb and --step; the toolkit's, or 10mm, if not given.",
+)
+# What is asked of supports and of the clamp, as toolkits have it.
+OF_HARDWARE = [row for table in (PADS, CLAMP) for row in table.fields if row.typed]
+
+
+@frozen(
+    these=options_of(
+        OF_HARDWARE,
+        pad_radius={"thickness": one_word(THICKNESS), "band": one_word(BAND)},
+        tip_radius={"keep_out_below": several_words(BELOW), "support_height": one_word(SUPPORT_HEIGHT)},
+        reach={"keep_out_above": several_words(ABOVE)},
+        clamp_at=one_word(CLAMP_AT),
+        load=several_words(LOADS_IN_SPACE),
+        jaw_force=one_word(JAW_FORCE),
+        friction=one_word(FRICTION),
+    )
+)
+class SupportWords:
+    """The options of supports and the clamp on top, as typed; None for those not given."""
+
+    if TYPE_CHECKING:
+        thickness: str | None
+        band: str | None
+        keep_out_below: list[str] | None
+        support_height: str | None
+        keep_out_above: list[str] | None
+        clamp_at: str | None
+        load: list[str] | None
+        jaw_force: str | None
+        friction: str | None
+
+    def sizes(self, unit: Unit) -> dict[str, Any]:
+        """What of a :class:`workhold.model.support_request.SupportRequest` was given."""
+        own = read_words(OF_HARDWARE, self, unit) | {
+            "band": None if self.band is None else lengths_between("--band", self.band, ":", 2, unit),
+            "bottom_zones": [read_zone(KEEP_OFF[0], text, unit) for text in self.keep_out_below or ()],
+            "top_zones": [read_zone(KEEP_OFF[1], text, unit) for text in self.keep_out_above or ()],
+            "point": None
+            if self.clamp_at is None
+            else lengths_between("--clamp-at", self.clamp_at, ",", 2, unit),
+        }
+        return {name: value for name, value in own.items() if value is not None}
+
+
+@frozen
+class Asked:
+    """What supports are asked for, and where the answer goes.
+
+    Parameters
+    ----------
+    count : of sets of three that are listed; None for all.
+    closing : the jaw force in N; None for the one that is needed.
+    raised : how far supports stand out of the plates, in mm.
+    models : files in three dimensions to write.
+    part : the file of the part's own shape for these.
+    unit, printed : of lengths as typed, and as shown.
+    """
+
+    result: Result
+    rank: int
+    request: SupportRequest
+    smaller: Sequence[SupportRequest]
+    loads: list[SpatialLoad] | None
+    count: int | None
+    closing: float | None
+    friction: float | None
+    raised: float | None
+    out: str | None
+    models: Sequence[Path]
+    part: str | None
+    unit: Unit
+    printed: Unit
+
+    @property
+    def fixture(self) -> Fixture:
+        return self.result[self.rank - 1]
+
+
+@spread
 def supports(
     result_file: ResultArgument,
     number_: RankArgument,
-    thickness: str | None = option(PART, "LENGTH", "How thick the part is; that of its solid if not given."),
-    band: str | None = option(
-        PART,
-        "LOW:HIGH",
-        "Heights at which pegs may press on its faces; those of its solid, or all, if not given.",
-    ),
-    pad_radius: str | None = option(
-        SUPPORTS,
-        "LENGTH",
-        "Radius of the supports' round pads; the toolkit's, or 4mm, or less where the holes ask for it, if "
-        "not given.",
-    ),
-    pad_margin: str | None = option(
-        SUPPORTS,
-        "LENGTH",
-        "Least distance of a pad from the border of the face below; the toolkit's, or 0mm, if not given.",
-    ),
-    keep_out_below: list[str] | None = option(
-        SUPPORTS, "ZONE", "A place that no pad may stand under, circle=X,Y,RADIUS or polygon=X,Y;X,Y;X,Y."
-    ),
-    tip_radius: str | None = option(
-        CLAMP, "LENGTH", "Radius of the clamp's round tip; the toolkit's, or 5mm, if not given."
-    ),
-    inside: str | None = option(
-        CLAMP,
-        "LENGTH",
-        "Least distance of the clamp from the triangle's sides; the toolkit's, or the tip's radius, if not "
-        "given.",
-    ),
-    tip_margin: str | None = option(
-        CLAMP,
-        "LENGTH",
-        "Least distance of the tip from the border of its face; the toolkit's, or 0mm, if not given.",
-    ),
-    head_radius: str | None = option(
-        CLAMP,
-        "LENGTH",
-        "Radius of the clamp's head, within which nothing of the part rises above the face; the toolkit's, or "
-        "one and a half times the tip's, if not given.",
-    ),
-    keep_out_above: list[str] | None = option(
-        CLAMP, "ZONE", "A place that the tip may not stand on, such as where the cutter goes."
-    ),
-    reach: list[str] | None = option(
-        CLAMP,
-        "X,Y,LEAST,MOST",
-        "A ring about a point of the toolkit in which the tip can stand; the toolkit's, or everywhere, if "
-        "not given.",
-    ),
-    clamp_at: str | None = option(CLAMP, "X,Y", "Where the clamp presses; its best place if not given."),
-    load: list[str] | None = option(
-        "Loads",
-        "LOAD",
-        "A load as in show, and with it z=HEIGHT or z=LOW..HIGH, axial=FORCE or axial=LOW..HIGH downward, "
-        "and tilt=ABOUTX,ABOUTY; those of the result, at the part's upper side, if not given.",
-    ),
-    jaw_force: str | None = JAW_FORCE,
-    friction: str | None = FRICTION,
+    *,
+    words: SupportWords,
     triples: str = option(None, "K", "How many sets of three to list.", default="3"),
     out: str | None = option(None, "FILE", "Write all sets of three, with every figure, into this file."),
     glb: str | None = option(
         None, "FILE", "Write the fixture on the best set in three dimensions into this .glb file."
     ),
     step: str | None = option(None, "FILE", "The same as a STEP assembly, for CAM, into this .step file."),
-    support_height: str | None = option(
-        SUPPORTS,
-        "LENGTH",
-        "How far supports stand out of the plates, in --glb and --step; the toolkit's, or 10mm, if not "
-        "given.",
-    ),
     part: str | None = PART_FILE,
     force: bool = FORCE,
     unit: str | None = SHOWN_UNIT,
@@ -137,75 +186,109 @@ def supports(
     Example: workhold supports part.json 1 --thickness 12 --load "force=150 at=20,15 z=8..12 axial=-20..60"
     """
     rank = asked_rank(number_)
-    shown = length_unit(unit)
     count = optional_count("--triples", triples)
-    closing = optional_force("--jaw-force", jaw_force)
-    coefficient = None if friction is None else positive_number("--friction", friction)
     if out is not None:
         refuse_output(out, (result_file,), force)
-    models = asked_models(glb, step, (result_file, part), force, support_height=support_height, part=part)
-    raised = optional_length("--support-height", support_height, shown)
-    result = result_with(result_file, rank)
-    printed = printed_unit(unit, result.toolkit)
-    from workhold.supports.asking import requests_by_size, supported_by_size
+    raised = words.support_height
+    models = asked_models(glb, step, (result_file, part), force, support_height=raised, part=part)
+    asked = parse(result_file, rank, words, count, out, models, part, unit)
+    found = ask(asked)
+    helped = with_friction(found, count, asked.friction)
+    write(asked, found)
+    written = [path for path in (out, glb, step) if path is not None]
+    report(found, count, rank, written, asked.printed, json_, asked.friction, helped)
+    if found.stopped:
+        raise typer.Exit(INTERRUPTED)
 
-    high = asked_thickness(True, thickness, result.workpiece, shown)
+
+def parse(
+    result_file: str,
+    rank: int,
+    words: SupportWords,
+    count: int | None,
+    out: str | None,
+    models: Sequence[Path],
+    part: str | None,
+    unit: str | None,
+) -> Asked:
+    """Read what was typed, and the fixture."""
+    shown = length_unit(unit)
+    closing = optional_force("--jaw-force", words.jaw_force)
+    friction = None if words.friction is None else positive_number("--friction", words.friction)
+    raised = optional_length("--support-height", words.support_height, shown)
+    result = result_with(result_file, rank)
+    from workhold.supports.asking import requests_by_size
+
+    high = asked_thickness(True, words.thickness, result.workpiece, shown)
     assert high is not None
-    own = {
-        "pad_radius": optional_length("--pad-radius", pad_radius, shown),
-        "pad_margin": optional_length("--pad-margin", pad_margin, shown),
-        "tip_radius": optional_length("--tip-radius", tip_radius, shown),
-        "inside": optional_length("--inside", inside, shown),
-        "tip_margin": optional_length("--tip-margin", tip_margin, shown),
-        "head_radius": optional_length("--head-radius", head_radius, shown),
-        "reach": [lengths("--reach", text, ",", 4, shown) for text in reach] if reach else None,
-        "band": None if band is None else lengths("--band", band, ":", 2, shown),
-        "bottom_zones": [read_zone(KEEP_OFF[0], text, shown) for text in keep_out_below or ()],
-        "top_zones": [read_zone(KEEP_OFF[1], text, shown) for text in keep_out_above or ()],
-        "point": None if clamp_at is None else lengths("--clamp-at", clamp_at, ",", 2, shown),
-    }
-    asked = {name: value for name, value in own.items() if value is not None}
-    request, *smaller = requests_by_size(result.query, high, asked)
+    request, *smaller = requests_by_size(result.query, high, words.sizes(shown))
     request.refuse_fat_pads(result.toolkit)
-    loads = [spatial_load(text, high, shown) for text in load] if load else None
+    loads = [spatial_load(text, high, shown) for text in words.load] if words.load else None
+    printed = printed_unit(unit, result.toolkit)
+    return Asked(
+        result,
+        rank,
+        request,
+        smaller,
+        loads,
+        count,
+        closing,
+        friction,
+        raised,
+        out,
+        models,
+        part,
+        shown,
+        printed,
+    )
+
+
+def ask(asked: Asked) -> Supports:
+    """Look for the supports."""
+    from workhold.supports.asking import supported_by_size
+
     with (
         ask_to_stop("the best of what was looked at is kept") as cancel,
         progress_bar("Looking for supports", "of 1 fixture") as show,
     ):
         (found,), _ = supported_by_size(
-            [result[rank - 1]],
-            result.query,
-            [request, *smaller],
-            loads,
-            closing,
-            count if out is None else None,
+            [asked.fixture],
+            asked.result.query,
+            [asked.request, *asked.smaller],
+            asked.loads,
+            asked.closing,
+            asked.count if asked.out is None else None,
             cancel=cancel,
             progress=lambda fraction: show(fraction, 0),
         )
-    if found.triples and found.request.pad_radius < request.pad_radius:
-        pad, tip = printed.text(found.request.pad_radius), printed.text(found.request.tip_radius)
+    if found.triples and found.request.pad_radius < asked.request.pad_radius:
+        pad, tip = (
+            asked.printed.text(found.request.pad_radius),
+            asked.printed.text(found.request.tip_radius),
+        )
         print_remark(f"the usual sizes find no place: the pads have a radius of {pad}, the tip one of {tip}.")
-    helped = with_friction(found, count, coefficient)
-    if out is not None:
+    return found
+
+
+def write(asked: Asked, found: Supports) -> None:
+    """Write the file of supports, and the bodies of the best."""
+    if asked.out is not None:
         from workhold.files.supports_file import write_supports
 
-        write_supports(found, out, overwrite=True)
-    if models:
-        from workhold.model.support_triples import ChosenSupports
-        from workhold.presenting.assembly import Assembly, shape_in
+        write_supports(found, asked.out, overwrite=True)
+    if not asked.models:
+        return
+    from workhold.model.support_triples import ChosenSupports
+    from workhold.presenting.assembly import Assembly, shape_in
 
-        if not found.triples:
-            from workhold.supports.words import why_no_set
+    if not found.triples:
+        from workhold.supports.words import why_no_set
 
-            why = why_no_set(found, printed)
-            raise InputError(f"{why[:1].lower()}{why[1:]}")
-        best, shape = ChosenSupports.of(found), shape_in(part, result.workpiece)
-        assembly = Assembly.of(result[rank - 1], result, {"support_height": raised}, best, shape)
-        write_bodies(assembly, models, shown)
-    written = [path for path in (out, glb, step) if path is not None]
-    report(found, count, rank, written, printed, json_, coefficient, helped)
-    if found.stopped:
-        raise typer.Exit(INTERRUPTED)
+        why = why_no_set(found, asked.printed)
+        raise InputError(f"{why[:1].lower()}{why[1:]}")
+    best, shape = ChosenSupports.of(found), shape_in(asked.part, asked.result.workpiece)
+    lengths = {"support_height": asked.raised}
+    write_bodies(Assembly.of(asked.fixture, asked.result, lengths, best, shape), asked.models, asked.unit)
 
 
 def asked_thickness(wanted: bool, text: str | None, workpiece: Workpiece, unit: Unit) -> float | None:
@@ -264,14 +347,6 @@ def before_first(listed: Sequence[Triple]) -> list[str]:
     if all(min(pad.column, pad.row) >= 0 for triple in listed for pad in triple.supports):
         return []
     return ["A hole before column A or row 1 stands as (column,row), where A1 is (1,1)."]
-
-
-def lengths(name: str, text: str, mark: str, count: int, unit: Unit) -> tuple[float, ...]:
-    """Some lengths in mm with a mark between them."""
-    words = text.split(mark)
-    if len(words) != count:
-        raise InputError(f"{name} {text!r} cannot be used: give {count} lengths with {mark!r} between them.")
-    return tuple(length(name, word, unit) for word in words)
 
 
 def report(

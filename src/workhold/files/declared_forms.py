@@ -16,13 +16,20 @@ from workhold.asking.declaring import Declaration, Form
 __all__ = ["given_in", "with_fields"]
 
 Kind = TypeVar("Kind", bound=BaseModel)
-NUMBERS: Mapping[Form, type] = {"count": int, "length": float, "force": float, "number": float}
+NUMBERS: Mapping[Form, type] = {
+    "count": int,
+    "length": float,
+    "force": float,
+    "power": float,
+    "number": float,
+}
 TYPES: Mapping[Form, Any] = {
     "flag": bool,
     "text": str,
     "names": list[str],
     "day": date,
     "place": Annotated[list[float], Field(min_length=2, max_length=2)],
+    "point": Annotated[list[float], Field(min_length=3, max_length=3)],
 }
 LIMITS = {"above 0": {"gt": 0}, "0": {"ge": 0}, "any": {}}
 
@@ -51,10 +58,14 @@ def with_fields(
 
 def entry_of(row: Declaration, largest: float | None, bounded: bool) -> tuple[Any, Any]:
     """Type and default of a field, with what it means."""
-    kind: Any = Literal[row.choices] if row.form == "choice" and bounded else TYPES.get(row.form, str)
-    if row.form in NUMBERS:
+    kind: Any = str
+    if row.form == "choice" and bounded:
+        kind = Literal[row.choices]
+    elif row.form in NUMBERS:
         bounds: dict[str, Any] = limits_of(row, largest) if bounded else {}
         kind = Annotated[NUMBERS[row.form], Field(**bounds)] if bounds else NUMBERS[row.form]
+    elif row.form != "choice":
+        kind = TYPES[row.form]
     if row.default is None:
         kind = kind | None
     return kind, Field(default=row.default, description=row.help)

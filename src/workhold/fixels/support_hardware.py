@@ -17,7 +17,18 @@ from workhold.errors import InputError
 from workhold.fixels.table import FieldTable, PageLabel, ToolkitField
 from workhold.limits import real, refuse_long
 
-__all__ = ["HARDWARE", "PINS", "SUPPORTS", "TOP_CLAMP", "PinLimits", "SupportPads", "TopClamp", "hardware_of"]
+__all__ = [
+    "CLAMP",
+    "HARDWARE",
+    "PADS",
+    "PINS",
+    "SUPPORTS",
+    "TOP_CLAMP",
+    "PinLimits",
+    "SupportPads",
+    "TopClamp",
+    "hardware_of",
+]
 
 # What the tables are called in a toolkit's file, and in all that the program writes.
 SUPPORTS, TOP_CLAMP, PINS = "supports", "top_clamp", "pins"
@@ -27,8 +38,17 @@ Rings = tuple[tuple[float, ...], ...]
 USUAL = "usual"
 
 
-def length_row(name: str, least: Any, figure: str, label: str) -> ToolkitField:
-    return ToolkitField(name, "length", figure, (PageLabel(label, USUAL),), least=least, figure=figure)
+# Sections of the command's help.
+SUPPORTS_SECTION, CLAMP_SECTION = "Supports", "The clamp on top"
+
+
+def length_row(
+    name: str, least: Any, figure: str, label: str, typed: str = "", section: str | None = None
+) -> ToolkitField:
+    labels, help = (PageLabel(label, USUAL),), f"{figure[:1].upper()}{figure[1:]}."
+    return ToolkitField(
+        name, "length", help, labels, least=least, figure=figure, typed=typed, section=section
+    )
 
 
 def rings(values: Iterable[Iterable[Any]] | None) -> Rings | None:
@@ -40,8 +60,23 @@ PADS = FieldTable(
     SUPPORTS,
     "Supports under the part",
     (
-        length_row("pad_radius", "0", "radius of the supports' pads", "Pad radius"),
-        length_row("pad_margin", "0", "from a pad to the border of the face below", "Pad to border"),
+        length_row(
+            "pad_radius",
+            "0",
+            "radius of the supports' pads",
+            "Pad radius",
+            "Radius of the supports' round pads; the toolkit's, or 4mm, or less where the holes ask for it, if "
+            "not given.",
+            SUPPORTS_SECTION,
+        ),
+        length_row(
+            "pad_margin",
+            "0",
+            "from a pad to the border of the face below",
+            "Pad to border",
+            "Least distance of a pad from the border of the face below; the toolkit's, or 0mm, if not given.",
+            SUPPORTS_SECTION,
+        ),
         length_row("height", "above 0", "height of the supports", "Height"),
     ),
 )
@@ -49,19 +84,48 @@ CLAMP = FieldTable(
     TOP_CLAMP,
     "A clamp on top",
     (
-        length_row("tip_radius", "above 0", "radius of the tip of the clamp on top", "Tip radius"),
         length_row(
-            "inside", "above 0", "from the clamp on top to the supports' triangle", "Tip within the triangle"
+            "tip_radius",
+            "above 0",
+            "radius of the tip of the clamp on top",
+            "Tip radius",
+            "Radius of the clamp's round tip; the toolkit's, or 5mm, if not given.",
+            CLAMP_SECTION,
         ),
         length_row(
-            "tip_margin", "0", "from the tip of the clamp on top to the border of its face", "Tip to border"
+            "inside",
+            "above 0",
+            "from the clamp on top to the supports' triangle",
+            "Tip within the triangle",
+            "Least distance of the clamp from the triangle's sides; the toolkit's, or the tip's radius, if not "
+            "given.",
+            CLAMP_SECTION,
         ),
-        length_row("head_radius", "above 0", "radius of the head of the clamp on top", "Head radius"),
+        length_row(
+            "tip_margin",
+            "0",
+            "from the tip of the clamp on top to the border of its face",
+            "Tip to border",
+            "Least distance of the tip from the border of its face; the toolkit's, or 0mm, if not given.",
+            CLAMP_SECTION,
+        ),
+        length_row(
+            "head_radius",
+            "above 0",
+            "radius of the head of the clamp on top",
+            "Head radius",
+            "Radius of the clamp's head, within which nothing of the part rises above the face; the toolkit's, or "
+            "one and a half times the tip's, if not given.",
+            CLAMP_SECTION,
+        ),
         ToolkitField(
             "reach",
             "rings",
-            "where the tip of the clamp on top can stand",
+            "Where the tip of the clamp on top can stand.",
             (PageLabel("Reaches about x, y from least to most", "anywhere"),),
+            typed="A ring about a point of the toolkit in which the tip can stand; the toolkit's, or everywhere, if "
+            "not given.",
+            section=CLAMP_SECTION,
         ),
     ),
 )

@@ -14,6 +14,7 @@ from typing import Any, Literal
 from attrs import asdict, field, frozen
 from attrs.converters import optional
 
+from workhold.asking.program import CuttingQuestion
 from workhold.errors import InputError
 from workhold.limits import real, refuse_long, refuse_strong
 
@@ -148,8 +149,8 @@ def direction_of(value: Any) -> CuttingDirection:
     raise InputError(f"the direction '{str(value)[:20]}' of cutting forces is not known: give any or feed.")
 
 
-@frozen
-class CuttingData:
+@frozen(kw_only=True)
+class CuttingData(CuttingQuestion):
     """What is known of how a tool, or all tools of a job, cut; None for what is not.
 
     Parameters
@@ -174,12 +175,7 @@ class CuttingData:
     5.0
     """
 
-    cutting_force: float | None = field(default=None, converter=optional(real))
-    power: float | None = field(default=None, converter=optional(real))
     material: CutMaterial | None = field(default=None, converter=optional(material_of))
-    teeth: float | None = field(default=None, converter=optional(real))
-    cut_depth: float | None = field(default=None, converter=optional(real))
-    cut_width: float | None = field(default=None, converter=optional(real))
     point_angle: float | None = field(default=None, converter=optional(real))
     helix_angle: float | None = field(default=None, converter=optional(real))
     direction: CuttingDirection | None = field(default=None, converter=optional(direction_of))

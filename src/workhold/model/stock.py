@@ -28,6 +28,7 @@ from attrs import field, frozen
 from attrs.converters import optional
 from numpy.typing import NDArray
 
+from workhold.asking.program import StockQuestion
 from workhold.errors import InputError
 from workhold.limits import real, refuse_long
 from workhold.model.cutting_tool import Tool
@@ -42,8 +43,6 @@ StockShape = Literal["outline", "block"]
 OUTLINE: StockShape = "outline"
 BLOCK: StockShape = "block"
 STOCK_SHAPES = (OUTLINE, BLOCK)
-# Of the raw stock around the part and on top of it, in mm.
-ALLOWANCE = 5.0
 # mm. By less a tool only touches; rounding of places is far below it.
 TOUCHES = 1e-6
 # Parts of a move that are no nearer than this in their shares are one.
@@ -52,15 +51,8 @@ SAME_SHARE = 1e-11
 AT_ONCE = 1 << 19
 
 
-def shape_of(value: Any) -> StockShape:
-    for shape in STOCK_SHAPES:
-        if shape == value:
-            return shape
-    raise InputError(f"the shape '{str(value)[:20]}' of the stock is not known: give outline or block.")
-
-
 @frozen
-class Stock:
+class Stock(StockQuestion):
     """What the part is cut from.
 
     Parameters
@@ -76,9 +68,6 @@ class Stock:
         For lengths below 0, and a shape that is not known.
     """
 
-    side: float = field(default=ALLOWANCE, converter=real)
-    top: float = field(default=ALLOWANCE, converter=real)
-    shape: StockShape = field(default=OUTLINE, converter=shape_of)
     height: float | None = field(default=None, converter=optional(real))
 
     def __attrs_post_init__(self) -> None:

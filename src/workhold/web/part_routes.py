@@ -18,7 +18,7 @@ from workhold.web.answers import figures_answer
 from workhold.web.fixture_tasks import has_step
 from workhold.web.job_routes import found_job
 from workhold.web.part_tasks import ShapeOrder, Upload
-from workhold.web.program_forms import ProgramQuestion
+from workhold.web.program_forms import ReadProgramForm
 from workhold.web.request_forms import AddressForm, WorkpieceForm, asked_heights
 from workhold.web.state import CheckedRoute, at_desk, at_desk_while_heard, state_of
 
@@ -194,7 +194,7 @@ async def lesson(request: Request, form: WorkpieceForm) -> dict[str, Any]:
 
 
 @router.post("/programs", summary="See what a program of the machine does")
-async def program(request: Request, form: ProgramQuestion) -> dict[str, Any]:
+async def program(request: Request, form: ReadProgramForm) -> dict[str, Any]:
     """The tools with their lines, the box of their tips, notes on how it was read, and its paths to draw.
 
     Paths are SVG path data in tenths of mm, y downward, by tool, kind and level of height. ``height`` and

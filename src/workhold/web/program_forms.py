@@ -12,7 +12,10 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from attrs import asdict, evolve
 from pydantic import ConfigDict, Field
 
+from workhold.asking.declaring import declarations_of
+from workhold.asking.program import CuttingQuestion, ProgramQuestion, StockQuestion
 from workhold.errors import InputError
+from workhold.files.declared_forms import given_in, with_fields
 from workhold.model.program import Program
 from workhold.model.solid import SolidOutline
 from workhold.units import MILLIMETRE
@@ -22,10 +25,11 @@ from workhold.web.worker import Order
 if TYPE_CHECKING:
     from workhold.files.program.reader import ReadProgram
 
-__all__ = ["ProgramForm", "ProgramQuestion", "read_sent_program"]
+__all__ = ["ProgramForm", "ReadProgramForm", "read_sent_program"]
 
 # Characters; 100,000 lines have three million.
 MOST_TEXT, MOST_TABLE = 3_500_000, 400_000
+OF_PROGRAM = declarations_of(ProgramQuestion)
 TABLES = (".toml", ".csv", ".tbl")
 Thick = Annotated[float, Field(gt=0, le=LARGEST)]
 Start = Annotated[list[Annotated[float, Field(ge=-LARGEST, le=LARGEST)]], Field(min_length=3, max_length=3)]
@@ -48,26 +52,19 @@ class ToolTableForm(Form):
     text: Annotated[str, Field(max_length=MOST_TABLE)]
 
 
+@with_fields(declarations_of(CuttingQuestion), LARGEST)
 class CuttingForm(Form):
     """How tools cut of which the table does not say it: a force in N, a power in kW, or a material."""
 
-    cutting_force: Annotated[float, Field(ge=0)] | None = None
-    power: Annotated[float, Field(gt=0)] | None = None
     material: Name | None = None
-    teeth: Annotated[int, Field(ge=1)] | None = None
-    cut_depth: Thick | None = None
-    cut_width: Thick | None = None
-    direction: Literal["any", "feed"] | None = None
 
 
+@with_fields(declarations_of(StockQuestion), LARGEST)
 class StockForm(Form):
     """What the part is cut from: its outline or the block around it, with so much around and on top."""
 
-    side: Annotated[float, Field(ge=0, le=LARGEST)] = 5.0
-    top: Annotated[float, Field(ge=0, le=LARGEST)] = 5.0
-    shape: Literal["outline", "block"] = "outline"
 
-
+@with_fields(OF_PROGRAM, LARGEST)
 class ProgramForm(Form):
     """A program (G-code) whose tools keep clear of all that holds the part; lengths in mm.
 
@@ -86,11 +83,7 @@ class ProgramForm(Form):
     tools: ToolTableForm | None = None
     zero: Point = Field(default=[0.0, 0.0])
     z_zero: Literal["top", "bottom"] | Annotated[float, Field(ge=-LARGEST, le=LARGEST)] = "top"
-    clearance: Annotated[float, Field(ge=0, le=LARGEST)] = 1.0
-    rapid: Literal["straight", "box"] = "straight"
-    unit: Literal["mm", "inch"] | None = None
     start: Start | None = None
-    whole_numbers: Literal["units", "thousandths"] = "units"
     cutting: CuttingForm | None = None
     stock: StockForm | None = None
     thickness: Thick | None = None
@@ -120,7 +113,7 @@ class ProgramForm(Form):
         return evolve(read.program, name=self.name), high or thick
 
 
-class ProgramQuestion(Form):
+class ReadProgramForm(Form):
     """A program to be looked at, and the heights of the part's solid, if it has one."""
 
     program: ProgramForm
@@ -136,14 +129,8 @@ def read_sent_program(form: ProgramForm, thickness: float | None) -> ReadProgram
         return read_program_with_calls(
             path,
             tools,
-            zero=(form.zero[0], form.zero[1]),
-            z_zero=form.z_zero,
             thickness=thickness,
-            clearance=form.clearance,
-            rapid=form.rapid,
-            unit=form.unit,
-            start=form.start,
-            whole_numbers=form.whole_numbers,
+            **given_in(form, OF_PROGRAM),
             cutting=None if form.cutting is None else form.cutting.model_dump(),
             stock=None if form.stock is None else form.stock.model_dump(),
             called=CALLED,
@@ -177,7 +164,7 @@ def named(sentence: str, names: Mapping[str, str]) -> str:
     return sentence
 
 
-def look_at_program(question: ProgramQuestion, order: Order) -> dict[str, Any]:
+def look_at_program(question: ReadProgramForm, order: Order) -> dict[str, Any]:
     """Describes what was understood of a program: its tools, box, notes, and the paths to draw.
 
     Heights are above the part's lower side. The paths are SVG path data in tenths of mm, y downward. Each has

@@ -13,7 +13,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from workhold.errors import InputError
+from workhold.files.declared_forms import with_fields
 from workhold.files.input_forms import TAGS
+from workhold.fixels.support_hardware import CLAMP, PADS
 from workhold.model.own_outlines import with_own_outlines
 from workhold.model.solid import SolidOutline
 from workhold.model.support_request import SpatialLoad
@@ -29,6 +31,7 @@ __all__ = [
     "MOST_POINTS",
     "MOST_RANGES",
     "MOST_VERTICES",
+    "OF_HARDWARE",
     "BandForm",
     "ChosenSupportsForm",
     "FirstSideForm",
@@ -68,6 +71,8 @@ AskedForm = TypeVar("AskedForm", bound="Form")
 
 # Values and lists of values in a request: twice what the largest solid that the server takes has.
 MOST_VALUES = 100_000
+# What is asked of supports and of the clamp on top, as toolkits have it.
+OF_HARDWARE = [row for table in (PADS, CLAMP) for row in table.fields if row.name != "height"]
 # Sets of three supports that are listed at most.
 MOST_SETS = 50
 
@@ -297,6 +302,7 @@ class SpatialLoadForm(Form):
         return SpatialLoad(**self.model_dump())
 
 
+@with_fields(OF_HARDWARE, LARGEST)
 class SupportsForm(Form):
     """What supports and the clamp on top are, and what acts on the part.
 
@@ -309,12 +315,6 @@ class SupportsForm(Form):
 
     thickness: Annotated[float, Field(gt=0, le=LARGEST)] | None = None
     band: BandForm | None = None
-    pad_radius: Length | None = None
-    pad_margin: Length | None = None
-    tip_radius: Annotated[float, Field(gt=0, le=LARGEST)] | None = None
-    inside: Annotated[float, Field(gt=0, le=LARGEST)] | None = None
-    tip_margin: Length | None = None
-    head_radius: Annotated[float, Field(gt=0, le=LARGEST)] | None = None
     bottom_zones: Zones = Field(default=[])
     top_zones: Zones = Field(default=[])
     reach: Annotated[list[Ring], Field(max_length=MOST_RANGES)] | None = None

@@ -24,25 +24,15 @@ from workhold.model.requirements import zone_of
 from workhold.model.support_bodies import bodies_on_supports, supported_sizes
 from workhold.model.support_triples import ChosenSupports, Supports, Triple, recounted
 from workhold.units import unit_named
-from workhold.web.request_forms import SupportsForm
+from workhold.web.request_forms import OF_HARDWARE, SupportsForm
 from workhold.web.worker import Order
 
 __all__ = ["SupportsOrder", "chosen_supports", "find_supports"]
 
 # What keeps pads and the clamp off places, as the page calls it.
 KEEP_OFF = ('"Keep pads off"', '"Keep the clamp off"')
-# Figures of a form that a request has by the same names.
-OWN = (
-    "band",
-    "pad_radius",
-    "pad_margin",
-    "tip_radius",
-    "inside",
-    "tip_margin",
-    "head_radius",
-    "reach",
-    "point",
-)
+# What of a form a request has by the same names.
+OWN = ("band", "point", *(row.name for row in OF_HARDWARE))
 
 
 @frozen(eq=False)
