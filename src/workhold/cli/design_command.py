@@ -183,7 +183,7 @@ class Output:
 
 
 @frozen
-class Asked:
+class DesignTask:
     """A search and how it is to be answered.
 
     Parameters
@@ -208,7 +208,7 @@ class Asked:
 
 
 @frozen
-class Answer:
+class DesignAnswer:
     """What the search found.
 
     Parameters
@@ -255,7 +255,7 @@ def parse(
     searched: SearchWords,
     written: OutputWords,
     reading: PartWords,
-) -> Asked:
+) -> DesignTask:
     """Read what was typed: all that is cheap before any file, and all of it before the search."""
     shown = length_unit(reading.unit)
     threads = optional_count("--threads", searched.threads)
@@ -291,10 +291,12 @@ def parse(
     for remark in far_loads(query.loads, Box(*workpiece.bounds)):
         print_remark(remark)
     unit = printed_unit(reading.unit, toolkit)
-    return Asked(query, loaded, searched.every, threads, engine, high, unit, output, first_run, compiling)
+    return DesignTask(
+        query, loaded, searched.every, threads, engine, high, unit, output, first_run, compiling
+    )
 
 
-def ask(asked: Asked) -> Answer:
+def ask(asked: DesignTask) -> DesignAnswer:
     """Search, and write the result file, which a search of very many fixtures does by itself."""
     query, engine, output, estimated = asked.query, asked.engine, asked.output, None
     start = perf_counter()
@@ -319,17 +321,17 @@ def ask(asked: Asked) -> Answer:
     if output.out is not None and streamed is None:
         result = write_found(result, output.out, output.form)
     compiled = ", compiling on this first run included" if asked.is_first_run else ""
-    return Answer(result, estimated, f"{perf_counter() - start:.1f} s{compiled}")
+    return DesignAnswer(result, estimated, f"{perf_counter() - start:.1f} s{compiled}")
 
 
-def report(asked: Asked, answer: Answer) -> None:
+def report(asked: DesignTask, answer: DesignAnswer) -> None:
     """Print what was found, and make the pictures and the sheet that were asked for."""
     (report_as_json if asked.output.as_json else report_in_words)(asked, answer)
     if not answer.result.complete:
         raise typer.Exit(INTERRUPTED)
 
 
-def report_as_json(asked: Asked, answer: Answer) -> None:
+def report_as_json(asked: DesignTask, answer: DesignAnswer) -> None:
     from workhold.listing.identity import entries
     from workhold.presenting.data import result_data
 
@@ -341,7 +343,7 @@ def report_as_json(asked: Asked, answer: Answer) -> None:
     print_json(**listed, result_file=output.out, **further)
 
 
-def report_in_words(asked: Asked, answer: Answer) -> None:
+def report_in_words(asked: DesignTask, answer: DesignAnswer) -> None:
     result, output, unit = answer.result, asked.output, asked.unit
     report_found(result, answer.spent, output, unit)
     supported: tuple[Supports, ...] = ()
@@ -370,7 +372,7 @@ def report_in_words(asked: Asked, answer: Answer) -> None:
         )
 
 
-def sheet_of_first(asked: Asked, result: Result, supported: tuple[Supports, ...] = ()) -> int | None:
+def sheet_of_first(asked: DesignTask, result: Result, supported: tuple[Supports, ...] = ()) -> int | None:
     """Write the setup sheet of the first choice; returns its rank, or None where there is no fixture."""
     output = asked.output
     assert output.sheet is not None
@@ -379,7 +381,7 @@ def sheet_of_first(asked: Asked, result: Result, supported: tuple[Supports, ...]
     )
 
 
-def as_many_as_asked(asked: Asked, cancel: Event) -> tuple[Query, int | None]:
+def as_many_as_asked(asked: DesignTask, cancel: Event) -> tuple[Query, int | None]:
     """Returns the query, or one for the best fixtures where there are very many, and about how many.
 
     A remark says so before the search. Refuses all of very many without a file that can carry them.
@@ -461,7 +463,7 @@ def report_found(result: Result, spent: str, output: Output, unit: Unit) -> None
         print_remark(f"interrupted: this is a part of the fixtures only{marked}.")
 
 
-def further_data(asked: Asked, result: Result) -> dict[str, Any]:
+def further_data(asked: DesignTask, result: Result) -> dict[str, Any]:
     """Returns why there is no fixture, and the pictures drawn, as plain data.
 
     A search that was interrupted has neither.

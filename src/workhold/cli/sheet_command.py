@@ -62,7 +62,7 @@ class SheetWords:
 
 
 @frozen
-class Asked:
+class SheetTask:
     """A sheet to write.
 
     Parameters
@@ -135,7 +135,7 @@ def sheet(
     print_written(json_, f"Written to {asked.path}.", asked.path)
 
 
-def parse(result_file: str, rank: int, path: Path, words: SheetWords, unit: str | None) -> Asked:
+def parse(result_file: str, rank: int, path: Path, words: SheetWords, unit: str | None) -> SheetTask:
     """Read what was typed, and refuse what does not belong into such a file."""
     from workhold.presenting.assembly import STEP_ENDINGS
     from workhold.presenting.papers import MODEL_ENDINGS, PAPER_ENDINGS
@@ -158,10 +158,10 @@ def parse(result_file: str, rank: int, path: Path, words: SheetWords, unit: str 
     has_room = not for_cam or ending in STEP_ENDINGS
     supported = words.supports or on_supports
     refuse_in_space(for_cam, has_room, path, supported, words.support_height, words.first_setup)
-    return Asked(path, result_file, rank, settings, given, words, unit, on_supports)
+    return SheetTask(path, result_file, rank, settings, given, words, unit, on_supports)
 
 
-def write(asked: Asked) -> None:
+def write(asked: SheetTask) -> None:
     """Write the sheet, or the set-up for a CAM system."""
     from workhold.presenting.papers import write_model, write_paper
 
@@ -181,7 +181,7 @@ def write(asked: Asked) -> None:
     write_paper(asked.path, result, rank, asked.result_file, settings)
 
 
-def held_by(asked: Asked) -> tuple[Result, int, dict[str, Any], tuple[Load, ...]]:
+def held_by(asked: SheetTask) -> tuple[Result, int, dict[str, Any], tuple[Load, ...]]:
     """The result and rank of the fixture, what stands on its sheet besides what was typed, and the loads "
     "on it."""
     settings, loads = asked.settings, asked.loads

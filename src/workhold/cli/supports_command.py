@@ -128,7 +128,7 @@ class SupportWords:
 
 
 @frozen
-class Asked:
+class SupportsTask:
     """What supports are asked for, and where the answer goes.
 
     Parameters
@@ -210,7 +210,7 @@ def parse(
     models: Sequence[Path],
     part: str | None,
     unit: str | None,
-) -> Asked:
+) -> SupportsTask:
     """Read what was typed, and the fixture."""
     shown = length_unit(unit)
     closing = optional_force("--jaw-force", words.jaw_force)
@@ -225,7 +225,7 @@ def parse(
     request.refuse_fat_pads(result.toolkit)
     loads = [spatial_load(text, high, shown) for text in words.load] if words.load else None
     printed = printed_unit(unit, result.toolkit)
-    return Asked(
+    return SupportsTask(
         result,
         rank,
         request,
@@ -243,7 +243,7 @@ def parse(
     )
 
 
-def ask(asked: Asked) -> Supports:
+def ask(asked: SupportsTask) -> Supports:
     """Look for the supports."""
     from workhold.supports.asking import supported_by_size
 
@@ -270,7 +270,7 @@ def ask(asked: Asked) -> Supports:
     return found
 
 
-def write(asked: Asked, found: Supports) -> None:
+def write(asked: SupportsTask, found: Supports) -> None:
     """Write the file of supports, and the bodies of the best."""
     if asked.out is not None:
         from workhold.files.supports_file import write_supports

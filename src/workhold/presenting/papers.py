@@ -165,7 +165,7 @@ def save_sheet(
         write_model(path, listed.result, listed.row + 1, settings)
         return
     settings["jaw"] = jaw_stiffness(settings.get("jaw", "screw"))
-    settings.setdefault("day", date.today())
+    settings["day"] = settings["day"] or date.today()
     settings |= {"number": listed.rank, "count": listed.count, "others": listed.others}
     write_paper(path, listed.result, listed.row + 1, result_file, settings)
 
@@ -260,8 +260,8 @@ def write_model(path: str | Path, result: Result, rank: int, settings: dict[str,
     Parameters
     ----------
     path : of a file whose name ends in .dxf, .step, .stp or .csv.
-    settings : the fields of a :class:`workhold.asking.sheet.SheetQuestion`, and the ``unit``. Of a STEP file also ``supports``,
-        a set that was chosen, and the ``shape`` of the part.
+    settings : the fields of a :class:`workhold.asking.sheet.SheetQuestion`, and the ``unit``. Of a STEP file also
+        ``supports``, a set that was chosen, and the ``shape`` of the part.
 
     Raises
     ------
