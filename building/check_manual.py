@@ -251,12 +251,19 @@ def messages() -> Iterator[str]:
                 yield f"{path.name} names an option of the command line in {line.strip()!r}."
 
 
+# What a declaration says of its option alone.
+OF_OPTIONS = {"spelled", "typed"}
+
+
 def texts(source: str) -> Iterator[str]:
-    """The texts of a module that are no docstrings; those with values in them with a space for each."""
+    """The texts of a module that are no docstrings; those with values in them with a space for each.
+
+    What a declaration says of its option alone is left out.
+    """
     tree = ast.parse(source)
     inner: set[int] = set()
     for node in ast.walk(tree):
-        if isinstance(node, ast.Expr):
+        if isinstance(node, ast.Expr) or (isinstance(node, ast.keyword) and node.arg in OF_OPTIONS):
             inner.add(id(node.value))
         elif isinstance(node, ast.JoinedStr):
             inner |= {id(part) for part in node.values}

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
+from typing import Any
 
 from attrs import frozen
 
 from workhold.asking.declaring import PageLabel, check_fields, declare
-
-if TYPE_CHECKING:
-    from workhold.model.requirements import Zone
 
 __all__ = ["HEIGHTS", "LOADS", "RANKING", "RULING_OUT", "SEARCH", "SEATING", "RuledOut", "SearchQuestion"]
 
@@ -42,7 +39,7 @@ class RuledOut:
         section=RULING_OUT,
         typed="Faces that no peg may touch, such as 3,7 (see workhold features).",
     )
-    zones: Sequence[Zone] = declare(
+    zones: Sequence[Any] = declare(
         "zones",
         "Where no peg may stand.",
         default=(),
