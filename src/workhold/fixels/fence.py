@@ -7,14 +7,15 @@ Symposium on Computational Geometry (1995).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from workhold.fixels import fields
 from workhold.fixels.carrier import Heights
 from workhold.fixels.contacts import DIRECTIONS
 from workhold.fixels.making import finer, made_from_table, wall_carrier
+from workhold.fixels.pegs import Flat
 from workhold.fixels.plate import Plate
 from workhold.fixels.setup_words import Datum, PageWords, SetupWords
 from workhold.fixels.table import FieldTable, PageLabel
@@ -136,6 +137,30 @@ class Fence(Plate):
 
     wall_offset: float
     wall_heights: Heights | None
+
+    if TYPE_CHECKING:
+        # As the table makes it, for editors and mypy; a test compares the two.
+        def __init__(
+            self,
+            pitch: float | Iterable[float],
+            peg_radius: float,
+            columns: int | None = None,
+            rows: int | None = None,
+            clamp_radius: float | None = None,
+            travel: Iterable[float] | None = None,
+            directions: str | Iterable[str] | Iterable[tuple[str, str]] | None = None,
+            clamps: int = 1,
+            *,
+            flat: float | Iterable[float] | Flat | None = None,
+            locator_heights: Iterable[float] | None = None,
+            clamp_heights: Iterable[float] | None = None,
+            supports: Any = None,
+            top_clamp: Any = None,
+            pins: Any = None,
+            tolerance: Any = None,
+            wall_offset: float,
+            wall_heights: Iterable[float] | None = None,
+        ) -> None: ...
 
     @property
     def usual_directions(self) -> tuple[Any, ...]:

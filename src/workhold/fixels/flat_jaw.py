@@ -4,9 +4,10 @@ there.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 from math import pi
+from typing import TYPE_CHECKING, Any
 
 from attrs import evolve
 
@@ -130,6 +131,27 @@ class FlatJaw(Toolkit):
     flat: Flat | None
     jaw_heights: Heights | None
     wall_heights: Heights | None
+
+    if TYPE_CHECKING:
+        # As the table makes it, for editors and mypy; a test compares the two.
+        def __init__(
+            self,
+            pitch: float | Iterable[float],
+            peg_radius: float,
+            columns: int | None = None,
+            rows: int | None = None,
+            min_gap: float | None = None,
+            max_opening: float | None = None,
+            jaw_width: float | None = None,
+            *,
+            flat: float | Iterable[float] | Flat | None = None,
+            jaw_heights: Iterable[float] | None = None,
+            wall_heights: Iterable[float] | None = None,
+            supports: Any = None,
+            top_clamp: Any = None,
+            pins: Any = None,
+            tolerance: Any = None,
+        ) -> None: ...
 
     def __attrs_post_init__(self) -> None:
         settle(self, noun="jaw", peg="peg")

@@ -6,11 +6,11 @@ The locators alone fix its pose; only both clamps together press it against all 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 from itertools import combinations_with_replacement
 from math import inf
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from workhold.errors import InputError
 from workhold.fixels import fields
@@ -121,6 +121,28 @@ class Plate(Toolkit):
     flat: Flat | None
     locator_heights: Heights | None
     clamp_heights: Heights | None
+
+    if TYPE_CHECKING:
+        # As the table makes it, for editors and mypy; a test compares the two.
+        def __init__(
+            self,
+            pitch: float | Iterable[float],
+            peg_radius: float,
+            columns: int | None = None,
+            rows: int | None = None,
+            clamp_radius: float | None = None,
+            travel: Iterable[float] | None = None,
+            directions: str | Iterable[str] | Iterable[tuple[str, str]] | None = None,
+            clamps: int = 1,
+            *,
+            flat: float | Iterable[float] | Flat | None = None,
+            locator_heights: Iterable[float] | None = None,
+            clamp_heights: Iterable[float] | None = None,
+            supports: Any = None,
+            top_clamp: Any = None,
+            pins: Any = None,
+            tolerance: Any = None,
+        ) -> None: ...
 
     def __attrs_post_init__(self) -> None:
         settle(self, noun=self.noun, peg="locator")

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 from attrs import evolve
 
@@ -104,6 +105,29 @@ class Vise(Toolkit):
     flat: Flat | None
     left_heights: Heights | None
     right_heights: Heights | None
+
+    if TYPE_CHECKING:
+        # As the table makes it, for editors and mypy; a test compares the two.
+        def __init__(
+            self,
+            pitch: float | Iterable[float],
+            columns: int,
+            peg_radius: float,
+            rows: int | None = None,
+            min_gap: float | None = None,
+            max_opening: float | None = None,
+            row_offset: float = 0.0,
+            body_radius: float | None = None,
+            blocked: Iterable[Holes | str] = (),
+            *,
+            flat: float | Iterable[float] | Flat | None = None,
+            left_heights: Iterable[float] | None = None,
+            right_heights: Iterable[float] | None = None,
+            supports: Any = None,
+            top_clamp: Any = None,
+            pins: Any = None,
+            tolerance: Any = None,
+        ) -> None: ...
 
     def __attrs_post_init__(self) -> None:
         settle(self, noun="jaw", peg="peg")
