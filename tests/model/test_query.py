@@ -118,7 +118,7 @@ def test_one_word_is_not_taken_for_its_letters() -> None:
     [
         ({"arrangements": ["III"]}, "type III is unknown: choose I or II"),
         ({"arrangements": []}, "no type to seek"),
-        ({"contact_margin": -1.0}, "contact margin -1.0 is not a length"),
+        ({"contact_margin": -1.0}, "contact margin -1 is not a length"),
         ({"contact_margin": "1"}, "contact margin 1 is not a length"),
         ({"best": 0}, "best 0 is not a positive whole number"),
         ({"best": 1.5}, "best 1.5 is not a positive whole number"),

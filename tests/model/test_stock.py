@@ -217,9 +217,9 @@ def test_only_the_stretch_within_the_stock_presses(tmp_path: Path) -> None:
     [
         ({"side": -1}, "the stock's side -1 is no length"),
         ({"top": float("nan")}, "the stock's top nan is no length"),
-        ({"shape": "ball"}, "the shape 'ball' of the stock is not known: give outline or block"),
+        ({"shape": "ball"}, "the shape cannot be 'ball': choose outline or block"),
         ({"sides": 3}, "the stock has no 'sides': give side, top or shape"),
-        ("ball", "the shape 'ball'"),
+        ("ball", "the shape cannot be 'ball'"),
     ],
 )
 def test_a_stock_that_is_none_is_refused(stock: Any, said: str, tmp_path: Path) -> None:
