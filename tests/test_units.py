@@ -49,6 +49,13 @@ def test_stresses_are_in_ksi_beside_pounds():
     assert MILLIMETRE.stress_words(896.0) == "896 MPa"
 
 
+def test_moments_are_in_foot_pounds_beside_newton_metres():
+    """A foot pound is 1.355818 N m (NIST SP 811), and -0.5 of it turns the other way."""
+    assert INCH.moment_words(100 * 1355.818) == "100 ft lbf (136 N m)"
+    assert INCH.moment_words(-0.5 * 1355.818) == "−0.5 ft lbf (−0.678 N m)"
+    assert MILLIMETRE.moment_words(1355.818) == "1.36 N m"
+
+
 def test_the_figure_of_stress_takes_the_unit_of_its_heading():
     """A column headed ksi has no MPa under it."""
     from workhold.model.quality import FIGURES, PIN_STRESS
