@@ -86,6 +86,21 @@ def test_lower_is_darker(program: Program) -> None:
     assert order == sorted(order, reverse=True) and order[-1] == 0 and len(order) > 1
 
 
+def test_letters_of_the_zero_stand_beyond_the_tips_of_its_arrows(program: Program) -> None:
+    """X to the right of the zero and Y above it, where x and y grow, each on the line of its arrow."""
+    root = ET.fromstring(draw_program(program))
+    (zero,) = [one for one in root.iter() if one.get("class") == "program-zero"]
+    (circle,) = [one for one in zero if one.tag.endswith("circle")]
+    x, y = float(circle.attrib["cx"]), float(circle.attrib["cy"])
+    lines = {one.text: one.attrib for one in zero if one.tag.endswith("text")}
+    places = {word: (float(at["x"]) - x, y - float(at["y"])) for word, at in lines.items()}
+    ends = [re.findall(r"[ML]([\d.]+) ([\d.]+)", one.attrib["d"]) for one in zero if one.tag.endswith("path")]
+    right = max(float(end[0]) - x for path in ends for end in path)
+    up = max(y - float(end[1]) for path in ends for end in path)
+    assert places["X"][0] > right > 0 and places["X"][1] == pytest.approx(0, abs=6)
+    assert places["Y"][1] > up > 0 and places["Y"][0] == pytest.approx(0, abs=6)
+
+
 def test_words_and_the_part(program: Program) -> None:
     """Tools, depths and heights are written, in the unit that is asked for; the part lies below the paths."""
     svg = draw_program(program, unit=INCH)
