@@ -111,6 +111,19 @@ def test_a_plate_alone_faces_nothing() -> None:
     assert seen.carriers[0].plate == Box(-5.0, -6.0, 35.0, 54.0) and seen.carriers[0].broken == frozenset()
 
 
+@pytest.mark.parametrize(
+    ("wide", "columns", "rows"), [(4, range(9, 16), range(9, 16)), (28, range(8, 41), range(9, 16))]
+)
+def test_holes_show_a_pitch_around_what_is_held_or_a_fourteenth_of_it(
+    wide: int, columns: range, rows: range
+) -> None:
+    """Four columns of 10 mm ask for one more at either side, 28 of them for two, and rows of 12 mm for one."""
+    plate = Carrier("base", (10.0, 12.0), 60, 60, 3.0, 3.0)
+    fixture = pegs_in(Plates(None, (plate,)), 0.0, ("base", 10, 10), ("base", 10 + wide, 14))
+    (seen,) = shown_beside(Box(110.0, 125.0, 130.0, 165.0), fixture, Plates(None, (plate,))).carriers
+    assert (seen.columns, seen.rows) == (columns, rows)
+
+
 @pytest.mark.parametrize(("kind", "clamping"), [(Vise, (-1.0, 0.0)), (OpeningVise, (1.0, 0.0))])
 def test_the_clamping_direction_is_the_toolkits(kind: type[Vise], clamping: tuple[float, float]) -> None:
     """A vise clamps towards less separation, an opening vise towards more; holes are those of its jaws."""
