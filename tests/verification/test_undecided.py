@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import degrees
 from typing import Any
 
 import attrs
@@ -9,7 +10,7 @@ import pytest
 
 from judged import faults_of
 from undecided_examples import as_undecided
-from workhold import Fixture, OpeningVise, Query, Result, Workpiece
+from workhold import Fixture, OpeningVise, Query, Result, Vise, Workpiece
 from workhold.model.search_report import GIVEN_UP, NEARLY_DOUBLE, UNBOUNDED, Undecided, undecided_note
 from workhold.verification import verify
 
@@ -129,3 +130,14 @@ def test_what_is_undecided_need_not_be_a_solution(
     assert faults_of([entry], query) == []
     known = attrs.evolve(entry, reach_deg=1e-8)
     assert "is no place where" in faults_of([known], query)[0]
+
+
+@pytest.mark.parametrize(("farther", "real"), [(0.02, True), (0.04, False)])
+def test_pegs_at_both_ends_may_miss_by_what_they_move_against_each_other(farther: float, real: bool) -> None:
+    """A rod 20 mm long has pegs of radius 5 mm at its ends, 30 mm apart: 0.03 mm in a milliradian of its orientation."""
+    rod = Workpiece.from_loops("rod", [[[2, -8, 0], [2, 8, 1], [-2, 8, 0], [-2, -8, 1]]])
+    query = Query(rod, Vise(pitch=(20.0, 10.0 + farther / 3), columns=2, peg_radius=5))
+    flat, top, bottom = 0, 1, 3
+    faces, rows = (bottom, top, flat, flat), (0, 3, 1, 2)
+    entry = Undecided("I", faces, (0, 0, 0, 0), rows, 0.0, NEARLY_DOUBLE, degrees(1e-3))
+    assert (faults_of([entry], query) == []) == real
