@@ -12,7 +12,7 @@ pytest.importorskip("OCP", reason="the extra 'step' is not installed")
 
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
-from OCP.BRepPrimAPI import BRepPrimAPI_MakeCone
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeCone, BRepPrimAPI_MakeTorus
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
 from step_shapes import box, cut, cylinder
 
@@ -67,6 +67,16 @@ def test_cuts_of_a_lying_ring_are_those_of_the_library() -> None:
             off = np.hypot(*np.moveaxis(theirs[:, None] - ours[None], -1, 0)).min(axis=1)
             step = np.hypot(*np.diff(ours, axis=0).T)
             assert off.max() <= float(np.sort(step)[-3])
+
+
+@pytest.mark.parametrize("high", [20.5, 23.0])
+def test_cuts_of_a_lying_ring_run_to_where_its_tube_ends(high: float) -> None:
+    """A tube of radius 5 mm about a circle of 20 mm is met, high above the axis, as far along it as its own circle."""
+    ring = BRepPrimAPI_MakeTorus(gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(1, 0, 0)), 20, 5).Face()
+    x, y = np.concatenate(lying_ring_cuts(BRepAdaptor_Surface(ring), high)).T
+    along = sqrt(25 - (high - 20) ** 2)
+    assert (x.min(), x.max()) == pytest.approx((-along, along), abs=1e-9)
+    assert y[[x.argmin(), x.argmax()]] == pytest.approx(0, abs=1e-4)
 
 
 def nut(across: float = 40.0, high: float = 18.0) -> object:
