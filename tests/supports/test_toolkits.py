@@ -12,7 +12,8 @@ from own_heights import STEM, stepped
 from workhold import Fence, FlatJaw, OpeningVise, Plate, Vise, Workpiece, design
 from workhold.files.supports_file import read_supports, write_supports
 from workhold.model.support_request import SpatialLoad, SupportRequest
-from workhold.supports.faces import TouchableFace
+from workhold.supports.clamp_point import ClampPlaces
+from workhold.supports.faces import LevelRegions, TouchableFace
 from workhold.supports.listing import supports_of
 from workhold.verification.support_listing import room_on
 from workhold.verification.supports import verify_supports_file
@@ -70,6 +71,17 @@ def test_points_on_the_diameter_of_a_hole_lie_in_it() -> None:
     face = TouchableFace.of([square, hole])
     points = np.array([[9.0, 10.0], [10.0, 10.0], [3.0, 10.0]])
     assert face.room(points).tolist() == [-3.0, -4.0, 3.0]
+
+
+def test_a_clamp_stands_as_near_to_what_rises_as_its_head_lets_it() -> None:
+    """On the lower 60 mm of a stepped plate of 90 x 60 mm, with a tip of 5 mm and a head of 7, around a boss of 3."""
+    plate = np.array([[0, 0, 0], [90, 0, 0], [90, 60, 0], [0, 60, 0]], dtype=float)
+    step = np.array([[0, 0, 0], [30, 0, 0], [30, 60, 0], [0, 60, 0]], dtype=float)
+    boss = np.array([[58, 30, 1], [64, 30, 1]], dtype=float)
+    rising = LevelRegions.of([step, boss], [20.0, 20.0])
+    places = ClampPlaces(TouchableFace.of([plate], heights=[20.0]), 5.0, None, kept_off=((rising, 7.0),))
+    assert sorted(places.corners.tolist()) == [[37, 5], [37, 55], [85, 5], [85, 55]]
+    assert places.bent.curves.tolist() == [[61, 30, 10]]
 
 
 def test_loops_side_by_side_are_faces_of_their_own() -> None:
