@@ -97,6 +97,19 @@ def test_touching_holes_are_refused_by_entity(tmp_path: Path) -> None:
         read_dxf(tmp_path, draw)
 
 
+def test_an_outline_that_hangs_at_a_corner_of_another_is_a_part_beside_it(tmp_path: Path) -> None:
+    """All its lines border both, so it is no hole of the other: half of 30 x 30 - 10 x 20 mm² can be chosen."""
+
+    def draw(space: Any) -> None:
+        for corners in ([(0, 0), (80, 0), (80, 50), (0, 50)], [(80, 50), (50, 40), (60, 20)]):
+            for start, end in zip(corners, corners[1:] + corners[:1], strict=True):
+                space.add_line(start, end)
+
+    chosen = read_dxf(tmp_path, draw, part_number=2)
+    assert [len(part.loops) for part in chosen.parts] == [1, 1]
+    assert area(chosen.workpiece) == pytest.approx(350)
+
+
 def test_trouble_in_other_parts_does_not_matter(tmp_path: Path) -> None:
     """Only the chosen part's loops are checked."""
 
