@@ -227,7 +227,7 @@ def as_many_as_asked(
     A remark says so before the search. Refuses all of very many without a file that can carry them.
     """
     from workhold.limits import thread_count
-    from workhold.model.search_report import round_to_two_digits
+    from workhold.model.notes import round_to_two_digits
     from workhold.search.estimate import LISTED, MANY, best_where_many
 
     asked, count = best_where_many(query, thread_count(threads), cancel)
@@ -288,7 +288,7 @@ def report(
     from workhold.listing.identity import entries
 
     for note in result.notes:
-        print_remark(note)
+        print_remark(note.words)
     shown = entries(result, unfit)
     if len(result) and listed > 0:
         print_tables(result_table(result, shown, listed, unit), stream=stream)

@@ -207,7 +207,7 @@ def design_data(result: Result, order: WorkbenchOrder, folder: Path, cancel: Eve
     first = zip(shown.index[:MOST_DRAWN].tolist(), shown.like[:MOST_DRAWN].tolist(), strict=True)
     data: dict[str, Any] = {
         "complete": bool(result.complete),
-        "notes": list(result.notes),
+        "notes": list(map(str, result.notes)),
         "first": [{"rank": index + 1, "like": like} for index, like in first],
         "lower": None,
     }

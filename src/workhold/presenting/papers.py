@@ -112,7 +112,7 @@ def result_picture(
 ) -> Picture:
     """Draws thumbnails of the best fixtures, see :meth:`workhold.Result.draw`."""
     if not len(result):
-        raise InputError(" ".join(("there is no fixture to draw.", *result.reasons)))
+        raise InputError(" ".join(("there is no fixture to draw.", *map(str, result.reasons))))
     return saved(best_at_a_glance(result, entries(result), unit_named(unit)), path, overwrite)
 
 

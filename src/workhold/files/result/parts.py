@@ -32,6 +32,7 @@ from workhold.archive import Column, Columns
 from workhold.errors import InputError
 from workhold.files.budget import LIMITS
 from workhold.files.result.forms import MISSING, Head, ProofPart, first_fault
+from workhold.files.result.notes import read_notes
 from workhold.files.text import json_value, read_limited
 from workhold.fixels.fields import CLAMPS
 from workhold.fixels.toolkit import Toolkit
@@ -209,13 +210,17 @@ def result_with(table: FixtureTable, head: Head, query: Query, path: Path) -> Re
         if head.counts[name] != listed:
             said = head.counts[name]
             raise InputError(f"{path}: counts say {said} fixtures of type {name}, but {listed} are listed.")
+    try:
+        notes = read_notes(head, query)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error
     return Result(
         query,
         table,
         found=head.found or head.counts,
         distinct=head.distinct or head.counts,
         complete=head.complete,
-        notes=tuple(head.notes),
+        notes=notes,
         statistics=head.statistics,
         proof=None if head.proof is None else checked_proof(head.proof, query, path),
         pairs=head.pairs,
