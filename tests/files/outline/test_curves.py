@@ -309,7 +309,7 @@ def test_the_departure_stays_with_the_part(tmp_path: Path) -> None:
     assert result.notes[-1] == again.notes[-1] == note and note not in added.notes
     assert f"up to {part.departure:.2g} mm off the drawn one" in str(note)
     assert workhold.verify(tmp_path / "result.json").holds
-    silent = written | notes_entry(one for one in result.notes if one != note)
+    silent = written | notes_entry([one for one in result.notes if one != note])
     (tmp_path / "result.json").write_text(json.dumps(silent))
     assert workhold.verify(tmp_path / "result.json").faults == (f'the note is missing that says "{note}"',)
 

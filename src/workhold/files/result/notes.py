@@ -7,7 +7,7 @@ recognised: it is compared with those of every note that its numbers and its que
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from functools import cache
 from typing import Any, get_origin, get_type_hints
 
@@ -41,7 +41,7 @@ from workhold.model.query import Query
 __all__ = ["note_faults", "notes_entry", "read_notes"]
 
 
-def notes_entry(notes: Iterable[Note]) -> dict[str, Any]:
+def notes_entry(notes: Sequence[Note]) -> dict[str, Any]:
     """Notes as they are written: their sentences, and their data in the same order."""
     return {"notes": [note.words for note in notes], "note_data": [note.data for note in notes]}
 
