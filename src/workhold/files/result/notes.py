@@ -102,7 +102,7 @@ def form_of(name: str) -> type[BaseModel]:
     hints = get_type_hints(kind)
     # JSON has lists for tuples.
     keys: dict[str, Any] = {
-        one.name: (hints[one.name], Field(strict=get_origin(hints[one.name]) is not tuple))
+        one.name: (hints[one.name], Field(strict=False) if get_origin(hints[one.name]) is tuple else ...)
         for one in fields(kind)
         if one.eq
     }
