@@ -15,7 +15,7 @@ from workhold.model.notes import (
     STAGES,
     BestOnly,
     Cut,
-    Fitted,
+    FittedOutline,
     LeftUndecided,
     Many,
     NoFixture,
@@ -66,7 +66,7 @@ def test_each_stage_has_a_sentence(wording: object) -> None:
 
 def test_numbers_are_put_as_they_are_read() -> None:
     assert str(LeftUndecided(1)).startswith("1 candidate is ") and str(LeftUndecided(2)).startswith("2 cand")
-    assert "0.0012 mm" in str(Fitted(0.001_234)) and "4,200,000 fixtures" in str(Many(4_240_000, 30))
+    assert "0.0012 mm" in str(FittedOutline(0.001_234)) and "4,200,000 fixtures" in str(Many(4_240_000, 30))
     assert len({str(NoPair(*numbers)) for numbers in ((0, 0), (0, 5), (3, 5))}) == 3
 
 

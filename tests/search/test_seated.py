@@ -20,7 +20,7 @@ from seating_examples import solved
 from workhold import InputError, OpeningVise, Plate, Query, Result, Vise, Workpiece
 from workhold.files.result.fixture_forms import seating_figures_of
 from workhold.kernels.seating.columns import PEG, PLACE_X, SEPARATION, THETA
-from workhold.model.notes import ByHand
+from workhold.model.notes import PushedByHand
 from workhold.model.quality import FIGURE_RANKING, SEATING_FIGURES
 from workhold.model.seating import CLOSE_READING, SMALL_CAPTURE
 from workhold.seating import solver as solver_module
@@ -264,7 +264,7 @@ def test_with_two_clamps_fixtures_stay_in_order_and_a_note_says_that_the_part_is
     plain, asked = workhold.design(part, plate, best=3), Query(part, plate, best=3, seating=2)
     made = workhold.answer(asked, progress=lambda done, _: heard.append(done))
     assert made.table == plain.table and made.query == asked and made.complete and heard[-1] == 1.0
-    assert made.notes == (*plain.notes, ByHand()) and made.seating == () and made[0].seating is None
+    assert made.notes == (*plain.notes, PushedByHand()) and made.seating == () and made[0].seating is None
     for name in ("a.npz",):
         streamed = workhold.answer_to_file(asked, tmp_path / name)
         read = workhold.open(tmp_path / name)
@@ -279,7 +279,7 @@ def test_with_two_clamps_fixtures_stay_in_order_and_a_note_says_that_the_part_is
     none = workhold.answer(
         Query(Workpiece.from_loops("tiny", [[[0, 0, 0], [2, 0, 0], [1, 2, 0]]]), plate, seating=2)
     )
-    assert not len(none) and ByHand() not in none.notes
+    assert not len(none) and PushedByHand() not in none.notes
 
 
 def test_of_two_clamps_no_seating_may_be_told_and_the_note_must(tmp_path: Path) -> None:

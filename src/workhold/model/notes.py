@@ -20,9 +20,9 @@ __all__ = [
     "STAGES",
     "AskedFor",
     "BestOnly",
-    "ByHand",
+    "PushedByHand",
     "Cut",
-    "Fitted",
+    "FittedOutline",
     "KeptBest",
     "LeftUndecided",
     "Many",
@@ -319,10 +319,10 @@ class MoreSystems(Note):
 
 
 @frozen
-class Fitted(Note):
+class FittedOutline(Note):
     """That the outline departs from the drawn one, by up to ``departure`` mm."""
 
-    kind = "fitted"
+    kind = "fitted_outline"
     sentence = (
         "All that is claimed, completeness too, holds for the outline of lines and arcs, which is up to "
         "{departure:.2g} mm off the drawn one."
@@ -345,10 +345,10 @@ class Seated(Note):
 
 
 @frozen
-class ByHand(Note):
+class PushedByHand(Note):
     """That seating asked for with two clamps is no figure to order fixtures by."""
 
-    kind = "by_hand"
+    kind = "pushed_by_hand"
     sentence = (
         "With two clamps the part is pushed against its locators by hand, so fixtures are in the same order as "
         "without seating. How to put the part in is stated for each fixture."
@@ -369,9 +369,9 @@ KINDS: Mapping[str, type[Note]] = {
     for one in (
         AskedFor,
         BestOnly,
-        ByHand,
+        PushedByHand,
         Cut,
-        Fitted,
+        FittedOutline,
         KeptBest,
         LeftUndecided,
         Many,

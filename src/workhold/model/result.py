@@ -13,7 +13,7 @@ from workhold.errors import refuse_kind
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture, Listed
 from workhold.model.fixture_table import BLOCK, FixtureTable, fixture_at, fixtures_of
-from workhold.model.notes import AskedFor, Cut, Fitted, Note, as_notes
+from workhold.model.notes import AskedFor, Cut, FittedOutline, Note, as_notes
 from workhold.model.query import Query
 from workhold.model.search_report import Proof
 from workhold.model.seating import Seating
@@ -72,13 +72,13 @@ class Result:
         if asked and self.complete and notes and not any(self.found.values()):
             notes = (*(note for note in notes if not isinstance(note, AskedFor)), AskedFor(asked))
         if self.workpiece.departure > 0:
-            notes = (*notes, Fitted(self.workpiece.departure))
+            notes = (*notes, FittedOutline(self.workpiece.departure))
         object.__setattr__(self, "notes", notes)
 
     @property
     def reasons(self) -> tuple[Note, ...]:
         """The notes but the one that there is of every part whose outline departs from the drawn one."""
-        return tuple(note for note in self.notes if not isinstance(note, Fitted))
+        return tuple(note for note in self.notes if not isinstance(note, FittedOutline))
 
     @property
     def workpiece(self) -> Workpiece:

@@ -23,7 +23,7 @@ from workhold.errors import InputError
 from workhold.listing.ranking import billionths, keys_of, usual_errors
 from workhold.listing.results import stage
 from workhold.model.fixture_table import FixtureTable
-from workhold.model.notes import BestOnly, ByHand, Cut, Note, Seated
+from workhold.model.notes import BestOnly, Cut, Note, PushedByHand, Seated
 from workhold.model.quality import FIGURES, SEATING_FIGURES, WARNINGS, whole_rows
 from workhold.model.query import SEATING_KEYS, Query
 from workhold.model.result import Result
@@ -143,7 +143,7 @@ def refuse_unasked(query: Query) -> None:
 
 def put_in_by_hand(result: Result, query: Query) -> Result:
     """The result of a query with seating for two clamps: the same fixtures, and how the part is put in."""
-    notes = (*result.reasons, ByHand()) if sum(result.found.values()) else result.reasons
+    notes = (*result.reasons, PushedByHand()) if sum(result.found.values()) else result.reasons
     return evolve(result, query=query, notes=notes)
 
 

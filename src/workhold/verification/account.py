@@ -42,9 +42,8 @@ from workhold.model.notes import (
     STAGES,
     AskedFor,
     BestOnly,
-    ByHand,
     Cut,
-    Fitted,
+    FittedOutline,
     KeptBest,
     LeftUndecided,
     MoreSystems,
@@ -52,6 +51,7 @@ from workhold.model.notes import (
     NoPair,
     NoPlace,
     Note,
+    PushedByHand,
     Seated,
     Stopped,
     UndecidedSystem,
@@ -223,7 +223,7 @@ def notes_implied(listing: Listing) -> Iterator[Wanted]:
     """The notes that there must be."""
     query, proof, found = listing.query, listing.proof, sum(listing.found.values())
     if query.workpiece.departure > 0:
-        yield alone(Fitted(query.workpiece.departure))
+        yield alone(FittedOutline(query.workpiece.departure))
     undecided = 0 if proof is None else len(proof.undecided)
     if undecided:
         yield alone(LeftUndecided(undecided))
@@ -231,7 +231,7 @@ def notes_implied(listing: Listing) -> Iterator[Wanted]:
         most, listed = min(query.seating or 0, found), len(listing.fixtures)
         yield Seated(most, listed), lambda note: isinstance(note, Seated) and is_as_seated(note, listing)
     if found and query.seating is not None and not query.toolkit.closes_at_once:
-        yield alone(ByHand())
+        yield alone(PushedByHand())
     systems = listing.statistics.get("undecided", 0)
     for _ in range(min(systems, MOST_NAMED)):
         yield MoreSystems(systems), lambda note: isinstance(note, UndecidedSystem)

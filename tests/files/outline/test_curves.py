@@ -26,7 +26,7 @@ from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece
 from workhold.files.result.notes import notes_entry
 from workhold.geometry.segment import Arc
-from workhold.model.notes import Fitted
+from workhold.model.notes import FittedOutline
 
 MM = 'width="200mm" height="200mm" viewBox="0 0 200 200"'
 HANDLE = 4 / 3 * tan(pi / 8)
@@ -305,7 +305,7 @@ def test_the_departure_stays_with_the_part(tmp_path: Path) -> None:
         "departure": part.departure,
     }
     assert read_workpiece(tmp_path / "result.json").workpiece == part
-    note = Fitted(part.departure)
+    note = FittedOutline(part.departure)
     assert result.notes[-1] == again.notes[-1] == note and note not in added.notes
     assert f"up to {part.departure:.2g} mm off the drawn one" in str(note)
     assert workhold.verify(tmp_path / "result.json").holds
@@ -326,7 +326,7 @@ def test_why_there_is_no_fixture_is_said_of_a_fitted_outline_too() -> None:
             for departure in (0.0, 0.01)
         )
         assert len(plain) == 0 and len(plain.notes) == 1
-        assert fitted.notes == (*plain.notes, Fitted(0.01)) and fitted.reasons == plain.notes
+        assert fitted.notes == (*plain.notes, FittedOutline(0.01)) and fitted.reasons == plain.notes
 
 
 def test_a_circle_of_720_chords_is_a_circle(tmp_path: Path) -> None:

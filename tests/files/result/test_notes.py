@@ -16,9 +16,8 @@ from workhold.model.notes import (
     STAGES,
     AskedFor,
     BestOnly,
-    ByHand,
     Cut,
-    Fitted,
+    FittedOutline,
     KeptBest,
     LeftUndecided,
     MoreSystems,
@@ -26,6 +25,7 @@ from workhold.model.notes import (
     NoPair,
     NoPlace,
     Note,
+    PushedByHand,
     Remark,
     Seated,
     Stopped,
@@ -62,7 +62,7 @@ def told(result: Result, tmp_path: Path) -> Told:
 def test_both_forms_carry_the_data(result: Result, ending: str, tmp_path: Path) -> None:
     workhold.save(result, tmp_path / f"r.{ending}")
     again = workhold.open(tmp_path / f"r.{ending}")
-    assert again.notes == result.notes == (BestOnly(2), Fitted(WEDGE.departure))
+    assert again.notes == result.notes == (BestOnly(2), FittedOutline(WEDGE.departure))
     assert verify(tmp_path / f"r.{ending}").faults == ()
 
 
@@ -72,7 +72,7 @@ def test_the_data_stand_beside_the_sentences(result: Result, tmp_path: Path) -> 
     assert written["notes"] == [str(note) for note in result.notes]
     assert written["note_data"] == [
         {"kind": "best_only", "best": 2},
-        {"kind": "fitted", "departure": WEDGE.departure},
+        {"kind": "fitted_outline", "departure": WEDGE.departure},
     ]
 
 
@@ -131,9 +131,9 @@ ASKED = QUERY.asked_of_places
 EVERY: tuple[Note, ...] = (
     AskedFor(QUERY.restricted_by),
     BestOnly(20),
-    ByHand(),
+    PushedByHand(),
     Cut(1_234_567, 1_000),
-    Fitted(WEDGE.departure),
+    FittedOutline(WEDGE.departure),
     KeptBest(1_000, 7),
     LeftUndecided(1),
     LeftUndecided(12),

@@ -21,9 +21,8 @@ from workhold.model.notes import (
     STAGES,
     AskedFor,
     BestOnly,
-    ByHand,
     Cut,
-    Fitted,
+    FittedOutline,
     KeptBest,
     LeftUndecided,
     MoreSystems,
@@ -31,6 +30,7 @@ from workhold.model.notes import (
     NoPair,
     NoPlace,
     Note,
+    PushedByHand,
     Remark,
     Seated,
     Stopped,
@@ -125,8 +125,8 @@ def thinkable_notes(numbers: Sequence[float], query: Query, verified: int) -> It
     """The notes that some numbers, in their order, and a query may make."""
     wording, asked = query.toolkit.wording, query.asked_of_places
     whole = [int(number) for number in numbers]
-    yield ByHand()
-    yield Fitted(query.workpiece.departure)
+    yield PushedByHand()
+    yield FittedOutline(query.workpiece.departure)
     if query.restricted_by:
         yield AskedFor(query.restricted_by)
     for stage in STAGES:

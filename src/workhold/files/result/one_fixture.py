@@ -110,13 +110,17 @@ class TableOfFile(FixtureTable):
 
     Parameters
     ----------
-    rows : those read.
+    read : those read.
     found : where they stand in the file.
     path : of the file.
     """
 
-    def __init__(self, rows: FixtureTable, found: Picked, path: Path) -> None:
-        vars(self).update(read=rows, found=found, path=path)
+    read: FixtureTable
+    found: Picked
+    path: Path
+
+    def __init__(self, read: FixtureTable, found: Picked, path: Path) -> None:
+        vars(self).update(read=read, found=found, path=path)
 
     def __len__(self) -> int:
         return self.found.count
