@@ -37,9 +37,9 @@ from workhold.model.result import Result
 
 __all__ = ["read_one"]
 
-SEATED = b'"seating":'
+SEATED = b'"seating"'
 # What says in the line of a fixture of which type it is and where its pegs stand.
-STANDING = re.compile(rb'"(type|directions?|jaw|role|hole|column|row)":\s*("[^"]*"|-?\d+|null|\[[^\]]*\])')
+STANDING = re.compile(rb'"(type|directions?|jaw|role|hole|column|row)"\s*:\s*("[^"]*"|-?\d+|null|\[[^\]]*\])')
 
 
 @frozen
@@ -67,16 +67,18 @@ def read_one(path: str | Path, rank: int) -> Result:
         When the file cannot be read, is no result file, lists fewer, or contradicts itself.
     """
     path = Path(path)
-    with plain_reading(path):
-        try:
+    try:
+        if not path.is_file():
+            raise OtherLayoutError
+        with plain_reading(path):
             if is_archive(path):
                 raise OtherLayoutError
             data, found = read_lines(path, partial(picked, rank=rank))
             columns = collected(map(parsed, found.texts), path, found.first)
-        except OtherLayoutError:
-            result = read_result(path)
-            refuse_missing(path, rank, len(result))
-            return result
+    except OtherLayoutError:
+        result = read_result(path)
+        refuse_missing(path, rank, len(result))
+        return result
     head = checked_head(data, path)
     query, said = checked_query(head, path), sum(head.counts.values())
     if said != found.count:
