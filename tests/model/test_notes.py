@@ -44,6 +44,11 @@ def test_texts_become_remarks() -> None:
     assert pickle.loads(pickle.dumps(result)).notes == result.notes
 
 
+def test_who_cuts_again_says_so_once() -> None:
+    result = fake_result(5, notes=(BestOnly(9),))
+    assert result.cut_short(4).cut_short(2).notes == (Cut(5, 2), BestOnly(9))
+
+
 def test_what_things_are_called_makes_no_difference() -> None:
     assert NoFixture("hold", WORDING) == NoFixture("hold", OWN) != NoFixture("set", WORDING)
     assert str(NoFixture("hold", WORDING)) != str(NoFixture("hold", OWN))

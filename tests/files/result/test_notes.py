@@ -88,7 +88,7 @@ def test_a_sentence_that_its_data_do_not_say_is_a_fault(result: Result, told: To
     sentences, data = [str(note) for note in result.notes], [note.data for note in result.notes]
     (fault,) = told(notes=["Only the best 3.", sentences[1]])
     assert fault.startswith('the note "Only the best 3." is not what its data say, "Only the best 2 were')
-    faults = told(note_data=[{"kind": "best_only", "best": 3}, data[1]])
+    faults = told(note_data=[{"kind": "best_only", "best": 1}, data[1]])
     assert len(faults) == 2 and "is not what its data say" in faults[0] and "does not follow" in faults[1]
 
 
