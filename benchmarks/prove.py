@@ -30,6 +30,7 @@ from workhold import Query, Result, Vise, Workpiece  # noqa: E402
 from workhold.algebra import answer_by_algebra  # noqa: E402
 from workhold.algebra.table_two import table_two  # noqa: E402
 from workhold.files.part.finding import builtin_parts  # noqa: E402
+from workhold.model.notes import MoreSystems, UndecidedSystem  # noqa: E402
 
 RANDOM_PARTS = 200
 # Differing fixtures shown of each case.
@@ -111,7 +112,9 @@ def compare(case: Case) -> Outcome:
     )
     line += "".join(described("only chord curves", fixture) for fixture in only_ours[:MOST_SHOWN])
     line += "".join(described("only algebra", fixture) for fixture in only_theirs[:MOST_SHOWN])
-    line += "".join(f"    {note}\n" for note in algebra.notes if note.startswith("Undecided"))
+    line += "".join(
+        f"    {note}\n" for note in algebra.notes if isinstance(note, UndecidedSystem | MoreSystems)
+    )
     return Outcome(line, differences, sum(doubts), seconds)
 
 

@@ -16,8 +16,10 @@ import pytest
 from workhold import Query, Result, Vise, Workpiece, answer, load, verify
 from workhold.algebra import answer_by_algebra
 from workhold.completeness import other_entries
+from workhold.files.result.notes import notes_entry
 from workhold.files.result.writer import write_result
-from workhold.model.search_report import Proof, Undecided, kept_note, stopped_note
+from workhold.model.notes import KeptBest, Stopped
+from workhold.model.search_report import Proof, Undecided
 from workhold.search.seated import seated_answer
 from workhold.verification import Verification
 
@@ -47,7 +49,7 @@ def cut_short(whole: Result, kept: int) -> Result:
     found = np.arange(1, len(whole), 3)
     numbers = [int((whole.table.arrangement[found] == kind).sum()) for kind in range(len(whole.found))]
     told = dict(zip(whole.found, numbers, strict=True))
-    notes = [stopped_note(1.5), *([kept_note(len(found), kept)] if kept < len(found) else [])]
+    notes = [Stopped(1.5), *([KeptBest(len(found), kept)] if kept < len(found) else [])]
     table = whole.table.take(found[:kept])
     return attrs.evolve(whole, table=table, complete=False, found=told, distinct=told, notes=tuple(notes))
 
@@ -80,7 +82,7 @@ def test_what_a_server_cut_short_is_a_part_of_the_whole(whole: Result, tmp_path:
 @pytest.mark.thorough
 def test_the_best_that_a_server_kept_are_the_best_of_all(whole: Result, tmp_path: Path) -> None:
     """Of a search that came to its end, another fixture than the best is one too many."""
-    kept = attrs.evolve(whole, table=whole.table.take(np.arange(40)), notes=(kept_note(505, 40),))
+    kept = attrs.evolve(whole, table=whole.table.take(np.arange(40)), notes=(KeptBest(505, 40),))
     assert compared(kept, tmp_path).holds
     others = attrs.evolve(kept, table=whole.table.take(np.arange(1, 41)))
     assert any(
@@ -107,7 +109,7 @@ def test_more_found_than_there_are_is_no_part(whole: Result, tmp_path: Path) -> 
     def more(data: dict[str, Any]) -> None:
         data["found"]["I"] = data["distinct"]["I"] = every + 1
         data["proof"].update(candidates=9_999, verified=9_999, discarded_by_bound=0)
-        data["notes"] = [stopped_note(1.5), kept_note(every + 1 + data["found"]["II"], 40)]
+        data |= notes_entry([Stopped(1.5), KeptBest(every + 1 + data["found"]["II"], 40)])
 
     outcome = compared(cut_short(whole, 40), tmp_path, more)
     assert outcome.faults == (f"found says {every + 1} for I, and there are {every} in all",)

@@ -14,8 +14,9 @@ from typing import Any
 from attrs import astuple, evolve, fields
 
 from workhold.model.fixture import Fixture
+from workhold.model.notes import KeptBest
 from workhold.model.result import Result
-from workhold.model.search_report import Proof, Undecided, kept_note
+from workhold.model.search_report import Proof, Undecided
 from workhold.verification.account import is_by_algebra
 from workhold.verification.listing import Listing, listing_of, read_listing
 from workhold.verification.repeats import KnownFixtures
@@ -114,7 +115,7 @@ def differences(listing: Listing, result: Result) -> Iterator[str]:
         seen.add(index, fixture)
     listed, found = len(listing.fixtures), sum(listing.found.values())
     # A server may have kept a part: the best of what had been found.
-    best_kept = listing.complete and kept_note(found, listed) in listing.notes
+    best_kept = listing.complete and KeptBest(found, listed) in listing.notes
     expected = result[:listed] if best_kept else result
     matches = [(fixture, seen.find(fixture)) for fixture in expected]
     surplus = sorted(set(range(listed)) - {match for _, match in matches})

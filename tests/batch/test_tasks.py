@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+from hashlib import sha256
 from importlib.resources import files
 from pathlib import Path
 
@@ -11,13 +12,14 @@ from attrs import evolve
 from batch_helpers import COARSE, FINE, Failing, Unprepared
 
 import workhold
-from workhold import Query, answer, load
+from workhold import Query, answer, conventions, load
 from workhold.batch import tasks
 from workhold.batch.store import FolderStore, checksum, is_whole, plain_record, workpiece_of
 from workhold.batch.tables import BEST
 from workhold.batch.tasks import Answering, Reading, done, name_of, program
 from workhold.errors import InputError
 from workhold.files.result.writer import result_text
+from workhold.version import ANSWERS
 
 FLANGE = Path(str(files("workhold"))) / "data" / "parts" / "flange.json"
 
@@ -131,11 +133,8 @@ def test_names_tell_apart_all_that_has_a_say(monkeypatch: pytest.MonkeyPatch) ->
     assert name_of(b"a") != before
 
 
-def test_the_program_is_all_that_has_a_say(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for place in ("search/a.py", "cli/b.py"):
-        (tmp_path / place).parent.mkdir()
-        (tmp_path / place).write_text("1")
-    monkeypatch.setattr(tasks, "PACKAGE", tmp_path)
+def test_names_outlive_what_decides_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A docstring of the sources decides nothing; a number of the conventions, or a raised one of answers, does."""
 
     def now() -> str:
         program.cache_clear()
@@ -143,13 +142,22 @@ def test_the_program_is_all_that_has_a_say(tmp_path: Path, monkeypatch: pytest.M
 
     try:
         first = now()
-        (tmp_path / "cli/b.py").write_text("2")
+        monkeypatch.setattr(conventions, "__doc__", "In other words.")
+        monkeypatch.setattr(conventions, "GAP_SLACK", conventions.GAP_SLACK)
         assert now() == first
-        (tmp_path / "search/a.py").write_text("2")
-        assert now() != first
+        monkeypatch.setattr(conventions, "GAP_SLACK", 2 * conventions.GAP_SLACK)
+        other = now()
+        monkeypatch.setattr(tasks, "ANSWERS", ANSWERS + 1)
+        assert len({first, other, now()}) == 3
     finally:
         monkeypatch.undo()
         program.cache_clear()
+
+
+def test_other_records_have_another_number(part: bytes) -> None:
+    """Where this fails because answers or files have changed, raise ``version.ANSWERS`` and write the new pair here."""
+    records = [part, *(done(Answering("name", "title", part, one.query, 3)).record for one in (COARSE, FINE))]
+    assert (ANSWERS, sha256(b"".join(records)).hexdigest()[:16]) == (1, "0cd87a47255268de")
 
 
 def test_a_record_cut_short_anywhere_is_none(part: bytes, tmp_path: Path) -> None:

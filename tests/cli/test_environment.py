@@ -18,6 +18,7 @@ import workhold
 from fakes import fake_result
 from workhold import Workpiece, save
 from workhold.cli.main import exit_code
+from workhold.model.notes import Remark
 
 pytestmark = pytest.mark.thorough
 
@@ -175,4 +176,4 @@ def test_a_result_on_the_terminal_does_not_steer_it_and_keeps_its_names(run: Any
     assert done.stdout.isascii() and done.stdout.replace("\n", "").isprintable()
     (tmp_path / "again.json").write_text(done.stdout)
     again = workhold.open(tmp_path / "again.json")
-    assert (again.workpiece.name, again.notes) == (name, (name,))
+    assert (again.workpiece.name, again.notes) == (name, (Remark(name),))

@@ -17,6 +17,7 @@ from cad_parts import cad_part
 from toolkit_results import NOTCHED, part
 from workhold import Load, Plate, Query, Restrictions, Result, Tolerance, answer, verify
 from workhold.conventions import SAME_PLACE, SAME_POSE
+from workhold.files.result.notes import notes_entry
 from workhold.geometry.symmetry import rotated
 from workhold.kernels.chord.intervals import share_one_line
 from workhold.kernels.contact import record
@@ -24,8 +25,8 @@ from workhold.kernels.contact.seats import ASIDE
 from workhold.listing import seat_order
 from workhold.listing.contact_groups import PackedContacts, SeatGroups
 from workhold.listing.ranking import is_worse, order_keys
+from workhold.model.notes import BestOnly
 from workhold.model.quality import FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION
-from workhold.model.search_report import best_note
 from workhold.search import design, lattice_shares, shares
 from workhold.verification import verify_file
 
@@ -75,7 +76,7 @@ def assert_first(few: Result, whole: Result) -> None:
     """
     assert few.table == whole.table.take(slice(0, few.query.best))
     if few.pairs is None:
-        assert few.seats is None and few.notes[0] == best_note(few.query.best or 0)
+        assert few.seats is None and few.notes[0] == BestOnly(few.query.best or 0)
         assert few.found == few.counts and len(few) == few.query.best
     else:
         assert (few.pairs, few.seats, few.found) == (whole.pairs, whole.seats, whole.found)
@@ -119,7 +120,7 @@ def test_what_is_left_out_does_not_depend_on_threads_and_verifies(listing: str, 
     for outcome in (verify(again), verify_file(tmp_path / "r.json")):
         assert (outcome.proven, outcome.faults) == (6, ())
     fields = json.loads(texts[0])
-    (tmp_path / "without.json").write_text(json.dumps({**fields, "notes": fields["notes"][1:]}))
+    (tmp_path / "without.json").write_text(json.dumps({**fields, **notes_entry(result.notes[1:])}))
     assert any("how many pairs" in fault for fault in verify_file(tmp_path / "without.json").faults)
 
 

@@ -181,7 +181,7 @@ def test_figures_of_a_plate_speak_of_its_clamp() -> None:
 def test_no_fixture_says_why() -> None:
     """The result has its reasons, and on asking the rules, the nearest miss and what helps."""
     shown = Page(NONE._repr_html_())
-    assert "No fixture of plate in a vise" in shown.words and NONE.notes[0] in shown.words
+    assert "No fixture of plate in a vise" in shown.words and str(NONE.notes[0]) in shown.words
     why = NONE.why_none()
     page = Page(why._repr_html_())
     assert "The last contacts were removed by: closure." in page.words

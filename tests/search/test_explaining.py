@@ -26,7 +26,8 @@ from workhold import (
     design,
     load,
 )
-from workhold.model.search_report import Explanation, asked_note, no_fixture_notes
+from workhold.model.notes import AskedFor, NoFixture, Note
+from workhold.model.search_report import Explanation
 from workhold.search import explaining
 from workhold.search.explaining import explain
 from workhold.units import MILLIMETRE
@@ -243,7 +244,7 @@ def test_what_takes_the_last_fixture_together_is_left_out_together(
     assert item.fixtures == len(design(PLAIN_PLATE, WIDE, **rest)) > 0
 
 
-def reasons(workpiece: Workpiece, toolkit: Any, margin: float = 0.0, **asked: Any) -> tuple[str, ...]:
+def reasons(workpiece: Workpiece, toolkit: Any, margin: float = 0.0, **asked: Any) -> tuple[Note, ...]:
     """Why a search finds nothing, which a verification takes as what follows."""
     result = answer(Query(workpiece, toolkit, None, margin, Restrictions(**asked)))
     assert verify(result).faults == ()
@@ -253,9 +254,9 @@ def reasons(workpiece: Workpiece, toolkit: Any, margin: float = 0.0, **asked: An
 
 def test_a_search_names_what_was_asked_for_after_its_reason() -> None:
     """And nothing where nothing was; the reason itself is the same."""
-    loose = no_fixture_notes(WIDE.wording)[3]
-    assert reasons(PLAIN_PLATE, WIDE, avoid=(2,)) == (loose, asked_note(["faces to avoid"]))
-    assert asked_note(["angles of the part", "contact margin"]) in reasons(
+    loose = NoFixture("hold", WIDE.wording)
+    assert reasons(PLAIN_PLATE, WIDE, avoid=(2,)) == (loose, AskedFor(("faces to avoid",)))
+    assert AskedFor(("angles of the part", "contact margin")) in reasons(
         PLAIN_PLATE, WIDE, 15.0, angles=TURNED
     )
     assert len(reasons(PLAIN_PLATE, evolve(WIDE, min_gap=200.0))) == 1
@@ -268,17 +269,17 @@ def test_a_part_is_called_round_only_if_it_is() -> None:
         Workpiece.from_loops("disc", [[[-20, 0, 1], [20, 0, 1]]]),
         Vise(pitch=8, columns=2, peg_radius=2),
     )
-    concentric = no_fixture_notes(small.wording)[0]
+    concentric = NoFixture("shape", small.wording)
     (said, _) = reasons(bored, small, avoid=(0, 1, 2, 3))
-    assert said != concentric and "faces to avoid" in said and "one centre" in said
+    assert said != concentric and "faces to avoid" in str(said) and "one centre" in str(said)
     assert reasons(disc, small, zones=(circle_zone(20.0, 0.0, 3.0),))[0] == concentric
 
 
 def test_the_pitch_is_to_blame_only_if_it_is() -> None:
     """Two pegs of one jaw reach the part in more rows than the one asked for; on a wide pitch they do not anyway."""
-    too_far = no_fixture_notes(WIDE.wording)[1]
+    too_far = NoFixture("pair", WIDE.wording)
     (said,) = reasons(PLAIN_PLATE, evolve(WIDE, rows=1))
-    assert said != too_far and "rows of holes" in said and "pitch" not in said
+    assert said != too_far and "rows of holes" in str(said) and "pitch" not in str(said)
     assert reasons(PLAIN_PLATE, evolve(WIDE, pitch=500, rows=1))[0] == too_far
 
 
@@ -300,10 +301,10 @@ def test_a_round_part_is_blamed_for_being_round() -> None:
     """Contacts of it are not counted, as nothing keeps it from turning; where holes are too far apart, these are."""
     disc = Workpiece.from_loops("disc", [[[-40, 0, 1], [40, 0, 1]]])
     why = explain(Query(disc, Plate(pitch=20, peg_radius=3)))
-    assert why.contacts == 0 and why.no_contacts == no_fixture_notes(Plate(pitch=20, peg_radius=3).wording)[0]
+    assert why.contacts == 0 and why.no_contacts == NoFixture("shape", WIDE.wording)
     far = explain(Query(load("widget"), Vise(pitch=300, columns=1, peg_radius=3)))
     assert (
         far.contacts == 0
-        and far.no_contacts == "No four pegs of the two jaws can touch the part at the same time."
+        and str(far.no_contacts) == "No four pegs of the two jaws can touch the part at the same time."
     )
-    assert explained(PLAIN, angles=((1.0, 1.001),)).no_contacts == ""
+    assert explained(PLAIN, angles=((1.0, 1.001),)).no_contacts is None

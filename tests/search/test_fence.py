@@ -143,7 +143,7 @@ def test_a_rectangle_has_none_and_is_told_why_and_an_l_lies_on_its_slant_alone()
     """Locator and clamp would have to cover three directions beside the wall's."""
     result = design(part([(0, 0, 0), (100, 0, 0), (100, 60, 0), (0, 60, 0)]), Fence(20, 3, wall_offset=10))
     assert result.counts == {"edge": 0} and result.complete
-    assert len(result.notes) == 1 and "three directions beside the fence's" in result.notes[0]
+    assert len(result.notes) == 1 and "three directions beside the fence's" in str(result.notes[0])
     angles = {round(fixture.pose.theta_deg, 6) for fixture in design(part(L), Fence(10, 3, wall_offset=5))}
     (slanted,) = angles
     assert slanted == pytest.approx(360 - np.degrees(np.arctan2(30, -40)))
@@ -156,12 +156,12 @@ def test_round_parts_and_fences_out_of_reach_are_told_why() -> None:
     assert (
         result.counts == {"edge": 0}
         and result.complete
-        and "no straight piece of its convex hull" in result.notes[0]
+        and "no straight piece of its convex hull" in str(result.notes[0])
     )
     bar = part([(0, 0, 0), (60, 0, 0), (57, 4, 0), (2, 5, 0)])
     upright = Restrictions(angles=((-5.0, 5.0),))
     result = design(bar, Fence(10, 1, wall_offset=8), restrictions=upright)
-    assert "No locator in a row of holes" in result.notes[0]
+    assert "No locator in a row of holes" in str(result.notes[0])
 
 
 @pytest.mark.parametrize("loop", [KITE, FEET], ids=["kite", "feet"])

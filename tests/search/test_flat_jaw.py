@@ -314,11 +314,11 @@ def test_a_rectangle_has_none_and_it_is_said_what_helps() -> None:
     """Two pegs leave a rectangle free to slide; a disc cannot lie flush."""
     result = workhold.design(rectangle(60, 40), FlatJaw(pitch=10, peg_radius=3))
     assert result.counts == {"flat": 0} and result.complete
-    assert "a fence with two clamps holds such a part" in result.notes[0]
+    assert "a fence with two clamps holds such a part" in str(result.notes[0])
     explained = explain(result.query)
     assert explained.contacts == 0 and explained.nearest is None
     disc = workhold.design(part([(0, 0, 1), (40, 0, 1)]), FlatJaw(pitch=10, peg_radius=3))
-    assert "cannot lie flush against the flat jaw" in disc.notes[0]
+    assert "cannot lie flush against the flat jaw" in str(disc.notes[0])
 
 
 def test_an_explanation_counts_what_each_rule_takes_away() -> None:
@@ -432,6 +432,6 @@ def test_it_is_said_where_only_the_vise_is_in_the_way() -> None:
     vise = FlatJaw(pitch=10, peg_radius=3, rows=1, max_opening=5)
     result = workhold.design(part(KITE), vise)
     assert result.counts == {"flat": 0} and result.complete
-    assert (
-        "pairs of pegs would hold the part, but none of them can stand in the jaw as asked" in result.notes[0]
+    assert "pairs of pegs would hold the part, but none of them can stand in the jaw as asked" in str(
+        result.notes[0]
     )

@@ -238,7 +238,7 @@ def test_why_a_jaw_holds_nothing_names_its_width() -> None:
         part(KITE), FlatJaw(pitch=40, peg_radius=2, columns=2, jaw_width=1.0), ranking="jaw-contact"
     )
     result = workhold.design(query.workpiece, query.toolkit)
-    assert len(result) == 0 and "with the columns, rows, opening and jaw width given" in result.notes[0]
+    assert len(result) == 0 and "with the columns, rows, opening and jaw width given" in str(result.notes[0])
     said = explain(query)
     (removal,) = [one for one in said.removals if one.rule == "width of the jaws"]
     assert removal.before > 0 and removal.after == 0

@@ -343,8 +343,7 @@ def test_why_there_is_none_is_told_in_the_words_of_a_plate() -> None:
     far = design(part([(0, 0, 0), (30, 0, 0), (30, 20, 0), (0, 20, 0)]), Plate(200, 3))
     ring = design(part([(-20, 0, 1), (20, 0, 1)]), Plate(20, 3))
     for words in (
-        *far.notes,
-        *ring.notes,
+        *map(str, (*far.notes, *ring.notes)),
         *(help.change for help in explanation.helps),
         explanation.nearest.words,
     ):

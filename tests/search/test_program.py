@@ -300,7 +300,7 @@ def test_a_program_that_leaves_faces_that_hold_nothing_is_the_reason(low: float)
     if low > THICKNESS:
         assert len(result)
     else:
-        reason = result.notes[0]
+        reason = str(result.notes[0])
         assert reason.startswith(
             "Every face that the program's tools leave, of which line 5 takes the most, is an arc"
         )
@@ -315,14 +315,13 @@ def test_a_reason_says_that_the_tools_take_places_away(toolkit: Toolkit) -> None
     around_most = [(x0 - 12, y0 - 2, 4.0), (x1 + 2, y0 - 2, 4.0), (x1 + 2, y1 + 2, 4.0)]
     none = answer(asked(part, toolkit, program_of(path(END_MILL, around_most), clearance=9.0)), threads=1)
     assert not len(none)
-    assert (
-        "clear of the program's tools, of which line " in none.notes[0]
-        and "is most in the way" in none.notes[0]
-    )
+    assert "clear of the program's tools, of which line " in str(
+        none.notes[0]
+    ) and "is most in the way" in str(none.notes[0])
     round_part = Workpiece.from_loops("disc", [[[10, 0, 1], [-10, 0, 1]]])
     above = program_of(path(END_MILL, [(0.0, -11.0, 4.0), (3.0, -11.0, 4.0)]))
     blamed = answer(asked(round_part, Vise(10.0, 1, 3.0), above), threads=1)
-    assert blamed.notes[0].startswith("Every face is an arc about one centre")
+    assert str(blamed.notes[0]).startswith("Every face is an arc about one centre")
 
 
 def test_heights_are_asked_for_where_nobody_knows_them() -> None:
@@ -344,7 +343,7 @@ def test_an_explanation_says_that_tools_hit_the_body_of_a_clamp() -> None:
     assert len(answer(Query(part, plate, program=far, peg_height=9.0, best=1), threads=1))
     query = Query(part, plate, program=near, peg_height=9.0)
     result = answer(query, threads=1)
-    assert not len(result) and "its body clear of the program's tools" in result.reasons[0]
+    assert not len(result) and "its body clear of the program's tools" in str(result.reasons[0])
     why = explain(query, threads=1)
     rules = {removal.rule: removal for removal in why.removals}
     (hit,) = [

@@ -20,8 +20,8 @@ from seating_examples import solved
 from workhold import InputError, OpeningVise, Plate, Query, Result, Vise, Workpiece
 from workhold.files.result.fixture_forms import seating_figures_of
 from workhold.kernels.seating.columns import PEG, PLACE_X, SEPARATION, THETA
+from workhold.model.notes import PushedByHand
 from workhold.model.quality import FIGURE_RANKING, SEATING_FIGURES
-from workhold.model.search_report import by_hand_note
 from workhold.model.seating import CLOSE_READING, SMALL_CAPTURE
 from workhold.seating import solver as solver_module
 from workhold.seating.contact_forces import is_equilibrium
@@ -187,7 +187,7 @@ def test_rules_leave_out_what_is_not_as_asked_and_say_so(seated: Result) -> None
         t.as_fields() for t in wanted
     ]
     assert len(kept) == len(wanted) and sum(kept.found.values()) == len(seated)
-    assert f"The seating of the first 8 fixtures was worked out: {len(wanted)} of them" in kept.notes[-1]
+    assert f"The seating of the first 8 fixtures was worked out: {len(wanted)} of them" in str(kept.notes[-1])
     # The more the jaws open, the fewer fixtures catch the part, and the more wrong seats count.
     level = sorted(told.capture_opening or inf for told in seated.seating)[4]
     opened = workhold.design(WEDGE, VISE, seating=LOOKED_AT, opening=level)
@@ -212,7 +212,7 @@ def test_the_best_are_those_of_the_looked_at(seated: Result) -> None:
     best = workhold.design(WEDGE, VISE, seating=LOOKED_AT, best=3)
     assert best[:] == seated[:3]
     assert [told.as_fields() for told in best.seating] == [told.as_fields() for told in seated.seating[:3]]
-    assert "Only the best 3 were sought" in best.notes[0]
+    assert "Only the best 3 were sought" in str(best.notes[0])
 
 
 @pytest.mark.thorough
@@ -264,7 +264,7 @@ def test_with_two_clamps_fixtures_stay_in_order_and_a_note_says_that_the_part_is
     plain, asked = workhold.design(part, plate, best=3), Query(part, plate, best=3, seating=2)
     made = workhold.answer(asked, progress=lambda done, _: heard.append(done))
     assert made.table == plain.table and made.query == asked and made.complete and heard[-1] == 1.0
-    assert made.notes == (*plain.notes, by_hand_note()) and made.seating == () and made[0].seating is None
+    assert made.notes == (*plain.notes, PushedByHand()) and made.seating == () and made[0].seating is None
     for name in ("a.npz",):
         streamed = workhold.answer_to_file(asked, tmp_path / name)
         read = workhold.open(tmp_path / name)
@@ -279,7 +279,7 @@ def test_with_two_clamps_fixtures_stay_in_order_and_a_note_says_that_the_part_is
     none = workhold.answer(
         Query(Workpiece.from_loops("tiny", [[[0, 0, 0], [2, 0, 0], [1, 2, 0]]]), plate, seating=2)
     )
-    assert not len(none) and by_hand_note() not in none.notes
+    assert not len(none) and PushedByHand() not in none.notes
 
 
 def test_of_two_clamps_no_seating_may_be_told_and_the_note_must(tmp_path: Path) -> None:

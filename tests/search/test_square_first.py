@@ -30,8 +30,8 @@ from workhold.conventions import SQUARE_TILT
 from workhold.fixels.toolkit import Toolkit
 from workhold.listing.bounds import preferred_angles
 from workhold.listing.collector import Needed
+from workhold.model.notes import BestOnly
 from workhold.model.quality import TILT
-from workhold.model.search_report import best_note
 from workhold.search.lattice_shares import LatticeShares, square_first
 from workhold.search.toolkit_search import ToolkitSearch
 from workhold.verification import verify_file
@@ -77,7 +77,7 @@ def test_the_best_are_the_first_of_all(ranking: str) -> None:
         assert best.complete and best.proof is not None and full.proof is not None
         ended.append(best.proof.cells < full.proof.cells)
         if ended[-1]:
-            assert best.notes == (best_note(most),)
+            assert best.notes == (BestOnly(most),)
             assert best.found == best.counts
     # Where the location error counts before the tilt, square ones are no better.
     assert set(ended) == ({False} if ranking in ("usual", "precise") else {True, False})

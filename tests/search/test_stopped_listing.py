@@ -16,10 +16,11 @@ import workhold
 from workhold import Query, Result, Vise
 from workhold.cli import outputs
 from workhold.cli.ending import Interrupted
+from workhold.files.result.notes import notes_entry
 from workhold.listing import collector, runs
 from workhold.listing.collector import ResultCollector
 from workhold.listing.results import MEASURED
-from workhold.model.search_report import cut_note, kept_note
+from workhold.model.notes import Cut, KeptBest
 from workhold.search.design import SEARCH
 from workhold.search.seated import SEARCHED
 from workhold.verification import verify, verify_file
@@ -76,8 +77,10 @@ def test_the_best_are_listed_and_all_are_counted(answer: Callable[..., Result], 
     assert len(whole) > 3 * MOST
     assert list(result) == list(whole)[:MOST] and not result.complete
     assert (result.found, result.distinct, result.proof) == (whole.found, whole.distinct, whole.proof)
-    assert result.notes == (f"Stopped with {len(whole)} fixtures found: the best 41 of them are listed; "
-                            "more would have taken long.",)  # fmt: skip
+    (note,) = result.notes
+    assert str(note) == (
+        f"Stopped with {len(whole)} fixtures found: the best 41 of them are listed; more would have taken long."
+    )
     outcome = verify(result)
     assert (outcome.proven, outcome.faults) == (MOST, ())
 
@@ -91,7 +94,7 @@ def test_what_is_listed_before_somebody_asks_to_stop_stays(tmp_path: Path) -> No
     )
     assert MOST < len(result) < len(whole)
     assert list(result) == list(whole)[: len(result)]
-    assert result.notes == (cut_note(len(whole), len(result)),)
+    assert result.notes == (Cut(len(whole), len(result)),)
     with np.load(tmp_path / "a.npz") as columns:
         assert len(columns["theta"]) == len(result)
     assert len(in_memory(SYMMETRIC, tmp_path, **stopped_at(LISTING))) == MOST
@@ -129,7 +132,7 @@ def test_of_several_ways_the_best_of_all_are_listed(tmp_path: Path) -> None:
         ),
     )
     assert len(PLATE.ways) == 2 and list(result) == list(whole)[:MOST] and len(whole) > MOST
-    assert result.notes == (cut_note(len(whole), MOST),) and not result.complete
+    assert result.notes == (Cut(len(whole), MOST),) and not result.complete
     assert verify(result).holds
 
 
@@ -139,7 +142,7 @@ def test_rules_for_the_seating_say_how_many_were_looked_at_instead(
 ) -> None:
     query = attrs.evolve(SYMMETRIC, seating=3, opening=1.0)
     result = answer(query, tmp_path, **stopped_at(SEARCHED * ALL_MEASURED))
-    assert not result.complete and [note.partition(":")[0] for note in result.notes] == [
+    assert not result.complete and [str(note).partition(":")[0] for note in result.notes] == [
         "The seating of the first 0 fixtures was worked out"
     ]
     assert verify(result).holds
@@ -152,7 +155,7 @@ def test_a_file_that_was_cut_short_must_say_so(tmp_path: Path) -> None:
     said = json.loads((tmp_path / "a.json").read_text())
     found = sum(said["found"].values())
     assert verify_file(tmp_path / "a.json").holds
-    for wrong in ({"complete": True}, {"notes": []}, {"notes": [cut_note(found, MOST + 1)]}):
+    for wrong in ({"complete": True}, notes_entry([]), notes_entry([Cut(found, MOST + 1)])):
         (tmp_path / "b.json").write_text(json.dumps(said | wrong))
         assert not verify_file(tmp_path / "b.json").holds
     workhold.save(workhold.answer(SYMMETRIC).cut_short(found), tmp_path / "b.json")
@@ -165,7 +168,7 @@ def test_a_server_that_keeps_fewer_says_that_alone() -> None:
     job = jobs.ServerJob.__new__(jobs.ServerJob)
     job.queries, job.task, job.fraction, job.revision, job.orders = [("", SYMMETRIC)], None, 0.0, 0, {}
     jobs.Jobs.keep(jobs.Jobs.__new__(jobs.Jobs), job, Found(result.part(slice(10)), MOST - 10))
-    assert job.notes == (kept_note(sum(result.found.values()), 10),)
+    assert job.notes == (KeptBest(sum(result.found.values()), 10),)
     assert verify(job.result).holds
 
 

@@ -203,7 +203,7 @@ def test_a_circle_cut_into_arcs_is_a_circle(count: int, off: float) -> None:
     assert Workpiece.from_loops(part.name, part.loops) == part
     result = design(part, Vise(pitch=8, columns=2, peg_radius=3))
     assert result.complete and len(result) == 0
-    assert ["meet in that point" in note for note in result.notes] == [True]
+    assert ["meet in that point" in str(note) for note in result.notes] == [True]
 
 
 def test_a_circle_cut_into_arcs_that_a_drawing_tells_apart() -> None:
@@ -380,7 +380,7 @@ def test_a_full_circle_has_no_fixture(x: float, y: float) -> None:
     result = design(part, Vise(pitch=7, columns=2, peg_radius=3))
     assert result.counts == {"I": 0, "II": 0}
     assert result.complete
-    assert ["meet in that point" in note for note in result.notes] == [True]
+    assert ["meet in that point" in str(note) for note in result.notes] == [True]
 
 
 def test_a_ring_held_from_inside_and_outside() -> None:

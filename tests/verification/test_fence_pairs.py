@@ -16,7 +16,8 @@ from judged import faults_of, known_in
 from toolkit_results import assert_all_proven, part, verify_edited
 from undecided_examples import pairs_undecided
 from workhold import Fence, InputError, Load, Restrictions, Result, circle_zone, design
-from workhold.model.search_report import Undecided, no_pair_note
+from workhold.model.notes import STAGES, NoFixture, NoPair
+from workhold.model.search_report import Undecided
 from workhold.verification import Verification, verify, verify_fixture
 
 Data = dict[str, Any]
@@ -44,9 +45,9 @@ def fence(**fields: Any) -> Fence:
 def test_a_part_that_is_never_held_has_a_note_that_follows(loop: Any, toolkit: Fence, reason: int) -> None:
     """A disc has no straight piece to lie on, and no locator reaches a part that is lower than the first row."""
     result = design(part(loop), toolkit)
-    assert result.notes == toolkit.wording.reasons[reason : reason + 1]
+    assert str(result.notes[0]) == toolkit.wording.reasons[reason] and len(result.notes) == 1
     assert verify(result).faults == ()
-    for note in (toolkit.wording.reasons[1 - reason], no_pair_note(0, 0)):
+    for note in (NoFixture(STAGES[1 - reason], toolkit.wording), NoPair(0, 0)):
         assert len(verify(evolve(result, notes=(note,))).faults) == 2
 
 

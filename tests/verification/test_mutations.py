@@ -26,7 +26,7 @@ from workhold import (
     save,
 )
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.search_report import undecided_note
+from workhold.model.notes import LeftUndecided
 from workhold.verification import verify_file
 
 pytestmark = pytest.mark.thorough
@@ -135,7 +135,7 @@ def wedge_result(toolkit: Toolkit) -> Result:
     assert result.proof is not None and len(result) > 6
     counts = {"candidates": result.proof.candidates + 1, "escalated": max(result.proof.escalated, 1)}
     proof = attrs.evolve(result.proof, undecided=(as_undecided(result[0]),), **counts)
-    return attrs.evolve(result, proof=proof, notes=(undecided_note(1),))
+    return attrs.evolve(result, proof=proof, notes=(LeftUndecided(1),))
 
 
 def places(value: Any, where: Where = ()) -> Iterator[Where]:

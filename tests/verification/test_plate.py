@@ -30,9 +30,11 @@ from workhold import (
     circle_zone,
     design,
 )
+from workhold.files.result.notes import notes_entry
 from workhold.listing.results import joined_ways
+from workhold.model.notes import STAGES, LeftUndecided, NoFixture
 from workhold.model.quality import FIGURE_RANKING
-from workhold.model.search_report import GIVEN_UP, Undecided, no_fixture_notes, undecided_note
+from workhold.model.search_report import GIVEN_UP, Undecided
 from workhold.verification import Verification, verify, verify_file, verify_fixture
 from workhold.verification.ball_geometry import BallOutline
 
@@ -266,9 +268,10 @@ def test_the_account_is_held_to_what_is_listed(edited: Any) -> None:
     )
     assert "is better than the one before it" in told(lambda content: content["fixtures"].reverse())
     assert "candidates, but" in told(lambda content: content["proof"].update(verified=3))
-    wrong = no_fixture_notes(LIMITED.wording)[3]
-    assert "does not follow" in told(lambda content: content["notes"].append(wrong))
-    assert "jaw" not in "".join(no_fixture_notes(LIMITED.wording)) and "gap" not in wrong
+    reasons = [NoFixture(stage, LIMITED.wording) for stage in STAGES]
+    wrong = notes_entry(reasons[3:])
+    assert "does not follow" in told(lambda content: [content[key].extend(wrong[key]) for key in wrong])
+    assert "jaw" not in "".join(map(str, reasons)) and "gap" not in str(reasons[3])
 
 
 def as_listed(fixture: Fixture, bolted: bool) -> Data:
@@ -508,7 +511,7 @@ def test_results_of_several_directions_say_what_is_so_of_all() -> None:
     lost = [
         attrs.evolve(
             r,
-            notes=(undecided_note(1),),
+            notes=(LeftUndecided(1),),
             proof=attrs.evolve(
                 r.proof, undecided=(as_undecided(r[0]),), candidates=r.proof.candidates + 1, escalated=9
             ),
@@ -516,9 +519,9 @@ def test_results_of_several_directions_say_what_is_so_of_all() -> None:
         for r in (one, other)
     ]
     both = joined_ways(lost, query)
-    assert both.notes == (undecided_note(2),)
+    assert both.notes == (LeftUndecided(2),)
     assert verify(both).faults == ()
-    reason, counts = no_fixture_notes(LIMITED.wording)[3:], {"clamp": 0}
+    reason, counts = (NoFixture("hold", LIMITED.wording),), {"clamp": 0}
     none = attrs.evolve(one, table=one.table.take(slice(0, 0)), found=counts, distinct=counts, notes=reason)
     assert joined_ways([none, other], query).notes == ()
     nothing = [attrs.evolve(none, proof=attrs.evolve(one.proof, verified=0))] * 2

@@ -32,7 +32,8 @@ from workhold import (
     design,
 )
 from workhold.model.fixture import Pair
-from workhold.model.search_report import AT_AN_EDGE, Undecided, no_pair_note
+from workhold.model.notes import NoPair
+from workhold.model.search_report import AT_AN_EDGE, Undecided
 from workhold.verification import Verification, verify, verify_fixture
 from workhold.verification.account import too_few_contacts
 from workhold.verification.ball_geometry import BallOutline
@@ -96,7 +97,7 @@ def test_a_part_that_is_never_held_has_a_note() -> None:
     assert len(result) == 0 and result.notes
     assert verify(result).faults == ()
     assert "the note is missing" in verify(attrs.evolve(result, notes=())).faults[0]
-    wrong = no_pair_note(1, 12345)
+    wrong = NoPair(1, 12345)
     assert any("does not follow" in fault for fault in verify(attrs.evolve(result, notes=(wrong,))).faults)
 
 

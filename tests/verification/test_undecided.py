@@ -11,7 +11,8 @@ import pytest
 from judged import faults_of
 from undecided_examples import as_undecided
 from workhold import Fixture, OpeningVise, Query, Result, Vise, Workpiece
-from workhold.model.search_report import GIVEN_UP, NEARLY_DOUBLE, UNBOUNDED, Undecided, undecided_note
+from workhold.model.notes import LeftUndecided
+from workhold.model.search_report import GIVEN_UP, NEARLY_DOUBLE, UNBOUNDED, Undecided
 from workhold.verification import verify
 
 
@@ -103,7 +104,7 @@ def test_what_is_undecided_was_escalated(widget_result: Result, escalated: int, 
     assert widget_result.proof is not None
     counts = {"candidates": widget_result.proof.candidates + 1, "escalated": escalated}
     proof = attrs.evolve(widget_result.proof, undecided=(as_undecided(widget_result[0]),), **counts)
-    result = attrs.evolve(widget_result, proof=proof, notes=(*widget_result.notes, undecided_note(1)))
+    result = attrs.evolve(widget_result, proof=proof, notes=(*widget_result.notes, LeftUndecided(1)))
     words = "the proof says that 1 candidates are undecided, but none was escalated"
     assert (words in verify(result).faults) == said
 

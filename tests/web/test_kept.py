@@ -15,7 +15,7 @@ from running_server import run_alone
 
 from fakes import fake_result
 from workhold.files.step.part_shape import PartShape
-from workhold.model.search_report import best_note, many_note
+from workhold.model.notes import BestOnly, Many
 from workhold.web import jobs as kept_jobs
 from workhold.web.families import FamilyFound
 from workhold.web.guard import ServerLimits
@@ -185,10 +185,10 @@ def test_a_job_that_is_left_is_cancelled_unless_somebody_watches_it(jobs: Jobs) 
 def test_how_many_there_are_about_is_said_beside_the_best(jobs: Jobs) -> None:
     """Not that nobody counted them, which the kept result says, as it is one of the best alone."""
     whole = fake_result(5)
-    limited = evolve(whole, query=evolve(whole.query, best=5), notes=(best_note(5),))
+    limited = evolve(whole, query=evolve(whole.query, best=5), notes=(BestOnly(5),))
     made = job(jobs, "one", queries=(("", whole.query),))
-    jobs.keep(made, Found(limited, 0, (many_note(4_240_000, 5),)))
-    assert made.notes == ("There are about 4,200,000 fixtures: these are the best 5.",)
-    assert made.result is not None and made.result.query.best == 5 and made.result.notes == (best_note(5),)
-    jobs.keep(made, Found(evolve(whole, notes=(best_note(5),)), 0))
-    assert made.notes == (best_note(5),) and made.result.query.best is None
+    jobs.keep(made, Found(limited, 0, (Many(4_240_000, 5),)))
+    assert tuple(map(str, made.notes)) == ("There are about 4,200,000 fixtures: these are the best 5.",)
+    assert made.result is not None and made.result.query.best == 5 and made.result.notes == (BestOnly(5),)
+    jobs.keep(made, Found(evolve(whole, notes=(BestOnly(5),)), 0))
+    assert made.notes == (BestOnly(5),) and made.result.query.best is None

@@ -15,7 +15,7 @@ from test_parts import refused
 
 import workhold
 from workhold import Plate, Result, Vise, Workpiece
-from workhold.model.search_report import by_hand_note
+from workhold.model.notes import PushedByHand
 from workhold.model.seating import Seating
 from workhold.web.fixture_tasks import ClosingForm, ClosingOrder, close
 from workhold.web.worker import Order
@@ -106,7 +106,7 @@ def test_with_two_clamps_it_is_told_what_to_do_by_hand(server: RunningServer) ->
     assert answer == {"rank": 2, "by_hand": json.loads(json.dumps(told.as_fields()))}
     inches = server.client.get(f"{job}/fixtures/2/seating", params={"unit": "inch"}).json()["by_hand"]
     assert " in at clamp" in inches["steps"][-1] and inches["steps"][:-1] == answer["by_hand"]["steps"][:-1]
-    assert by_hand_note() in server.client.get(job).json()["notes"]
+    assert PushedByHand().words in server.client.get(job).json()["notes"]
     sheet = server.client.get(f"{job}/fixtures/2/sheet.svg")
     assert sheet.status_code == 200 and "Will it end up there?" in sheet.text
     start = {"theta_deg": 0.0, "x": 0.0, "y": 0.0, "opening": 1.0}

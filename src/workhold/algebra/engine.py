@@ -34,6 +34,7 @@ from workhold.conventions import SAME_CENTER
 from workhold.errors import InputError
 from workhold.kernels.base.feature import SEGMENT_LENGTH
 from workhold.listing.results import Work, joined_ways, listed_result
+from workhold.model.notes import MoreSystems, Note, UndecidedSystem
 from workhold.model.query import Query
 from workhold.model.result import Result
 
@@ -43,29 +44,16 @@ __all__ = ["answer_by_algebra", "undecided_notes"]
 MOST_NAMED = 20
 
 
-def undecided_notes(undecided: Sequence[Systems], faces: NDArray[np.int64]) -> Iterator[str]:
-    """One sentence for each undecided system; ``faces`` has the number of each feature's face."""
-    sentences = [
-        f"Undecided: {in_words(faces[feature].tolist(), column.tolist(), row.tolist())}."
+def undecided_notes(undecided: Sequence[Systems], faces: NDArray[np.int64]) -> Iterator[Note]:
+    """A note for each undecided system; ``faces`` has the number of each feature's face."""
+    named = [
+        UndecidedSystem(*(tuple(numbers.tolist()) for numbers in (faces[feature], column, row)))
         for systems in undecided
         for feature, column, row in zip(systems.feature, systems.column, systems.row, strict=True)
     ]
-    yield from sentences[:MOST_NAMED]
-    if len(sentences) > MOST_NAMED:
-        yield f"Undecided: {len(sentences) - MOST_NAMED} more systems of pegs and faces."
-
-
-def in_words(faces: list[int], columns: list[int], rows: list[int]) -> str:
-    """Three left pegs, or two left and two right ones, with the faces they touch.
-
-    Columns count from the first peg of the same jaw, rows from the first peg of all.
-    """
-    jaws = ["left"] * 3 if len(faces) == 3 else ["left", "left", "right", "right"]
-    words = [
-        f"{jaw} column {column:+d}, row {row:+d} on face {face}"
-        for jaw, column, row, face in zip(jaws, columns, rows, faces, strict=True)
-    ]
-    return "pegs in " + "; ".join(words)
+    yield from named[:MOST_NAMED]
+    if len(named) > MOST_NAMED:
+        yield MoreSystems(len(named) - MOST_NAMED)
 
 
 Array = NDArray[np.float64]

@@ -35,6 +35,8 @@ from workhold.model.solid import SolidOutline
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
+    "PART",
+    "REFUSAL",
     "FolderStore",
     "Store",
     "UrlStore",

@@ -3,8 +3,9 @@
 A task comes in, its record goes out.
 
 A worker needs nothing but the task and this program. Outcomes depend on nothing but the task, to the byte;
-only what they took is kept beside them. A name is the hash of all that an outcome depends on, so that the
-same work has the same name wherever it is done. A queue takes tasks, gives them to workers, and hands over
+only what they took is kept beside them. A name is the hash of what decides an outcome: version, number of
+answers (``version.ANSWERS``), forms of records, conventions, part, toolkit and what is asked. So the same
+work has the same name wherever it is done. A queue takes tasks, gives them to workers, and hands over
 what came of them.
 """
 
@@ -24,13 +25,15 @@ from typing import Any, Protocol
 import numpy as np
 from attrs import define, evolve, field, frozen
 
-from workhold.batch.store import part_record, plain_record, refusal_record, workpiece_of
+from workhold import conventions
+from workhold.batch.store import PART, REFUSAL, part_record, plain_record, refusal_record, workpiece_of
 from workhold.errors import NO_ROOM, InputError, WorkholdError, lacks_memory
 from workhold.files.budget import LIMITS
+from workhold.files.result.writer import FORMAT
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.query import Query
 from workhold.model.result import Result
-from workhold.version import __version__
+from workhold.version import ANSWERS, __version__
 
 __all__ = [
     "Answering",
@@ -44,9 +47,6 @@ __all__ = [
     "program",
 ]
 
-PACKAGE = Path(__file__).resolve().parents[1]
-# What only shows or checks outcomes, or brings the work to where it is done.
-WITHOUT_SAY = ("cli", "drawing", "verification", "web")
 # The clock's seconds for each of the processor's on a machine that others use too.
 MOST_BUSY = 10.0
 # Letters of a name: 128 bits, so that no two of any number of tasks share one.
@@ -55,13 +55,10 @@ LETTERS = 32
 
 @cache
 def program() -> str:
-    """The program's version, and a hash of the sources that decide outcomes: equal on every machine."""
-    digest = sha256()
-    for path in sorted(PACKAGE.rglob("*.py")):
-        place = path.relative_to(PACKAGE)
-        if place.parts[0] not in WITHOUT_SAY:
-            digest.update(f"{place.as_posix()} ".encode() + sha256(path.read_bytes()).digest())
-    return f"{__version__} {digest.hexdigest()[:LETTERS]}"
+    """The program's version, and a hash of what in it decides outcomes: equal on every machine."""
+    numbers = sorted((name, value) for name, value in vars(conventions).items() if name.isupper())
+    content = repr((ANSWERS, FORMAT, PART, REFUSAL, numbers))
+    return f"{__version__} {sha256(content.encode()).hexdigest()[:LETTERS]}"
 
 
 def name_of(*content: Any) -> str:

@@ -111,7 +111,7 @@ def explain(asked: DesignArguments, folder: Path, cancel: Event) -> Answer:
     from workhold.search.explaining import explain as explained
 
     explanation = explained(result.query)
-    words = explanation.nearest.words if explanation.nearest else " ".join(result.notes)
+    words = explanation.nearest.words if explanation.nearest else " ".join(map(str, result.notes))
     words = f"{explanation.asked_words} {words}".lstrip()
     return Answer(
         {"found": 0, "complete": True, "sentence": words, **explanation_data(explanation, result.toolkit)}

@@ -387,7 +387,7 @@ def as_many_as_asked(asked: DesignTask, cancel: Event) -> tuple[Query, int | Non
     A remark says so before the search. Refuses all of very many without a file that can carry them.
     """
     from workhold.limits import thread_count
-    from workhold.model.search_report import round_to_two_digits
+    from workhold.model.notes import round_to_two_digits
     from workhold.search.estimate import LISTED, MANY, best_where_many
 
     output = asked.output
@@ -440,7 +440,7 @@ def report_found(result: Result, spent: str, output: Output, unit: Unit) -> None
     from workhold.listing.identity import entries
 
     for note in result.notes:
-        print_remark(note)
+        print_remark(note.words)
     shown = entries(result, output.with_unfit)
     if len(result) and output.listed > 0:
         print_tables(result_table(result, shown, output.listed, unit), stream=output.stream)

@@ -12,6 +12,7 @@ from workhold.files.atomic import plain_errors, unfinished
 if TYPE_CHECKING:
     from workhold.fixels.toolkit import Toolkit
     from workhold.model.fixture import Fixture
+    from workhold.model.notes import Note
     from workhold.model.result import Result
     from workhold.model.search_report import Explanation
     from workhold.units import Unit
@@ -111,7 +112,7 @@ def explain_none(
 
 
 def print_explanation(
-    explanation: Explanation, toolkit: Toolkit, unit: Unit, stream: TextIO, said: Sequence[str] = ()
+    explanation: Explanation, toolkit: Toolkit, unit: Unit, stream: TextIO, said: Sequence[Note] = ()
 ) -> None:
     """Prints the explanation, without what was said before."""
     from workhold.cli.tables import fixture_tables
@@ -123,7 +124,7 @@ def print_explanation(
             table.add_row(removal.rule, f"{removal.before:,}", f"{removal.removed:,}", f"{removal.after:,}")
         print_tables(table, f"The last were removed by: {explanation.last_rule}.", stream=stream)
     elif explanation.no_contacts not in said:
-        print_tables(explanation.no_contacts, stream=stream)
+        print_tables(str(explanation.no_contacts or ""), stream=stream)
     if explanation.asked_words:
         print_tables(explanation.asked_words, stream=stream)
     if explanation.nearest is not None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Collection, Mapping, Sequence
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -49,14 +50,11 @@ def asked_rank(text: str) -> int:
     return rank
 
 
-def result_with(path: str, rank: int) -> Result:
-    """Reads a result file that lists a fixture of a rank; refuses one that lists fewer."""
-    from workhold.files.result.reader import read_result
+def result_with(path: str | Path, rank: int) -> Result:
+    """Reads a result file for its fixture of a rank; refuses one that lists fewer."""
+    from workhold.files.result.one_fixture import read_one
 
-    result = read_result(path)
-    if rank > len(result):
-        raise InputError(f"{path} lists {len(result)} fixtures: there is no fixture {rank}.")
-    return result
+    return read_one(path, rank)
 
 
 OF_READING = declarations_of(ReadingQuestion)

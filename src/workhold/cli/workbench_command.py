@@ -20,6 +20,7 @@ from attrs import evolve, field, frozen
 
 from workhold.cli.commands import print_remark, untyped
 from workhold.cli.design_report import NEAREST_MISS, THUMBNAILS
+from workhold.cli.options import result_with
 from workhold.cli.outputs import print_json, write_output
 from workhold.cli.program_options import ProgramWords
 from workhold.cli.search_options import QueryWords
@@ -121,12 +122,9 @@ def workbench(
     place = Path(folder)
     order = WorkbenchOrder.read(place)
     if order.part is None:
-        from workhold.files.result.reader import read_result
-
-        result = read_result(place / RESULT)
-        if not 1 <= order.chosen <= len(result):
+        if order.chosen < 1:
             raise InputError(f"there is no fixture {order.chosen} in the list: design first.")
-        print_json(**put_in(result, order.chosen, order, place))
+        print_json(**put_in(result_with(place / RESULT, order.chosen), order.chosen, order, place))
         return
     cancel = Event()
     Thread(target=hear_the_end, args=(cancel,), daemon=True).start()
@@ -207,7 +205,7 @@ def design_data(result: Result, order: WorkbenchOrder, folder: Path, cancel: Eve
     first = zip(shown.index[:MOST_DRAWN].tolist(), shown.like[:MOST_DRAWN].tolist(), strict=True)
     data: dict[str, Any] = {
         "complete": bool(result.complete),
-        "notes": list(result.notes),
+        "notes": list(map(str, result.notes)),
         "first": [{"rank": index + 1, "like": like} for index, like in first],
         "lower": None,
     }

@@ -6,7 +6,6 @@ each of a toolkit's ways one carrier moves, and their results are joined as one.
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -22,16 +21,10 @@ from workhold.listing.collector import BestFixtures, ResultCollector
 from workhold.listing.identity import Identity, SetCount, identity_order
 from workhold.listing.ranking import OrderKeys, in_mm, measured_as, order_keys, usual_errors
 from workhold.model.fixture_table import FixtureTable
+from workhold.model.notes import STAGES, BestOnly, Cut, LeftUndecided, NoFixture, NoPlace, Note
 from workhold.model.query import Query
 from workhold.model.result import Result
-from workhold.model.search_report import (
-    Proof,
-    best_note,
-    cut_note,
-    no_fixture_notes,
-    no_place_note,
-    undecided_note,
-)
+from workhold.model.search_report import Proof
 from workhold.proof.deciding import Account
 from workhold.statics.contact_matrix import Touched
 from workhold.statics.effective_error import EffectiveErrors
@@ -130,7 +123,7 @@ def collected_result(collector: ResultCollector, work: Work, progress: Progress 
         found=found,
         distinct=distinct,
         complete=work.complete and account.left == 0 and whole,
-        notes=(undecided_note(len(account.undecided)),) if account.undecided else (),
+        notes=(LeftUndecided(len(account.undecided)),) if account.undecided else (),
         statistics=work.statistics,
         proof=proof_of(account, work),
         least_effective_error=in_mm(collector.least),
@@ -165,7 +158,7 @@ def best_result(kept: BestFixtures, work: Work, is_part: bool = False, is_limite
         )
     if not (work.complete and kept.has_dropped):
         return result
-    return evolve(result, notes=(best_note(kept.most), *result.notes))
+    return evolve(result, notes=(BestOnly(kept.most), *result.notes))
 
 
 def result_of(
@@ -279,14 +272,14 @@ class RankedTable:
         query, table = self.query, self.together()
         keys = order_keys(table, query, self.effective)
         order = keys.order(keys.least)[: query.best]
-        table, count, notes = table.take(order), self.count, list[str]()
+        table, count, notes = table.take(order), self.count, list[Note]()
         if self.has_dropped:
             # Only those that are listed are counted.
             count = SetCount(self.count.identity)
             count.add(table)
-            notes.append(best_note(query.best or 0))
+            notes.append(BestOnly(query.best or 0))
         if account.undecided:
-            notes.append(undecided_note(len(account.undecided)))
+            notes.append(LeftUndecided(len(account.undecided)))
         return Result(
             query=query,
             table=table,
@@ -315,7 +308,7 @@ def joined_ways(results: Sequence[Result], query: Query) -> Result:
     ranked = table.take(keys.order(keys.least)[:most])
     proofs = [result.proof for result in results if result.proof is not None]
     found, distinct = (summed(getattr(result, name) for result in results) for name in ("found", "distinct"))
-    if query.best is not None and any(best_note(query.best) in result.notes for result in results):
+    if any(isinstance(note, BestOnly) for result in results for note in result.notes):
         # Each way left others out than the best of its own, so of all no more are known than the best.
         counted = SetCount(Identity(query.toolkit, query.workpiece))
         counted.add(ranked)
@@ -334,8 +327,8 @@ def joined_ways(results: Sequence[Result], query: Query) -> Result:
     return joined.cut_short(len(ranked)) if cut else joined
 
 
-def joined_notes(results: Sequence[Result], query: Query) -> Iterator[str]:
-    """The remarks of several results as those of all: how many candidates are undecided, or why no result has
+def joined_notes(results: Sequence[Result], query: Query) -> Iterator[Note]:
+    """The notes of several results as those of all: how many candidates are undecided, or why no result has
     a fixture. Of several reasons it is the one that most candidates got to."""
     proofs = [result.proof for result in results if result.proof is not None]
     verified, undecided = (
@@ -343,22 +336,20 @@ def joined_notes(results: Sequence[Result], query: Query) -> Iterator[str]:
         sum(len(proof.undecided) for proof in proofs),
     )
     notes = dict.fromkeys(note for result in results for note in result.notes)
-    # The program's line that is most in the way may be another one for each way.
-    lines = {int(line) for note in notes for line in re.findall(r"\bline (\d+)", note)}
-    stages = {
-        reason: stage
-        for line in (None, *sorted(lines))
-        for stage, reason in enumerate(no_fixture_notes(query.toolkit.wording, line))
-    }
-    counted = {*stages, *(no_place_note(proof.verified, query.toolkit.wording) for proof in proofs)}
-    counted |= {undecided_note(len(proof.undecided)) for proof in proofs}
-    counted |= {cut_note(sum(result.found.values()), len(result)) for result in results}
-    yield from (note for note in notes if note not in counted)
+    stages = [note for note in notes if isinstance(note, NoFixture) and not note.asked]
+    placeless = [note for note in notes if isinstance(note, NoPlace)]
+    counted = (*stages, *placeless)
+    yield from (note for note in notes if note not in counted and not isinstance(note, LeftUndecided | Cut))
     if undecided:
-        yield undecided_note(undecided)
+        yield LeftUndecided(undecided)
     elif not any(result.found[kind] for result in results for kind in result.found):
-        said = sorted((note for note in notes if note in stages), key=lambda note: stages[note])
-        yield from [no_place_note(verified, query.toolkit.wording)] if verified else said[-1:]
+        wording = query.toolkit.wording
+        if verified:
+            yield NoPlace(verified, wording, any(note.with_body for note in placeless))
+        elif stages:
+            # The program's line that is most in the way may be another one for each way.
+            last = max(reversed(stages), key=lambda note: STAGES.index(note.stage))
+            yield evolve(last, wording=wording)
 
 
 def joined_tables(tables: Sequence[FixtureTable]) -> FixtureTable:

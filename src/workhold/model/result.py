@@ -13,8 +13,9 @@ from workhold.errors import refuse_kind
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture, Listed
 from workhold.model.fixture_table import BLOCK, FixtureTable, fixture_at, fixtures_of
+from workhold.model.notes import AskedFor, Cut, FittedOutline, Note, as_notes
 from workhold.model.query import Query
-from workhold.model.search_report import Proof, asked_note, cut_note, fitted_note
+from workhold.model.search_report import Proof
 from workhold.model.seating import Seating
 from workhold.model.workpiece import Workpiece
 
@@ -37,8 +38,8 @@ class Result:
     distinct : how many there are when fixtures that a symmetry of the part carries into each other count
         once.
     complete : False when the search was interrupted; the fixtures listed are valid all the same.
-    notes : remarks a user should read, one sentence each; of an outline that departs from the drawn one there
-        is one more.
+    notes : what a user should read, see ``model.notes``: each prints as a sentence, and has its data. A text
+        that is given becomes a note. Of an outline that departs from the drawn one there is one more.
     statistics : how much work the search was. It counts contact features, chord curves, sliding pairs, pairs
         of curves compared and those whose crossings were sought. It also counts simultaneous contacts
         examined (all four inside their features).
@@ -57,7 +58,7 @@ class Result:
     found: Mapping[str, int] = field(hash=False)
     distinct: Mapping[str, int] = field(hash=False)
     complete: bool = True
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = field(default=(), converter=as_notes)
     statistics: Mapping[str, int] = field(factory=dict, hash=False)
     proof: Proof | None = None
     pairs: int | None = None
@@ -67,17 +68,17 @@ class Result:
 
     def __attrs_post_init__(self) -> None:
         refuse_kind(self.query, Query, "the query", "give a Query, such as workhold.Query(part, toolkit)")
-        notes, asked = self.reasons, asked_note(self.query.restricted_by)
+        notes, asked = self.reasons, self.query.restricted_by
         if asked and self.complete and notes and not any(self.found.values()):
-            notes = (*(note for note in notes if note != asked), asked)
+            notes = (*(note for note in notes if not isinstance(note, AskedFor)), AskedFor(asked))
         if self.workpiece.departure > 0:
-            notes = (*notes, fitted_note(self.workpiece.departure))
+            notes = (*notes, FittedOutline(self.workpiece.departure))
         object.__setattr__(self, "notes", notes)
 
     @property
-    def reasons(self) -> tuple[str, ...]:
+    def reasons(self) -> tuple[Note, ...]:
         """The notes but the one that there is of every part whose outline departs from the drawn one."""
-        return tuple(note for note in self.notes if note != fitted_note(self.workpiece.departure))
+        return tuple(note for note in self.notes if not isinstance(note, FittedOutline))
 
     @property
     def workpiece(self) -> Workpiece:
@@ -132,7 +133,8 @@ class Result:
 
         Only the best ``listed`` are in it, so it is incomplete.
         """
-        return evolve(self, complete=False, notes=(cut_note(sum(self.found.values()), listed), *self.reasons))
+        others = (note for note in self.notes if not isinstance(note, Cut))
+        return evolve(self, complete=False, notes=(Cut(sum(self.found.values()), listed), *others))
 
     def listed(self, index: int) -> Listed:
         """Where the fixture of an index stands."""

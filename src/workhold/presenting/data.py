@@ -185,7 +185,7 @@ def result_data(result: Result, shown: Entries, count: int) -> dict[str, Any]:
         "unfit": shown.unfit,
         **({"pairs": result.pairs, "seats": result.seats} if result.toolkit.travels > 1 else {}),
         "complete": bool(result.complete),
-        "notes": list(result.notes),
+        "notes": list(map(str, result.notes)),
         "proof": None if result.proof is None else proof_data(result.proof),
         "ranking": list(result.query.ranking),
         "least_effective_error": result.least_effective_error,
@@ -212,7 +212,7 @@ def explanation_data(explanation: Explanation, toolkit: Toolkit) -> dict[str, An
     nearest = explanation.nearest
     return {
         "contacts": explanation.contacts,
-        "no_contacts": explanation.no_contacts,
+        "no_contacts": str(explanation.no_contacts or ""),
         "removals": [asdict(removal) for removal in explanation.removals],
         "last_rule": explanation.last_rule,
         "taken_by": list(explanation.taken_by),

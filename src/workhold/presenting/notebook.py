@@ -95,7 +95,7 @@ def none_html(result: Result) -> str:
     )
     # What was found was ruled out later, or not all was looked at.
     is_open = found or not result.complete
-    return "\n".join(map(paragraph, (title, *result.notes, *([] if is_open else [more]))))
+    return "\n".join(map(paragraph, (title, *map(str, result.notes), *([] if is_open else [more]))))
 
 
 def entries_table(result: Result, shown: Entries) -> Markup:
@@ -151,7 +151,7 @@ def count_sentences(result: Result, shown: Entries) -> list[str]:
     out.append(
         f"{listed:,} {'fixture is' if listed == 1 else 'fixtures are'} listed, result[0] is the first."
     )
-    return [*out, *result.notes]
+    return [*out, *map(str, result.notes)]
 
 
 def thumbnail(fixture: Fixture) -> Markup:
@@ -285,7 +285,7 @@ class WhyNone:
         """The sentence that says which rule took the last contacts away, or that there are none."""
         last = self.explanation.last_rule
         if not self.explanation.contacts or last is None:
-            return self.explanation.no_contacts
+            return str(self.explanation.no_contacts or "")
         return f"The last contacts were removed by: {last}. {self.explanation.asked_words}".rstrip()
 
     def __repr__(self) -> str:
@@ -320,7 +320,7 @@ def why_none(result: Result) -> WhyNone:
     if len(result):
         raise InputError("there are fixtures: why there is none is asked of a result without one.")
     if sum(result.found.values()) or not result.complete:
-        raise InputError(f"that there is none, was not found out. {' '.join(result.notes)}".strip())
+        raise InputError(f"that there is none, was not found out. {' '.join(map(str, result.notes))}".strip())
     return WhyNone(result.query, explain(result.query))
 
 

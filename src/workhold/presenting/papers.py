@@ -114,7 +114,7 @@ def result_picture(
 ) -> Picture:
     """Draws thumbnails of the best fixtures, see :meth:`workhold.Result.draw`."""
     if not len(result):
-        raise InputError(" ".join(("there is no fixture to draw.", *result.reasons)))
+        raise InputError(" ".join(("there is no fixture to draw.", *map(str, result.reasons))))
     return saved(best_at_a_glance(result, entries(result), unit_named(unit)), path, overwrite)
 
 
@@ -172,13 +172,13 @@ def save_sheet(
 
 def refuse_other_result(result_file: str | Path, fixture: Fixture) -> None:
     """Refuses a file whose hash would stand on the sheet of a fixture that is not in it."""
-    from workhold.files.result.reader import read_result
+    from workhold.files.result.one_fixture import read_one
 
-    listed, read = fixture.listing, read_result(result_file)
-    row = listed.rank - 1
+    listed = fixture.listing
+    read, row = read_one(result_file, listed.rank), listed.rank - 1
     asked, there = listed.result.query, read.query
     belongs = asked.workpiece.is_alike(there.workpiece) and asked.toolkit == there.toolkit
-    if not belongs or row >= len(read) or not is_set_up_alike(fixture, read[row]):
+    if not belongs or not is_set_up_alike(fixture, read[row]):
         raise InputError(
             f"{result_file} has another fixture in place {listed.rank}: give the file that this result was "
             "saved in."

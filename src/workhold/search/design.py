@@ -33,11 +33,11 @@ from workhold.listing.results import (
     stage,
 )
 from workhold.model.fixture import Fixture
+from workhold.model.notes import STAGES, NoFixture, NoPlace, Note, round_to_two_digits
 from workhold.model.quality import FIGURES, WARNINGS, asked_ranking
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Restrictions, Tolerance
 from workhold.model.result import Result
-from workhold.model.search_report import left_notes, no_fixture_notes, no_place_note, round_to_two_digits
 from workhold.model.workpiece import Workpiece
 from workhold.search.broken_rules import line_in_the_way
 from workhold.search.cells import run_blocks
@@ -375,35 +375,39 @@ def with_reason(result: Result, search: ToolkitSearch, threads: int, cancel: Eve
     return result if cancel is not None and cancel.is_set() else evolve(result, notes=(reason,))
 
 
-def why_none(search: ToolkitSearch, contacts: int, proven: int, threads: int, cancel: Event | None) -> str:
-    """The reason when a search finds no fixture, in one sentence."""
+def why_none(search: ToolkitSearch, contacts: int, proven: int, threads: int, cancel: Event | None) -> Note:
+    """The reason when a search finds no fixture."""
     problem, table, wording = search.problem, search.table, search.problem.toolkit.wording
-    concentric, too_far, apart, loose = no_fixture_notes(wording, line_in_the_way(problem.query))
+    line = line_in_the_way(problem.query)
     if is_round(problem):
         # The program is not to blame for a part that is round without it.
         alone = problem.query.program is None or is_round(Problem.of(problem.query.without_program))
-        return no_fixture_notes(wording)[0] if alone else concentric
+        return NoFixture("shape", wording, None if alone else line)
     if len(table) + len(table.sliding_pairs.integers) == 0:
-        return too_far
+        return NoFixture("pair", wording, line)
     # What cannot be a fixture was left out early; whether pegs can touch at all is then asked once more.
     if contacts == 0 and contacts_of(problem, threads, cancel) == 0:
-        return apart
-    return no_place_note(proven, wording, has_body_to_pass(problem.query)) if proven else loose
+        return NoFixture("set", wording, line)
+    if proven:
+        return NoPlace(proven, wording, has_body_to_pass(problem.query))
+    return NoFixture("hold", wording, line)
 
 
-def of_what_is_left(reason: str, problem: Problem, threads: int) -> str:
+def of_what_is_left(reason: Note, problem: Problem, threads: int) -> Note:
     """A reason that blames part or pitch, or one that blames what was asked for where that is the cause."""
     query, toolkit = problem.query, problem.toolkit
-    concentric, too_far, *_ = no_fixture_notes(toolkit.wording)
-    if reason not in (concentric, too_far) or not query.asked_of_places:
+    if not isinstance(reason, NoFixture) or reason.stage not in STAGES[:2] or reason.line is not None:
+        return reason
+    if not query.asked_of_places:
         return reason
     toolkit = toolkit.without([limit for limit in toolkit.limits if limit.rule in query.asked_of_places])
     whole = Problem.of(evolve(query.without_program, toolkit=toolkit, restrictions=None))
-    if reason == concentric:
-        return reason if is_round(whole) else left_notes(toolkit.wording, query.asked_of_places)[0]
-    table = ToolkitSearch.of(whole, threads=threads).table
-    is_far = len(table) + len(table.sliding_pairs.integers) == 0
-    return reason if is_far else left_notes(toolkit.wording, query.asked_of_places)[1]
+    if reason.stage == "shape":
+        is_to_blame = is_round(whole)
+    else:
+        table = ToolkitSearch.of(whole, threads=threads).table
+        is_to_blame = len(table) + len(table.sliding_pairs.integers) == 0
+    return reason if is_to_blame else evolve(reason, asked=query.asked_of_places)
 
 
 # Of a tenth of a part's length: what is this little short of one counts as it.
@@ -463,7 +467,7 @@ def explore(
             continue
         if not result.complete:
             return
-        reason = "" if len(result) else " ".join(result.reasons)
+        reason = "" if len(result) else " ".join(map(str, result.reasons))
         figures = dict(result[0].quality) if len(result) else {}
         fit = bool(figures) and not unfit(result.table.quality[:1], result.query.tolerance)[0]
         held = held_share(result[0], result.workpiece) if len(result) else 0.0

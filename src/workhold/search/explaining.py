@@ -19,11 +19,12 @@ from workhold.errors import InputError, listed
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Change, Toolkit
 from workhold.model.fixture_table import FixtureTable, fixture_at
+from workhold.model.notes import NoFixture, Note, Remark
 from workhold.model.quality import WARNINGS
 from workhold.model.query import Query
 from workhold.model.requirements import Restrictions
 from workhold.model.result import Result
-from workhold.model.search_report import Explanation, Help, NearestMiss, Removal, no_fixture_notes
+from workhold.model.search_report import Explanation, Help, NearestMiss, Removal
 from workhold.model.workpiece import Workpiece
 from workhold.search.broken_rules import (
     SECOND_CLAMP,
@@ -167,16 +168,16 @@ def explain(query: Query, threads: int | None = None, unit: Unit = MILLIMETRE) -
     else:
         found = [removals_of(Problem.of(way), threads, unit, alone) for way in ways]
     together, helped = Removals.together(found), helps(query, threads, unit)
-    nothing = "" if together.first else no_contacts(ways)
+    nothing = None if together.first else no_contacts(ways)
     return Explanation(together.first, together.removals, together.nearest, helped, nothing)
 
 
-def no_contacts(ways: Sequence[Query]) -> str:
+def no_contacts(ways: Sequence[Query]) -> Note:
     """Why nothing touches a part at the same time in any way of a toolkit."""
     wording = ways[0].toolkit.wording
     if WALL_END not in ways[0].toolkit.contacts and all(is_round(Problem.of(way)) for way in ways):
-        return no_fixture_notes(wording)[0]
-    return f"No {wording.four} can touch the part at the same time."
+        return NoFixture("shape", wording)
+    return Remark(f"No {wording.four} can touch the part at the same time.")
 
 
 def helps(query: Query, threads: int | None, unit: Unit) -> tuple[Help, ...]:

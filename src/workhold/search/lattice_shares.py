@@ -36,8 +36,8 @@ from workhold.listing.ranking import MOST_ERROR, OrderKeys
 from workhold.listing.results import Work, stage, summed
 from workhold.listing.seat_order import ordered_groups
 from workhold.listing.seats import ClampedSeats, Seats, seats_of
+from workhold.model.notes import NoPair
 from workhold.model.query import Query
-from workhold.model.search_report import no_pair_note
 from workhold.proof.deciding import Account, Course, decided
 from workhold.search.cells import Block, cost_of, run_blocks
 from workhold.search.error_limits import ErrorLimit
@@ -241,9 +241,9 @@ class LatticeShares:
         statistics = summed(search.statistics for search in searches)
         return Work(complete and self.account().left == 0, statistics, self.cells, examined)
 
-    def why_none(self) -> str:
+    def why_none(self) -> NoPair:
         """Why a search that came to its end has no fixture."""
-        return no_pair_note(self.collector.looked_at, self.account().verified)
+        return NoPair(self.collector.looked_at, self.account().verified)
 
 
 def searches_of(

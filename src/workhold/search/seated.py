@@ -23,10 +23,10 @@ from workhold.errors import InputError
 from workhold.listing.ranking import billionths, keys_of, usual_errors
 from workhold.listing.results import stage
 from workhold.model.fixture_table import FixtureTable
+from workhold.model.notes import BestOnly, Cut, Note, PushedByHand, Seated
 from workhold.model.quality import FIGURES, SEATING_FIGURES, WARNINGS, whole_rows
 from workhold.model.query import SEATING_KEYS, Query
 from workhold.model.result import Result
-from workhold.model.search_report import best_note, by_hand_note, cut_note, seated_note
 from workhold.model.seating import Seating
 from workhold.seating.part_features import refuse_own_outlines
 from workhold.seating.pattern import refuse_unseated
@@ -143,7 +143,7 @@ def refuse_unasked(query: Query) -> None:
 
 def put_in_by_hand(result: Result, query: Query) -> Result:
     """The result of a query with seating for two clamps: the same fixtures, and how the part is put in."""
-    notes = (*result.reasons, by_hand_note()) if sum(result.found.values()) else result.reasons
+    notes = (*result.reasons, PushedByHand()) if sum(result.found.values()) else result.reasons
     return evolve(result, query=query, notes=notes)
 
 
@@ -172,14 +172,14 @@ def seated(result: Result, work: SeatingWork, listed: int | None = None) -> Resu
     known = [one for one in seatings if one is not None]
     order = order_of(result.table.take(looked_at), known, query, result.least_effective_error)
     kept = [place for place in order.tolist() if is_as_asked(known[place], query)]
-    notes = tuple(
-        best_note(query.best) if is_best(note, result) and query.best else note for note in result.reasons
-    )
+    notes: list[Note] = [
+        BestOnly(query.best) if isinstance(note, BestOnly) and query.best else note for note in result.reasons
+    ]
     first = looked_at[kept]
     if query.has_seating_rules:
         # Why there is no fixture at all is said already.
-        notes = tuple(n for n in notes if n != cut_note(sum(result.found.values()), listed or len(result)))
-        rows, notes = first, (*notes, seated_note(len(known), len(kept))) if len(result) else notes
+        notes = [note for note in notes if not isinstance(note, Cut)]
+        rows, notes = first, [*notes, Seated(len(known), len(kept))] if len(result) else notes
     else:
         rows = np.concatenate([first, np.delete(np.arange(len(result)), first)])
     return evolve(
@@ -190,11 +190,6 @@ def seated(result: Result, work: SeatingWork, listed: int | None = None) -> Resu
         complete=result.complete and len(known) == count,
         notes=notes,
     )
-
-
-def is_best(note: str, result: Result) -> bool:
-    """Whether a note says that only the best were sought."""
-    return result.query.best is not None and note == best_note(result.query.best)
 
 
 def is_as_asked(seating: Seating, query: Query) -> bool:

@@ -31,6 +31,7 @@ from workhold.listing.canonical_form import Candidates, listed_once
 from workhold.listing.collector import BestFixtures, finish
 from workhold.listing.ranking import OrderKeys
 from workhold.listing.results import Work, result_of, stage, summed
+from workhold.model.notes import Note
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.proof.deciding import Account
@@ -148,7 +149,7 @@ class Locating(Protocol):
     def work(self, done: int, complete: bool) -> Work:
         """How the search went, when so many shares were looked at to their end."""
 
-    def why_none(self) -> str:
+    def why_none(self) -> Note:
         """Why a search that came to its end has no fixture."""
 
 

@@ -25,8 +25,9 @@ from workhold.listing.results import RankedTable, Work
 from workhold.listing.seats import ClampedSeats, Seats, seats_of
 from workhold.listing.wall_fixtures import WallFixtures, first_of_each, turned
 from workhold.model.fixture_table import FixtureTable, unknown_quality
+from workhold.model.notes import NoFixture, NoPair, NoPlace, Note
 from workhold.model.query import Query
-from workhold.model.search_report import AT_AN_EDGE, Undecided, no_fixture_notes, no_pair_note, no_place_note
+from workhold.model.search_report import AT_AN_EDGE, Undecided
 from workhold.model.wall_ends import common_stretch, touches_of, wall_ends
 from workhold.proof.deciding import Account
 from workhold.search.broken_rules import line_in_the_way
@@ -275,16 +276,16 @@ class WallShares:
         }
         return Work(complete, statistics, cells=times * done)
 
-    def why_none(self) -> str:
+    def why_none(self) -> Note:
         """Why a search that came to its end has no fixture."""
         query, search, verified = self.collector.query, self.searches[0], self.total("verified")
-        never, apart, square, loose = no_fixture_notes(query.toolkit.wording, line_in_the_way(query))
+        wording, line = query.toolkit.wording, line_in_the_way(query)
         if isinstance(self.collector, RankedTable) and verified:
-            return no_place_note(verified, query.toolkit.wording, has_body_to_pass(query))
+            return NoPlace(verified, wording, has_body_to_pass(query))
         if not self.edges:
-            return never
+            return NoFixture("shape", wording, line)
         if not search.touches:
-            return apart
+            return NoFixture("pair", wording, line)
         if isinstance(self.collector, ClampedSeats):
-            return no_pair_note(self.collector.looked_at, verified)
-        return square if search.is_square else loose
+            return NoPair(self.collector.looked_at, verified)
+        return NoFixture("set" if search.is_square else "hold", wording, line)

@@ -33,27 +33,31 @@ What became of the candidates, and how much work that was, is otherwise known to
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping
 
 from flint import ctx
 
 from workhold.fixels.contacts import WALL_END
-from workhold.model.search_report import (
-    Proof,
-    asked_note,
-    best_note,
-    by_hand_note,
-    cut_note,
-    fitted_note,
-    kept_note,
-    left_notes,
-    no_fixture_notes,
-    no_pair_note,
-    no_place_note,
-    seated_note,
-    stopped_note,
-    undecided_note,
+from workhold.model.notes import (
+    STAGES,
+    AskedFor,
+    BestOnly,
+    Cut,
+    FittedOutline,
+    KeptBest,
+    LeftUndecided,
+    MoreSystems,
+    NoFixture,
+    NoPair,
+    NoPlace,
+    Note,
+    PushedByHand,
+    Seated,
+    Stopped,
+    UndecidedSystem,
 )
+from workhold.model.program import Program
+from workhold.model.search_report import Proof
 from workhold.verification.ball_geometry import PRECISIONS
 from workhold.verification.contacts import every_outline
 from workhold.verification.listing import Listing
@@ -106,10 +110,10 @@ def count_faults(listing: Listing, rotations: int) -> Iterator[str]:
     listed, found, best = len(listing.fixtures), sum(listing.found.values()), listing.query.best
     if best is not None and listed > best:
         yield f"the best {best} are asked for, but {listed} are listed"
-    said = {kept_note(found, listed), cut_note(found, listed)} & set(
-        listing.notes
-    ) or listing.query.has_seating_rules
-    if found > listed != best and not said:
+    is_said = listing.query.has_seating_rules or any(
+        note in (KeptBest(found, listed), Cut(found, listed)) for note in listing.notes
+    )
+    if found > listed != best and not is_said:
         yield f"found says {found} fixtures, but {listed} are listed, and nothing says why"
 
 
@@ -193,80 +197,119 @@ def is_by_algebra(statistics: Mapping[str, int]) -> bool:
     return set(statistics) == set(ALGEBRA)
 
 
+# A note that there must be, or one like it, and whether another will do as well.
+Wanted = tuple[Note, Callable[[Note], bool]]
+
+
 def note_faults(listing: Listing) -> Iterator[str]:
     """Notes that are missing, and those that do not follow from the numbers."""
     left = list(listing.notes)
-    for wanted in notes_implied(listing):
-        # Of several sentences any will do.
-        said = next((note for note in wanted if note in left), None)
+    for example, will_do in notes_implied(listing):
+        said = next((note for note in left if will_do(note)), None)
         if said is None:
-            yield f'the note is missing that says "{wanted[0]}"'
+            yield f'the note is missing that says "{example}"'
         else:
             left.remove(said)
     for note in left:
         if not may_be_said(note, listing):
-            yield f'the note "{note[:80]}" does not follow from what the result says'
+            yield f'the note "{note.words[:80]}" does not follow from what the result says'
 
 
-def notes_implied(listing: Listing) -> Iterator[Sequence[str]]:
-    """The notes that there must be, each as the sentences of which it is one."""
-    proof, found = listing.proof, sum(listing.found.values())
-    if listing.query.workpiece.departure > 0:
-        yield (fitted_note(listing.query.workpiece.departure),)
+def alone(note: Note) -> Wanted:
+    return note, lambda other: other == note
+
+
+def notes_implied(listing: Listing) -> Iterator[Wanted]:
+    """The notes that there must be."""
+    query, proof, found = listing.query, listing.proof, sum(listing.found.values())
+    if query.workpiece.departure > 0:
+        yield alone(FittedOutline(query.workpiece.departure))
     undecided = 0 if proof is None else len(proof.undecided)
     if undecided:
-        yield (undecided_note(undecided),)
-    if found and listing.query.has_seating_rules:
-        yield tuple(seated_notes(listing))
-    if found and listing.query.seating is not None and not listing.query.toolkit.closes_at_once:
-        yield (by_hand_note(),)
+        yield alone(LeftUndecided(undecided))
+    if found and query.has_seating_rules:
+        most, listed = min(query.seating or 0, found), len(listing.fixtures)
+        yield Seated(most, listed), lambda note: isinstance(note, Seated) and is_as_seated(note, listing)
+    if found and query.seating is not None and not query.toolkit.closes_at_once:
+        yield alone(PushedByHand())
     systems = listing.statistics.get("undecided", 0)
-    yield from (tuple(n for n in listing.notes if n.startswith("Undecided: ")) or ("Undecided: ",),) * min(
-        systems, MOST_NAMED + 1
-    )
+    for _ in range(min(systems, MOST_NAMED)):
+        yield MoreSystems(systems), lambda note: isinstance(note, UndecidedSystem)
+    if systems > MOST_NAMED:
+        yield alone(MoreSystems(systems - MOST_NAMED))
     if listing.complete and not found and not undecided and not is_by_algebra(listing.statistics):
-        wording = listing.query.toolkit.wording
-        verified = 0 if proof is None else proof.verified
-        if listing.query.toolkit.travels > 1:
-            yield no_pair_notes(listing, verified)
-            return
-        asked = left_notes(wording, listing.query.asked_of_places) if listing.query.asked_of_places else ()
-        yield (no_place_note(verified, wording),) if verified else (*no_fixture_notes(wording), *asked)
+        yield reason_wanted(listing, 0 if proof is None else proof.verified)
 
 
-def may_be_said(note: str, listing: Listing) -> bool:
+def reason_wanted(listing: Listing, verified: int) -> Wanted:
+    """The note that says why nothing is listed; what the search alone knows is in it as it will be.
+
+    So it is with the seats that were looked at, and with the line of a program that is most in the way.
+    """
+    query, numbers, stages = listing.query, listing.statistics, STAGES
+    wording, is_walled = query.toolkit.wording, WALL_END in query.toolkit.contacts
+    if query.toolkit.travels > 1:
+        if not is_walled or (numbers.get("hull_edges") and numbers.get("locator_places")):
+            return (
+                NoPair(0, verified),
+                lambda note: (
+                    isinstance(note, NoPair)
+                    and note.contacts == verified
+                    and (verified > 0 or not note.seats)
+                ),
+            )
+        stages = ("pair",) if numbers.get("hull_edges") else ("shape",)
+    elif verified:
+        return (
+            NoPlace(verified, wording),
+            lambda note: (
+                isinstance(note, NoPlace)
+                and note.verified == verified
+                and (query.program is not None or not note.with_body)
+            ),
+        )
+    return (
+        NoFixture(stages[0], wording),
+        lambda note: (
+            isinstance(note, NoFixture)
+            and note.stage in stages
+            and (note.line is None or is_line_of(query.program, note.line))
+            and (not note.asked or (note.asked == query.asked_of_places and note.stage in STAGES[:2]))
+        ),
+    )
+
+
+def is_line_of(program: Program | None, line: int) -> bool:
+    return program is not None and any(piece.line == line for piece in program.pieces)
+
+
+def may_be_said(note: Note, listing: Listing) -> bool:
     """Whether a note fits that need not be there."""
-    listed, found, best = len(listing.fixtures), sum(listing.found.values()), listing.query.best
-    if best is not None and note == best_note(best):
-        return found >= best
-    if listing.query.has_seating_rules and note in seated_notes(listing):
-        return True
-    if listing.query.restricted_by and note == asked_note(listing.query.restricted_by):
-        return not found
-    if note == kept_note(found, listed):
-        return found > listed
-    if note == cut_note(found, listed):
-        return found > listed and not listing.complete
-    return not listing.complete and note in stopped_notes(note)
+    listed, found, query = len(listing.fixtures), sum(listing.found.values()), listing.query
+    match note:
+        case BestOnly(best):
+            return best == query.best and found >= best
+        case Seated():
+            return query.has_seating_rules and is_as_seated(note, listing)
+        case AskedFor(rules):
+            return rules == query.restricted_by and not found
+        case KeptBest(every, kept):
+            return (every, kept) == (found, listed) and found > listed
+        case Cut(every, kept):
+            return (every, kept) == (found, listed) and found > listed and not listing.complete
+        case Stopped():
+            return not listing.complete
+    return False
 
 
-def seated_notes(listing: Listing) -> Iterator[str]:
-    """The notes that may say how many fixtures had their seating worked out, and how many are as asked."""
+def is_as_seated(note: Seated, listing: Listing) -> bool:
+    """Whether so many fixtures may have had their seating worked out, and so many be as asked."""
     listed, found, query = len(listing.fixtures), sum(listing.found.values()), listing.query
     most = min(query.seating or 0, found)
-    for looked_at in range(listed if not listing.complete else most, most + 1):
-        # Of those that are as asked no more than the best are listed.
-        for kept in range(listed, (looked_at if listed == query.best else listed) + 1):
-            yield seated_note(looked_at, kept)
-
-
-def stopped_notes(note: str) -> Iterator[str]:
-    """The note of a search that was stopped after the seconds that a note says."""
-    for word in note.split():
-        try:
-            yield stopped_note(float(word))
-        except ValueError:
-            continue
+    least = most if listing.complete else listed
+    # Of those that are as asked no more than the best are listed.
+    kept = note.looked_at if listed == query.best else listed
+    return least <= note.looked_at <= most and listed <= note.kept <= kept
 
 
 def pair_count_faults(listing: Listing) -> Iterator[str]:
@@ -298,8 +341,7 @@ def pair_count_faults(listing: Listing) -> Iterator[str]:
 
 def is_uncounted(listing: Listing) -> bool:
     """Whether a note says that what cannot be among the best was left out uncounted."""
-    best = listing.query.best
-    return best is not None and best_note(best) in listing.notes
+    return BestOnly(listing.query.best or 0) in listing.notes
 
 
 def seat_faults(listing: Listing, refuted: Collection[int]) -> Iterator[str]:
@@ -337,19 +379,3 @@ def too_few_contacts(listing: Listing, proof: Proof) -> bool:
     if 2 * (listing.seats or 0) > pairs * proof.verified:
         return True
     return 2 * max(found, listing.pairs or 0) > proof.verified * (proof.verified - 1)
-
-
-def no_pair_notes(listing: Listing, verified: int) -> tuple[str, ...]:
-    """The sentences of which one says why nothing is listed.
-
-    How many seats were looked at is known to the search alone.
-    """
-    toolkit, numbers_of = listing.query.toolkit, listing.statistics
-    if WALL_END in toolkit.contacts:
-        never, no_locator, *_ = no_fixture_notes(toolkit.wording)
-        if not (numbers_of.get("hull_edges") and numbers_of.get("locator_places")):
-            return (no_locator if numbers_of.get("hull_edges") else never,)
-    if verified == 0:
-        return (no_pair_note(0, 0),)
-    numbers = [int(word) for note in listing.notes for word in note.split() if word.isdecimal()]
-    return (no_pair_note(0, verified), *(no_pair_note(seats, verified) for seats in numbers))

@@ -23,6 +23,7 @@ from workhold.asking.search import SearchQuestion
 from workhold.errors import InputError
 from workhold.files.result.fixture_forms import checked_seating, seatings_of
 from workhold.files.result.forms import Head
+from workhold.files.result.notes import note_faults, read_notes
 from workhold.files.result.parts import HEAD, checked_head, columns_said, head_value, read_parts
 from workhold.fixels.fields import OPTIONS
 from workhold.fixels.support_hardware import HARDWARE
@@ -30,6 +31,7 @@ from workhold.fixels.table import SILENT
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.clamps import ratios
 from workhold.model.fixture import Fixture, Pair, Peg
+from workhold.model.notes import Note
 from workhold.model.pose import Pose
 from workhold.model.quality import figures_in
 from workhold.model.query import Query
@@ -194,7 +196,7 @@ class Listing:
     found: Mapping[str, int]
     distinct: Mapping[str, int]
     complete: bool
-    notes: Sequence[str]
+    notes: Sequence[Note]
     statistics: Mapping[str, int]
     proof: Proof | None
     faults: tuple[str, ...] = ()
@@ -241,7 +243,7 @@ def read_listing(path: str | Path) -> Listing:
     head, taken, seatings = head_and_fixtures(path)
     try:
         query = head.query()
-        types = query.toolkit.types
+        types, notes = query.toolkit.types, read_notes(head, query)
         return Listing(
             query,
             taken_in(taken, seatings, ToolkitRules.of(query), query, path),
@@ -249,10 +251,10 @@ def read_listing(path: str | Path) -> Listing:
             numbers_of(head.found, "found", types, head.counts),
             numbers_of(head.distinct, "distinct", types, head.counts),
             head.complete,
-            head.notes,
+            notes,
             head.statistics,
             None if head.proof is None else head.proof.proof(),
-            (*keys_missing(head), *turned_loops(head.workpiece.loops, query)),
+            (*keys_missing(head), *turned_loops(head.workpiece.loops, query), *note_faults(head, notes)),
             head.pairs,
             head.seats,
             head.least_effective_error,
@@ -313,6 +315,8 @@ def keys_missing(head: Head) -> list[str]:
     spared |= {"workpiece.departure", "tolerance.departure", "pairs", "seats", "thickness"}
     # Where steps count, its absence is a fault of the order.
     spared |= {"least_effective_error"}
+    # An older file has the sentences alone.
+    spared |= {"note_data"}
     # A toolkit without flats, or heights of its own, says nothing of them.
     silent = [row.name for row in OPTIONS if row.form in SILENT] + list(HARDWARE)
     spared |= {f"{key}.{name}" for key in ("vise", "toolkit") for name in silent}

@@ -361,7 +361,7 @@ def explanation_answer(explanation: Explanation, workpiece: Workpiece, toolkit: 
     nearest = explanation.nearest
     return {
         "contacts": explanation.contacts,
-        "no_contacts": explanation.no_contacts,
+        "no_contacts": str(explanation.no_contacts or ""),
         "removals": [{**asdict(one), "removed": one.removed} for one in explanation.removals],
         "last_rule": explanation.last_rule,
         "taken_by": list(explanation.taken_by),

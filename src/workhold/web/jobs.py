@@ -18,8 +18,9 @@ from attrs import define, evolve, field
 
 from workhold.errors import InputError
 from workhold.listing.identity import Entries
+from workhold.model.notes import BestOnly, Cut, KeptBest, Note, Stopped, ToolkitsLeft
 from workhold.model.result import Result
-from workhold.model.search_report import Explanation, best_note, cut_note, kept_note, stopped_note
+from workhold.model.search_report import Explanation
 from workhold.model.seating import Seating
 from workhold.seating.clamping import ByHand
 from workhold.web.answers import arrangements_answer, proof_answer
@@ -85,7 +86,7 @@ class ServerJob:
     ended: float | None = None
     result: Result | None = None
     revision: int = 0
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
     error: str | None = None
     table: list[dict[str, Any]] = field(factory=list)
     task: PoolTask | None = None
@@ -147,7 +148,7 @@ class ServerJob:
             "arrangements": [] if self.kind != "design" else arrangements_answer(self.queries[0][1].toolkit),
             "ranking": None if result is None else list(result.query.ranking),
             "complete": complete,
-            "notes": list(self.notes),
+            "notes": list(map(str, self.notes)),
             "proof": None if listed is None or listed.proof is None else proof_answer(listed.proof),
             "error": self.error,
             "revision": self.revision,
@@ -260,9 +261,7 @@ class Jobs:
             elif isinstance(outcome, FamilyFound):
                 job.family, job.fraction = outcome, 1.0
             elif len(job.table) < len(job.queries) and not job.task.stop.is_set():
-                job.notes = (
-                    f"Stopped after {self.limits.seconds:g} s; the rest of the toolkits was not tried.",
-                )
+                job.notes = (ToolkitsLeft(self.limits.seconds),)
             job.state = "cancelled" if job.task.stop.is_set() else "done"
         except StoppedError:
             job.state = "cancelled"
@@ -281,17 +280,17 @@ class Jobs:
         self.make_room()
 
     def keep(self, job: ServerJob, found: Found) -> None:
-        result, notes = found.result, list(found.result.notes)
+        result, notes = found.result, [*found.result.notes]
         if found.left_out:
-            every, put_in_order = sum(result.found.values()), len(result) + found.left_out
-            notes = [kept_note(every, len(result)), *(n for n in notes if n != cut_note(every, put_in_order))]
+            kept = KeptBest(sum(result.found.values()), len(result))
+            notes = [kept, *(note for note in notes if not isinstance(note, Cut))]
         if not result.complete and job.task is not None and not job.task.stop.is_set():
-            notes.insert(0, stopped_note(self.limits.seconds))
+            notes.insert(0, Stopped(self.limits.seconds))
         query = evolve(job.queries[0][1], best=result.query.best)
-        job.result = evolve(result, query=query, notes=tuple(notes))
+        job.result = evolve(result, query=query, notes=notes)
         # How many there are about says more than that nobody counted them.
-        uncounted = () if not found.notes or result.query.best is None else (best_note(result.query.best),)
-        job.notes = (*found.notes, *(note for note in notes if note not in uncounted))
+        told = [note for note in notes if not (found.notes and isinstance(note, BestOnly))]
+        job.notes = (*found.notes, *told)
         job.found = sum(result.found.values())
         job.fraction = 1.0 if result.complete else job.fraction
         job.revision += 1

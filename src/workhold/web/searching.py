@@ -16,9 +16,9 @@ from attrs import evolve, frozen
 
 from workhold.conventions import SAME_POSE
 from workhold.model.fixture_table import FixtureTable
+from workhold.model.notes import Many, Note
 from workhold.model.query import Query
 from workhold.model.result import Result
-from workhold.model.search_report import many_note
 from workhold.web.worker import Order
 
 __all__ = ["FIRST", "Found", "search"]
@@ -41,7 +41,7 @@ class Found:
 
     result: Result
     left_out: int
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
 
 
 def search(payload: tuple[Query, int, bool], order: Order) -> Found:
@@ -63,12 +63,12 @@ def search(payload: tuple[Query, int, bool], order: Order) -> Found:
     known = first if first is not None and first.complete else None
     if known is not None:
         order.report(("first", known))
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
     if first is not None and not every:
         with soon_enough(order) as enough:
             query, about = best_where_many(query, thread_count(None), enough)
         if query.best is not None:
-            notes = (many_note(about or 0, query.best),)
+            notes = (Many(about or 0, query.best),)
     begun = 0.0 if first is None else SHARE
     result = answer(
         query,

@@ -24,8 +24,9 @@ from workhold import Tolerance, Workpiece
 from workhold.drawing.part_pictures import first_parameter
 from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece
+from workhold.files.result.notes import notes_entry
 from workhold.geometry.segment import Arc
-from workhold.model.search_report import fitted_note
+from workhold.model.notes import FittedOutline
 
 MM = 'width="200mm" height="200mm" viewBox="0 0 200 200"'
 HANDLE = 4 / 3 * tan(pi / 8)
@@ -304,11 +305,11 @@ def test_the_departure_stays_with_the_part(tmp_path: Path) -> None:
         "departure": part.departure,
     }
     assert read_workpiece(tmp_path / "result.json").workpiece == part
-    note = fitted_note(part.departure)
+    note = FittedOutline(part.departure)
     assert result.notes[-1] == again.notes[-1] == note and note not in added.notes
-    assert f"up to {part.departure:.2g} mm off the drawn one" in note
+    assert f"up to {part.departure:.2g} mm off the drawn one" in str(note)
     assert workhold.verify(tmp_path / "result.json").holds
-    silent = written | {"notes": [one for one in written["notes"] if one != note]}
+    silent = written | notes_entry([one for one in result.notes if one != note])
     (tmp_path / "result.json").write_text(json.dumps(silent))
     assert workhold.verify(tmp_path / "result.json").faults == (f'the note is missing that says "{note}"',)
 
@@ -325,7 +326,7 @@ def test_why_there_is_no_fixture_is_said_of_a_fitted_outline_too() -> None:
             for departure in (0.0, 0.01)
         )
         assert len(plain) == 0 and len(plain.notes) == 1
-        assert fitted.notes == (*plain.notes, fitted_note(0.01)) and fitted.reasons == plain.notes
+        assert fitted.notes == (*plain.notes, FittedOutline(0.01)) and fitted.reasons == plain.notes
 
 
 def test_a_circle_of_720_chords_is_a_circle(tmp_path: Path) -> None:

@@ -23,6 +23,7 @@ from workhold.files.result.reader import read_result
 from workhold.files.result.writer import result_text, write_result
 from workhold.files.toolkit_file import preset
 from workhold.model.fixture_table import FixtureTable
+from workhold.model.notes import Remark
 from workhold.model.search_report import Undecided
 
 
@@ -45,7 +46,7 @@ def test_writing_what_was_read_gives_the_same_bytes(tmp_path: Path, count: int) 
     assert (tmp_path / "a.json").read_bytes() == (tmp_path / "b.json").read_bytes()
     assert again.counts == result.counts
     assert (again.found, again.distinct) == (result.found, result.distinct)
-    assert (again.complete, again.notes) == (False, ("remark ä",))
+    assert (again.complete, again.notes) == (False, (Remark("remark ä"),))
     assert again.query == result.query
 
 

@@ -236,6 +236,14 @@ class ProofPart(FormPart):
         return Proof(*counts, tuple(item.undecided() for item in self.undecided))
 
 
+class NotePart(FormPart):
+    """What a note says: its kind, and what else there is of that kind."""
+
+    model_config = ConfigDict(extra="allow")
+
+    kind: str
+
+
 @with_fields(OF_SEARCH, bounded=False)
 class Head(FormPart):
     """Everything in the file but the fixtures."""
@@ -254,6 +262,9 @@ class Head(FormPart):
     distinct: Counts | None = None
     complete: bool = True
     notes: list[str] = []
+    note_data: list[NotePart] | None = Field(
+        None, description="of each note, in the same order, what it says"
+    )
     statistics: dict[str, int] = {}
     proof: ProofPart | None = None
     restrictions: RestrictionsPart = RestrictionsPart()

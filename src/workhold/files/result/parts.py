@@ -19,6 +19,7 @@ import re
 import struct
 from codecs import BOM_UTF8
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from functools import partial
 from itertools import count
 from pathlib import Path
@@ -32,6 +33,7 @@ from workhold.archive import Column, Columns
 from workhold.errors import InputError
 from workhold.files.budget import LIMITS
 from workhold.files.result.forms import MISSING, Head, ProofPart, first_fault
+from workhold.files.result.notes import read_notes
 from workhold.files.text import json_value, read_limited
 from workhold.fixels.fields import CLAMPS
 from workhold.fixels.toolkit import Toolkit
@@ -47,16 +49,23 @@ __all__ = [
     "PINS_KNOWN",
     "LARGEST_LENGTH",
     "LARGEST_NUMBER",
+    "OtherLayoutError",
     "checked_head",
     "checked_query",
     "columns_of",
     "columns_said",
+    "fixture_texts",
     "head_value",
+    "parsed",
+    "plain_reading",
+    "read_lines",
     "read_parts",
     "refuse_faulty",
     "refuse_rows",
     "refuse_unknown_types",
+    "result_of",
     "result_with",
+    "start_of_fixtures",
 ]
 
 LARGEST_NUMBER = 2**31 - 1
@@ -201,21 +210,27 @@ def checked_query(head: Head, path: Path) -> Query:
 
 
 def result_with(table: FixtureTable, head: Head, query: Query, path: Path) -> Result:
-    """The result of a head and a table.
-
-    Refuses counts that are not those of the table, and an account of the search that does not add up.
-    """
+    """The result of a head and a table; refuses counts that are not those of the table."""
     for name, listed in query.toolkit.arrangements_counted(table.arrangement).items():
         if head.counts[name] != listed:
             said = head.counts[name]
             raise InputError(f"{path}: counts say {said} fixtures of type {name}, but {listed} are listed.")
+    return result_of(table, head, query, path)
+
+
+def result_of(table: FixtureTable, head: Head, query: Query, path: Path) -> Result:
+    """The result of a head and a table; refuses notes and an account of the search that cannot be."""
+    try:
+        notes = read_notes(head, query)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error
     return Result(
         query,
         table,
         found=head.found or head.counts,
         distinct=head.distinct or head.counts,
         complete=head.complete,
-        notes=tuple(head.notes),
+        notes=notes,
         statistics=head.statistics,
         proof=None if head.proof is None else checked_proof(head.proof, query, path),
         pairs=head.pairs,
@@ -279,24 +294,31 @@ def read_parts(path: Path, take: Take[Taken]) -> tuple[Head, Taken]:
     InputError
         When the file cannot be read, or is no result file, and what ``take`` raises.
     """
+    with plain_reading(path):
+        try:
+            data, taken = read_lines(path, lambda texts, path: take(map(parsed, texts), path))
+        except OtherLayoutError:
+            data, taken = read_whole(path, take)
+    return checked_head(data, path), taken
+
+
+@contextmanager
+def plain_reading(path: Path) -> Iterator[None]:
+    """Says in a sentence why a file cannot be read in the block as the text of a result."""
     try:
         if path.exists() and not path.is_file():
             raise InputError(f"{path} is not a file: give a result file.")
-        try:
-            data, taken = read_lines(path, take)
-        except OtherLayoutError:
-            data, taken = read_whole(path, take)
+        yield
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror or error}.") from error
     except UnicodeDecodeError as error:
         raise InputError(f"{path} is not a result file: it is not text.") from error
     except RecursionError as error:
         raise InputError(f"{path} is not a result file: its brackets are nested too deeply.") from error
-    return checked_head(data, path), taken
 
 
 def read_lines(path: Path, take: Take[Taken]) -> tuple[Any, Taken]:
-    """Head and fixtures of a file with one fixture per line.
+    """Head and fixtures of a file with one fixture per line; ``take`` is given their texts.
 
     Raises OtherLayoutError when the lines are not of that form. Refuses a line, or what stands around the
     fixtures, that is longer than any may be.
@@ -304,7 +326,7 @@ def read_lines(path: Path, take: Take[Taken]) -> tuple[Any, Taken]:
     with path.open("rb") as stream:
         before = stream.read(start_of_fixtures(stream))
         after: list[bytes] = []
-        taken = take(fixture_lines(stream, after, path), path)
+        taken = take(fixture_texts(stream, after, path), path)
         rest = stream.read(MOST_AROUND - len(before) + 1)
         if len(before) + len(rest) > MOST_AROUND:
             raise InputError(
@@ -337,8 +359,8 @@ def start_of_fixtures(stream: BinaryIO) -> int:
     raise OtherLayoutError
 
 
-def fixture_lines(stream: BinaryIO, after: list[bytes], path: Path) -> Iterator[Any]:
-    """The fixtures on their lines; the line that ends the list goes to ``after``."""
+def fixture_texts(stream: BinaryIO, after: list[bytes], path: Path) -> Iterator[bytes]:
+    """The fixtures on their lines, as text; the line that ends the list goes to ``after``."""
     last = False
     for number in count(1):
         line = stream.readline(MOST_LINE + 1)
@@ -348,18 +370,23 @@ def fixture_lines(stream: BinaryIO, after: list[bytes], path: Path) -> Iterator[
                 f"fixture may have: {LIMITS['result'].remedy}."
             )
         text = line.strip()
-        if text.startswith(b"]"):
+        if text[:1] == b"]":
             after.append(line)
             return
         if last or not line:
             raise OtherLayoutError
-        last = not text.endswith(b",")
-        try:
-            yield json_value(text.removesuffix(b",").decode())
-        except UnicodeDecodeError:
-            raise
-        except ValueError as error:
-            raise OtherLayoutError from error
+        last = text[-1:] != b","
+        yield text if last else text[:-1]
+
+
+def parsed(text: bytes) -> Any:
+    """The fixture of a line; raises OtherLayoutError where that is none by itself."""
+    try:
+        return json_value(text.decode())
+    except UnicodeDecodeError:
+        raise
+    except ValueError as error:
+        raise OtherLayoutError from error
 
 
 def read_whole(path: Path, take: Take[Taken]) -> tuple[Any, Taken]:

@@ -48,7 +48,7 @@ from workhold.model.result import Result
 from workhold.model.seating import Seating
 from workhold.model.wall_ends import wall_ends
 
-__all__ = ["read_result"]
+__all__ = ["Columns", "checked_table", "collected", "measured", "read_result"]
 
 BLOCK = 4096
 
@@ -96,10 +96,11 @@ def read_result(path: str | Path) -> Result:
     return with_seating(result, columns.seating, path)
 
 
-def collected(fixtures: Iterable[Any], path: Path) -> Columns:
+def collected(fixtures: Iterable[Any], path: Path, first: int = 0) -> Columns:
+    """Fixtures as arrays; the ``first`` of them stands in that place in the file, from 0."""
     blocks: list[list[NDArray[Any]]] = [[] for _ in range(6)]
     iterator = iter(fixtures)
-    number, pegs, seating = 1, 0, list[Seating]()
+    number, pegs, seating = first + 1, 0, list[Seating]()
     while True:
         rows = []
         for fixture in islice(iterator, BLOCK):
@@ -223,8 +224,8 @@ def indices(words: NDArray[np.str_], names: Sequence[str]) -> NDArray[np.int8]:
     return out
 
 
-def checked_table(columns: Columns, query: Query, path: Path) -> FixtureTable:
-    """The table of the fixtures, pegs in the order of their arrangements."""
+def checked_table(columns: Columns, query: Query, path: Path, first: int = 0) -> FixtureTable:
+    """The table of the fixtures, pegs in the order of their arrangements; the ``first`` has that place."""
     toolkit = query.toolkit
     if len(columns.types) == 0:
         return FixtureTable.empty(toolkit)
@@ -263,7 +264,7 @@ def checked_table(columns: Columns, query: Query, path: Path) -> FixtureTable:
         pairs=pairs.astype(np.int32),
     )
 
-    rows = range(len(table))
+    rows = range(first, first + len(table))
     refuse = partial(refuse_rows, path=path, places=rows)
     refuse_unknown_types(arrangement, toolkit, path)
     refuse(jaw < 0, f"cannot be used: a peg's jaw is not {' or '.join(carriers)}")

@@ -22,6 +22,7 @@ from workhold.asking.declaring import declarations_of
 from workhold.asking.search import SearchQuestion
 from workhold.files.atomic import text_file
 from workhold.files.result.fixture_text import as_written, fixture_lines, rounded_degrees
+from workhold.files.result.notes import notes_entry
 from workhold.fixels.carrier import Holes
 from workhold.fixels.kinds import USUAL
 from workhold.fixels.pegs import Flat
@@ -142,7 +143,7 @@ def head(result: Result, with_pieces: bool = True) -> dict[str, Any]:
         "found": {kind: int(count) for kind, count in result.found.items()},
         "distinct": {kind: int(count) for kind, count in result.distinct.items()},
         "complete": bool(result.complete),
-        "notes": list(result.notes),
+        **notes_entry(result.notes),
         **({} if result.pairs is None else {"pairs": result.pairs, "seats": result.seats}),
         **error_entry(result),
         "statistics": {name: int(count) for name, count in result.statistics.items()},

@@ -1,0 +1,144 @@
+"""Notes in result files: their sentences under ``notes``, and beside them under ``note_data`` what they say.
+
+Files from before there was such data have the sentences alone. This is the one place where a sentence is
+recognised: it is compared with those of every note that its numbers and its query may make.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from functools import cache
+from typing import Any, get_origin, get_type_hints
+
+from attrs import fields
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
+
+from workhold.errors import InputError
+from workhold.files.result.forms import Head, first_fault
+from workhold.model.notes import (
+    KINDS,
+    STAGES,
+    AskedFor,
+    BestOnly,
+    Cut,
+    FittedOutline,
+    KeptBest,
+    LeftUndecided,
+    MoreSystems,
+    NoFixture,
+    NoPair,
+    NoPlace,
+    Note,
+    PushedByHand,
+    Remark,
+    Seated,
+    Stopped,
+    UndecidedSystem,
+)
+from workhold.model.query import Query
+
+__all__ = ["note_faults", "notes_entry", "read_notes"]
+
+
+def notes_entry(notes: Sequence[Note]) -> dict[str, Any]:
+    """Notes as they are written: their sentences, and their data in the same order."""
+    return {"notes": [note.words for note in notes], "note_data": [note.data for note in notes]}
+
+
+def read_notes(head: Head, query: Query) -> tuple[Note, ...]:
+    """The notes of a file, from their data, or from their sentences alone in an older file.
+
+    Raises
+    ------
+    InputError
+        When there is not one entry of data for each sentence, or one cannot be used.
+    """
+    if head.note_data is None:
+        verified = 0 if head.proof is None else head.proof.verified
+        return tuple(recognised(sentence, query, verified) for sentence in head.notes)
+    if len(head.note_data) != len(head.notes):
+        raise InputError(
+            f"note_data has {len(head.note_data)} entries beside {len(head.notes)} notes: it needs one for "
+            "each."
+        )
+    pairs = zip(head.notes, head.note_data, strict=True)
+    return tuple(note_of(*pair, query, number) for number, pair in enumerate(pairs))
+
+
+def note_faults(head: Head, notes: Sequence[Note]) -> Iterator[str]:
+    """A fault for each sentence of a head that its data would not be put into."""
+    for sentence, note in zip(head.notes, notes, strict=True):
+        if sentence != note.words:
+            yield f'the note "{sentence[:80]}" is not what its data say, "{note.words[:80]}"'
+
+
+def note_of(sentence: str, part: BaseModel, query: Query, number: int) -> Note:
+    """The note of an entry of data; that of a kind which this program does not know is its sentence."""
+    entry = part.model_dump()
+    if (kind := KINDS.get(entry["kind"])) is None:
+        return Remark(sentence)
+    try:
+        given = form_of(kind.kind).model_validate(entry).model_dump()
+        note = kind(**given, **({"wording": query.toolkit.wording} if has_wording(kind) else {}))
+        # It may have data that no sentence can be made of.
+        str(note)
+    except ValidationError as error:
+        key, reason = first_fault(error)
+        raise InputError(f"note_data.{number}.{key} cannot be used: {reason}.") from error
+    except (ValueError, LookupError) as error:
+        raise InputError(f"note_data.{number} cannot be used: no note is like that.") from error
+    return note
+
+
+def has_wording(kind: type[Note]) -> bool:
+    return any(one.name == "wording" for one in fields(kind))
+
+
+@cache
+def form_of(name: str) -> type[BaseModel]:
+    """The form of the data of a kind of note; further keys are allowed."""
+    kind = KINDS[name]
+    hints = get_type_hints(kind)
+    # JSON has lists for tuples.
+    keys: dict[str, Any] = {
+        one.name: (hints[one.name], Field(strict=False) if get_origin(hints[one.name]) is tuple else ...)
+        for one in fields(kind)
+        if one.eq
+    }
+    return create_model(
+        f"{kind.__name__}Part", __config__=ConfigDict(strict=True, allow_inf_nan=False), **keys
+    )
+
+
+NUMBER = re.compile(r"[-+]?\d+(?:,\d{3})*(?:\.\d+)?(?:e[-+]?\d+)?")
+
+
+def recognised(sentence: str, query: Query, verified: int) -> Note:
+    """The note that a sentence says, of a result with so many verified candidates; else a remark."""
+    words = [word.replace(",", "") for word in NUMBER.findall(sentence)]
+    thinkable = thinkable_notes([float(word) for word in words], query, verified)
+    return next((note for note in thinkable if note.words == sentence), Remark(sentence))
+
+
+def thinkable_notes(numbers: Sequence[float], query: Query, verified: int) -> Iterator[Note]:
+    """The notes that some numbers, in their order, and a query may make."""
+    wording, asked = query.toolkit.wording, query.asked_of_places
+    whole = [int(number) for number in numbers]
+    yield PushedByHand()
+    yield FittedOutline(query.workpiece.departure)
+    if query.restricted_by:
+        yield AskedFor(query.restricted_by)
+    for stage in STAGES:
+        yield from (NoFixture(stage, wording, line) for line in (None, *whole))
+        if asked and stage in STAGES[:2]:
+            yield NoFixture(stage, wording, asked=asked)
+    yield from (NoPlace(verified, wording, with_body) for with_body in (False, True))
+    yield from (NoPair(seats, contacts) for contacts in (0, verified) for seats in (0, *whole))
+    match whole:
+        case [one]:
+            yield from (BestOnly(one), LeftUndecided(one), MoreSystems(one), Stopped(numbers[0]))
+        case [one, other]:
+            yield from (Cut(one, other), KeptBest(one, other), Seated(one, other))
+    if len(whole) in (9, 12):
+        yield UndecidedSystem(tuple(whole[2::3]), tuple(whole[::3]), tuple(whole[1::3]))

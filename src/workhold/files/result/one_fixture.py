@@ -1,0 +1,150 @@
+"""One fixture of a result file, without those beside it.
+
+Of a file with one fixture on every line the other lines are counted and passed over. What is asked of other
+fixtures later is taken from the file then: how many stand in the same holes from the text of their lines, all
+else from all of them, read as usual. A file in columns, or of another layout, is read as a whole.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from functools import cached_property, partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from attrs import fields, frozen
+from numpy.typing import NDArray
+
+from workhold.archive import is_archive
+from workhold.errors import InputError
+from workhold.files.result.fixture_forms import with_seating
+from workhold.files.result.parts import (
+    OtherLayoutError,
+    checked_head,
+    checked_query,
+    fixture_texts,
+    parsed,
+    plain_reading,
+    read_lines,
+    result_of,
+    start_of_fixtures,
+)
+from workhold.files.result.reader import checked_table, collected, measured, read_result
+from workhold.model.fixture_table import FixtureTable
+from workhold.model.result import Result
+
+__all__ = ["read_one"]
+
+SEATED = b'"seating"'
+# What says in the line of a fixture of which type it is and where its pegs stand.
+STANDING = re.compile(rb'"(type|directions?|jaw|role|hole|column|row)"\s*:\s*("[^"]*"|-?\d+|null|\[[^\]]*\])')
+
+
+@frozen
+class Picked:
+    """What is read of a file for one fixture.
+
+    Parameters
+    ----------
+    texts : of the one asked for, and before it of all others where each has its seating stated.
+    first : index of the first of them.
+    count : how many fixtures there are.
+    """
+
+    texts: list[bytes]
+    first: int
+    count: int
+
+
+def read_one(path: str | Path, rank: int) -> Result:
+    """Reads a result file for the fixture of a rank; others are read and checked once they are asked for.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be read, is no result file, lists fewer, or contradicts itself.
+    """
+    path = Path(path)
+    try:
+        if not path.is_file():
+            raise OtherLayoutError
+        with plain_reading(path):
+            if is_archive(path):
+                raise OtherLayoutError
+            data, found = read_lines(path, partial(picked, rank=rank))
+            columns = collected(map(parsed, found.texts), path, found.first)
+    except OtherLayoutError:
+        result = read_result(path)
+        refuse_missing(path, rank, len(result))
+        return result
+    head = checked_head(data, path)
+    query, said = checked_query(head, path), sum(head.counts.values())
+    if said != found.count:
+        raise InputError(f"{path}: counts say {said} fixtures, but {found.count} are listed.")
+    refuse_missing(path, rank, found.count)
+    rows = measured(checked_table(columns, query, path, found.first), query)
+    return with_seating(result_of(TableOfFile(rows, found, path), head, query, path), columns.seating, path)
+
+
+def refuse_missing(path: Path, rank: int, count: int) -> None:
+    if rank > count:
+        raise InputError(f"{path} lists {count} fixtures: there is no fixture {rank}.")
+
+
+def picked(texts: Iterable[bytes], path: Path, rank: int) -> Picked:
+    """Picks the fixture of a rank, and counts the others."""
+    chosen: list[bytes] = []
+    number = 0
+    for number, text in enumerate(texts, 1):
+        if number <= rank:
+            # Seating is stated of the first fixtures, or of none.
+            if SEATED not in text:
+                chosen = []
+            if number == rank or SEATED in text:
+                chosen.append(text)
+    return Picked(chosen, min(rank, number) - len(chosen), number)
+
+
+class TableOfFile(FixtureTable):
+    """The fixtures of a file of which some are read; all are once something asks for others.
+
+    Parameters
+    ----------
+    read : those read.
+    found : where they stand in the file.
+    path : of the file.
+    """
+
+    read: FixtureTable
+    found: Picked
+    path: Path
+
+    def __init__(self, read: FixtureTable, found: Picked, path: Path) -> None:
+        vars(self).update(read=read, found=found, path=path)
+
+    def __len__(self) -> int:
+        return self.found.count
+
+    @cached_property
+    def whole(self) -> FixtureTable:
+        """All fixtures, read as usual."""
+        return read_result(self.path).table
+
+    def __getattr__(self, name: str) -> Any:
+        if name in {column.name for column in fields(FixtureTable)}:
+            return getattr(self.whole, name)
+        raise AttributeError(name)
+
+    def take(self, order: NDArray[Any] | slice) -> FixtureTable:
+        places = np.arange(len(self))[order] - self.found.first
+        is_read = len(places) > 0 and places.min() >= 0 and places.max() < len(self.read)
+        return self.read.take(places) if is_read else self.whole.take(order)
+
+    def same_holes(self, index: int) -> int:
+        """How many other fixtures have their pegs in the same holes as one that is read."""
+        here = STANDING.findall(self.found.texts[index - self.found.first])
+        with plain_reading(self.path), self.path.open("rb") as stream:
+            stream.seek(start_of_fixtures(stream))
+            return sum(STANDING.findall(text) == here for text in fixture_texts(stream, [], self.path)) - 1
