@@ -8,11 +8,9 @@ The public face is small. The function :func:`load` reads a part; :class:`Vise`,
 
 from __future__ import annotations
 
-from functools import partial
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from workhold.delegates import hand_over
 from workhold.version import __version__ as __version__
 
 if TYPE_CHECKING:
@@ -108,41 +106,10 @@ HOMES = {
 }
 
 
-# The functions that methods of the model's classes call, see ``delegates``.
-DELEGATES = {
-    "clamp_with_friction": "workhold.supports.friction",
-    "fixture_html": "workhold.presenting.notebook",
-    "fixture_picture": "workhold.presenting.papers",
-    "fixture_supports": "workhold.supports.asking",
-    "preset_fields": "workhold.files.toolkit_file",
-    "preset_names_of": "workhold.files.toolkit_file",
-    "preset_tolerance": "workhold.files.toolkit_file",
-    "read_program": "workhold.files.program.reader",
-    "result_html": "workhold.presenting.notebook",
-    "result_picture": "workhold.presenting.papers",
-    "result_supports": "workhold.supports.asking",
-    "result_widget": "workhold.presenting.notebook",
-    "save_glb": "workhold.presenting.assembly",
-    "save_sheet": "workhold.presenting.papers",
-    "seating_html": "workhold.presenting.notebook",
-    "supports_html": "workhold.presenting.notebook",
-    "to_arrow": "workhold.presenting.data",
-    "to_build123d": "workhold.presenting.assembly",
-    "to_cadquery": "workhold.presenting.assembly",
-    "to_pandas": "workhold.presenting.data",
-    "why_none": "workhold.presenting.notebook",
-    "workpiece_html": "workhold.presenting.notebook",
-    "workpiece_picture": "workhold.presenting.papers",
-}
-
-
 def imported(name: str, home: str) -> Any:
     """Imports an object; ``home`` is its module, and behind a colon its name there if that is another."""
     module, _, known_as = home.partition(":")
     return getattr(import_module(module), known_as or name)
-
-
-hand_over({name: partial(imported, name, home) for name, home in DELEGATES.items()})
 
 
 def __getattr__(name: str) -> Any:

@@ -19,7 +19,6 @@ import numpy as np
 from attrs import evolve, field, frozen
 from numpy.typing import NDArray
 
-from workhold.delegates import delegate
 from workhold.errors import InputError
 from workhold.limits import real, refuse_long
 from workhold.model.cutting_forces import CuttingForces
@@ -189,7 +188,9 @@ class Program:
             With the line of what cannot be read, and with tools that are called and not known. With what is
             lacking for forces that are asked for, too.
         """
-        read: Program = delegate("read_program")(
+        from workhold.files.program.reader import read_program
+
+        return read_program(
             path,
             tools,
             zero=zero,
@@ -203,7 +204,6 @@ class Program:
             whole_numbers=whole_numbers,
             stock=stock,
         )
-        return read
 
     @property
     def pieces(self) -> tuple[SweptPiece, ...]:

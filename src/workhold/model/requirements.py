@@ -15,7 +15,6 @@ import numpy as np
 from attrs import evolve, field, frozen
 from numpy.typing import NDArray
 
-from workhold.delegates import delegate
 from workhold.errors import InputError
 from workhold.geometry.loop import (
     LoopShape,
@@ -324,8 +323,9 @@ class Tolerance:
         >>> round(Tolerance.preset("plate-20mm").peg, 6)
         0.0145
         """
-        tolerance: Tolerance = delegate("preset_tolerance")(name)
-        return tolerance
+        from workhold.files.toolkit_file import preset_tolerance
+
+        return preset_tolerance(name)
 
     def with_departure(self, departure: float) -> Tolerance:
         """The tolerance for an outline that departs by up to ``departure`` mm from the drawn one.

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, overload
+from typing import TYPE_CHECKING, Any, overload
 
 from attrs import define, evolve, field
 
-from workhold.delegates import delegate
 from workhold.errors import refuse_kind
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture, Listed
@@ -17,6 +16,17 @@ from workhold.model.query import Query
 from workhold.model.search_report import Proof, asked_note, cut_note, fitted_note
 from workhold.model.seating import Seating
 from workhold.model.workpiece import Workpiece
+
+if TYPE_CHECKING:
+    import pyarrow
+    from pandas import DataFrame
+
+    from workhold.model.requirements import Load, Zone
+    from workhold.model.support_request import Faces, SpatialLoad
+    from workhold.model.support_triples import Supports
+    from workhold.presenting.notebook import StillPicture, WhyNone
+    from workhold.presenting.papers import Picture
+    from workhold.presenting.widget import FixtureWidget
 
 __all__ = ["Result"]
 
@@ -153,10 +163,11 @@ class Result:
         return f"<Result: {self.words}>"
 
     def _repr_html_(self) -> str:
-        shown: str = delegate("result_html")(self)
-        return shown
+        from workhold.presenting.notebook import result_html
 
-    def draw(self, path: str | Path | None = None, *, unit: str = "mm", overwrite: bool = False) -> str:
+        return result_html(self)
+
+    def draw(self, path: str | Path | None = None, *, unit: str = "mm", overwrite: bool = False) -> Picture:
         """The best twelve at a glance, near duplicates once: SVG text, which a notebook shows as a picture.
 
         Parameters
@@ -170,8 +181,9 @@ class Result:
         InputError
             For a result without a fixture, and when the file cannot be written or replaced.
         """
-        picture: str = delegate("result_picture")(self, path, unit=unit, overwrite=overwrite)
-        return picture
+        from workhold.presenting.papers import result_picture
+
+        return result_picture(self, path, unit=unit, overwrite=overwrite)
 
     def widget(
         self,
@@ -181,7 +193,7 @@ class Result:
         jaw_force: float | None = None,
         jaw: str | float = "screw",
         supports: Mapping[str, Any] | None = None,
-    ) -> Any:
+    ) -> FixtureWidget | StillPicture:
         """A widget for notebooks that steps through the fixtures, lets a force push the part, and closes.
 
         Without the extra ``widget`` it is a picture of the fixture.
@@ -200,10 +212,11 @@ class Result:
         InputError
             For a result without a fixture, and values that cannot be.
         """
-        asked = {"usual": usual, "jaw_force": jaw_force, "jaw": jaw, "supports": supports}
-        return delegate("result_widget")(self, rank, **asked)
+        from workhold.presenting.notebook import result_widget
 
-    def why_none(self) -> Any:
+        return result_widget(self, rank, usual=usual, jaw_force=jaw_force, jaw=jaw, supports=supports)
+
+    def why_none(self) -> WhyNone:
         """Why there is no fixture: what each rule takes away, the nearest miss, and what would help.
 
         A notebook shows it as tables; it takes longer than the search did.
@@ -213,9 +226,11 @@ class Result:
         InputError
             For a result that has fixtures, or whose search was stopped.
         """
-        return delegate("why_none")(self)
+        from workhold.presenting.notebook import why_none
 
-    def to_pandas(self) -> Any:
+        return why_none(self)
+
+    def to_pandas(self) -> DataFrame:
         """All fixtures as a DataFrame, best first, with the columns of the CSV form, in mm and degrees.
 
         Raises
@@ -223,9 +238,11 @@ class Result:
         InputError
             Where pandas is not installed.
         """
-        return delegate("to_pandas")(self)
+        from workhold.presenting.data import to_pandas
 
-    def to_arrow(self) -> Any:
+        return to_pandas(self)
+
+    def to_arrow(self) -> pyarrow.Table:
         """All fixtures as a ``pyarrow.Table``, as :meth:`to_pandas` has them.
 
         Raises
@@ -233,9 +250,64 @@ class Result:
         InputError
             Where pyarrow is not installed.
         """
-        return delegate("to_arrow")(self)
+        from workhold.presenting.data import to_arrow
 
-    def supports(self, thickness: float | None = None, **asked: Any) -> tuple[Any, ...]:
-        """What holds the best fixtures up, see ``workhold.supports.asking.result_supports``."""
-        found: tuple[Any, ...] = delegate("result_supports")(self, thickness, **asked)
-        return found
+        return to_arrow(self)
+
+    def supports(
+        self,
+        thickness: float | None = None,
+        *,
+        best: int = 20,
+        each: int = 3,
+        loads: Sequence[Load | SpatialLoad] | None = None,
+        jaw_force: float | None = None,
+        pad_radius: float | None = None,
+        tip_radius: float | None = None,
+        pad_margin: float | None = None,
+        tip_margin: float | None = None,
+        head_radius: float | None = None,
+        inside: float | None = None,
+        band: tuple[float, float] | None = None,
+        bottom: Faces | None = None,
+        top: Faces | None = None,
+        bottom_zones: Sequence[Zone] | None = None,
+        top_zones: Sequence[Zone] | None = None,
+        reach: Sequence[tuple[float, float, float, float]] | None = None,
+        point: tuple[float, float] | None = None,
+    ) -> tuple[Supports, ...]:
+        """What holds the best fixtures up.
+
+        Parameters
+        ----------
+        best : how many fixtures.
+        each : how many sets of three for each of them; the rest as in :meth:`Fixture.supports`.
+
+        Raises
+        ------
+        InputError
+            As :meth:`Fixture.supports`.
+        """
+        from workhold.supports.asking import result_supports
+
+        return result_supports(
+            self,
+            thickness,
+            best=best,
+            each=each,
+            loads=loads,
+            jaw_force=jaw_force,
+            pad_radius=pad_radius,
+            tip_radius=tip_radius,
+            pad_margin=pad_margin,
+            tip_margin=tip_margin,
+            head_radius=head_radius,
+            inside=inside,
+            band=band,
+            bottom=bottom,
+            top=top,
+            bottom_zones=bottom_zones,
+            top_zones=top_zones,
+            reach=reach,
+            point=point,
+        )

@@ -12,12 +12,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from functools import partial
 from math import hypot, isfinite
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from attrs import Factory, evolve, field, frozen
 from attrs.converters import optional
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from workhold.errors import InputError
 from workhold.fixels.support_hardware import SupportPads, TopClamp
@@ -40,8 +40,10 @@ from workhold.model.solid import BESIDE_TOP, SolidOutline, reals_of
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
+    "OUTLINE",
     "PAD_RADIUS",
     "TIP_RADIUS",
+    "Faces",
     "Loops",
     "SpatialLoad",
     "SupportRequest",
@@ -57,6 +59,9 @@ PAD_RADIUS, TIP_RADIUS, LEAST_PAD_RADIUS = 4.0, 5.0, 1.0
 HEAD = 1.5
 
 Loops = tuple[NDArray[np.float64], ...]
+# Faces as users of Python give them, and the word for the whole outline.
+OUTLINE: Literal["outline"] = "outline"
+Faces = Sequence[ArrayLike] | Literal["outline"]
 Span = tuple[float, float]
 
 

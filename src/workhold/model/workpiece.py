@@ -7,14 +7,13 @@ from functools import cached_property, partial
 from itertools import accumulate
 from math import isfinite
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from attrs import define, evolve, field
 from numpy.typing import ArrayLike, NDArray
 
 from workhold.conventions import READING, SHORTEST
-from workhold.delegates import delegate
 from workhold.errors import InputError, encodable, refuse_kind
 from workhold.fixels.carrier import WALL
 from workhold.geometry.hull import HullEdge, hull_edges
@@ -37,6 +36,9 @@ from workhold.limits import real
 from workhold.model.numbered_outlines import NumberedOutlines, outer_count, refuse_misplaced_holes, unlike
 from workhold.model.pose import Flush, Pose
 from workhold.model.solid import SolidOutline
+
+if TYPE_CHECKING:
+    from workhold.presenting.papers import Picture
 
 __all__ = ["Workpiece"]
 
@@ -229,7 +231,9 @@ class Workpiece:
         return f"<Workpiece {self.name}: {faces} face{'s' * (faces != 1)}{inside}, {size}>"
 
     def _repr_html_(self) -> str:
-        return str(delegate("workpiece_html")(self))
+        from workhold.presenting.notebook import workpiece_html
+
+        return workpiece_html(self)
 
     def draw(
         self,
@@ -238,7 +242,7 @@ class Workpiece:
         peg_radius: float | None = None,
         unit: str = "mm",
         overwrite: bool = False,
-    ) -> str:
+    ) -> Picture:
         """The part with its faces numbered: SVG text, which a notebook shows as a picture.
 
         Parameters
@@ -253,9 +257,9 @@ class Workpiece:
         InputError
             For a unit that is not known, and when the file cannot be written or replaced.
         """
-        asked = {"peg_radius": peg_radius, "unit": unit, "overwrite": overwrite}
-        picture: str = delegate("workpiece_picture")(self, path, **asked)
-        return picture
+        from workhold.presenting.papers import workpiece_picture
+
+        return workpiece_picture(self, path, peg_radius=peg_radius, unit=unit, overwrite=overwrite)
 
     @cached_property
     def loop_segments(self) -> tuple[tuple[Segment, ...], ...]:

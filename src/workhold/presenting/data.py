@@ -36,6 +36,9 @@ from workhold.seating.clamping import by_hand
 from workhold.statics.why_first import why_first
 
 if TYPE_CHECKING:
+    import pyarrow
+    from pandas import DataFrame
+
     from workhold.files.toolkit_file import LoadedToolkit
     from workhold.listing.identity import Entries
     from workhold.model.result import Result
@@ -296,12 +299,13 @@ REQUIREMENTS = {
 }
 
 
-def to_pandas(result: Result) -> Any:
+def to_pandas(result: Result) -> DataFrame:
     """Makes a DataFrame, see :meth:`workhold.Result.to_pandas`."""
-    return library("pandas").DataFrame(columns_of(result))
+    frame: DataFrame = library("pandas").DataFrame(columns_of(result))
+    return frame
 
 
-def to_arrow(result: Result) -> Any:
+def to_arrow(result: Result) -> pyarrow.Table:
     """Makes a table of Arrow, see :meth:`workhold.Result.to_arrow`."""
     return library("pyarrow").table(columns_of(result))
 

@@ -166,7 +166,7 @@ def save_sheet(
     if paper and paper not in PAPERS:
         raise InputError(f"the paper {str(paper)[:40]!r} is not known: choose {' or '.join(PAPERS)}.")
     settings["jaw"] = jaw_stiffness(settings.get("jaw", "screw"))
-    settings.setdefault("day", date.today())
+    settings["day"] = settings.get("day") or date.today()
     settings |= {"number": listed.rank, "count": listed.count, "others": listed.others}
     write_paper(path, listed.result, listed.row + 1, result_file, settings)
 
