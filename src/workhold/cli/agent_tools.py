@@ -136,7 +136,7 @@ def answered(asked: DesignArguments, cancel: Event) -> tuple[Loaded, Result]:
         toolkit,
         asked.types,
         asked.contact_margin,
-        Restrictions(avoid=asked.avoid, zones=zones, angles=asked.angles),
+        Restrictions(asked.avoid, zones, asked.angles, asked.touch),
         asked_ranking(None, asked.prefer, bool(loads) or has_forces, program is not None),
         with_fit_of(None, tolerance),
         loads,
@@ -145,6 +145,7 @@ def answered(asked: DesignArguments, cancel: Event) -> tuple[Loaded, Result]:
         seating=asked.seating,
         opening=asked.opening,
         foolproof=asked.foolproof,
+        max_location_error=asked.max_location_error,
         **passed,
     )
     clock = Timer(asked.seconds, cancel.set)

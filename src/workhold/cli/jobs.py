@@ -48,7 +48,7 @@ KEYS = (PART, TOOLKIT, *(name for group in GROUPS for name in fields_dict(group)
 FLAGS = ("foolproof",)
 TRUTHS = {"true": True, "yes": True, "false": False, "no": False}
 # Words of which there may be several.
-LISTS = (TOOLKIT, "layer", "avoid", "keep_out", "angle", "load")
+LISTS = (TOOLKIT, "layer", "avoid", "touch", "keep_out", "angle", "load")
 FILES = (PART, TOOLKIT, "loads", "program", "tools")
 
 
@@ -265,7 +265,7 @@ def asked_of(
         unit = length_unit(job.reading.unit)
         asked = job.words.asked(unit)
         asked["tolerance"] = with_fit_of(asked["tolerance"], tolerance)
-        asked["ranking"] = asked["ranking"] or usual
+        asked["rank_by"] = asked["rank_by"] or usual
         workpiece = read.loaded.workpiece
         try:
             refuse_unsure_numbers(read.loaded, asked["restrictions"].avoid, CALLED)

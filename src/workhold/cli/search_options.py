@@ -18,6 +18,7 @@ from workhold.cli.values import (
     number,
     optional_count,
     optional_force,
+    optional_length,
     optional_positive_length,
     whole_number,
 )
@@ -117,6 +118,12 @@ class QueryWords:
         "Of a solid's second side: the result of the first, whose faces to avoid were cut there; they are "
         "avoided here, too.",
     )
+    touch: list[str] | None = option(
+        RULING_OUT, "FACES", "Faces that every fixture must touch, such as 3,7; not with two clamps."
+    )
+    max_location_error: str | None = option(
+        RULING_OUT, "LENGTH", "List only fixtures whose location error is at most this."
+    )
     keep_out: list[str] | None = option(
         RULING_OUT,
         "ZONE",
@@ -185,8 +192,12 @@ class QueryWords:
                 ),
                 zones=tuple(zone(text, unit) for text in self.keep_out or ()),
                 angles=tuple(angles(text) for text in self.angle or ()),
+                touch=tuple(
+                    whole_number("--touch", word) for words in self.touch or () for word in words.split(",")
+                ),
             ),
-            "ranking": asked_ranking(names, self.prefer, bool(loads) or has_forces, has_program),
+            "max_location_error": optional_length("--max-location-error", self.max_location_error, unit),
+            "rank_by": asked_ranking(names, self.prefer, bool(loads) or has_forces, has_program),
             "tolerance": asked_tolerance(self.tolerance, unit),
             "loads": loads,
             "jaw_force": optional_force("--jaw-force", self.jaw_force),

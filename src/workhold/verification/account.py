@@ -43,6 +43,7 @@ from workhold.model.search_report import (
     asked_note,
     best_note,
     by_hand_note,
+    chosen_note,
     cut_note,
     fitted_note,
     kept_note,
@@ -101,7 +102,7 @@ def count_faults(listing: Listing, rotations: int) -> Iterator[str]:
             yield f"found says {found} fixtures of type {kind}, but {listed} are listed"
         if not (distinct <= found <= distinct * rotations):
             yield f"distinct says {distinct} fixtures of type {kind}, which {found} cannot form"
-        if found and kind not in listing.query.arrangements:
+        if found and kind not in listing.query.types:
             yield f"found says {found} fixtures of type {kind}, which is not asked for"
     listed, found, best = len(listing.fixtures), sum(listing.found.values()), listing.query.best
     if best is not None and listed > best:
@@ -109,7 +110,7 @@ def count_faults(listing: Listing, rotations: int) -> Iterator[str]:
     said = {kept_note(found, listed), cut_note(found, listed)} & set(
         listing.notes
     ) or listing.query.has_seating_rules
-    if found > listed != best and not said:
+    if found > listed != best and not (said or listing.is_chosen):
         yield f"found says {found} fixtures, but {listed} are listed, and nothing says why"
 
 
@@ -121,7 +122,7 @@ def seating_faults(listing: Listing) -> Iterator[str]:
     stated = sum(fixture.seating is not None for fixture in first)
     if query.has_seating_rules and (stated < listed or listed > len(first)):
         yield f"{listed} fixtures are listed for their seating, but it is stated of {stated}"
-    elif listing.complete and stated < len(first):
+    elif listing.complete and stated < len(first) and not listing.is_chosen:
         yield f"the seating of {len(first)} fixtures is asked for, but it is stated of {stated}"
     if any(fixture.seating is not None for fixture in listing.fixtures[len(first) :]):
         yield f"the seating of more fixtures is stated than of the {len(first)} that it is asked of"
@@ -243,7 +244,7 @@ def may_be_said(note: str, listing: Listing) -> bool:
         return True
     if listing.query.restricted_by and note == asked_note(listing.query.restricted_by):
         return not found
-    if note == kept_note(found, listed):
+    if note in (kept_note(found, listed), chosen_note(found, listed)):
         return found > listed
     if note == cut_note(found, listed):
         return found > listed and not listing.complete
@@ -254,9 +255,10 @@ def seated_notes(listing: Listing) -> Iterator[str]:
     """The notes that may say how many fixtures had their seating worked out, and how many are as asked."""
     listed, found, query = len(listing.fixtures), sum(listing.found.values()), listing.query
     most = min(query.seating or 0, found)
+    is_more = listed == query.best or listing.is_chosen
     for looked_at in range(listed if not listing.complete else most, most + 1):
-        # Of those that are as asked no more than the best are listed.
-        for kept in range(listed, (looked_at if listed == query.best else listed) + 1):
+        # Of those that are as asked no more than the best are listed, or those that somebody chose.
+        for kept in range(listed, (looked_at if is_more else listed) + 1):
             yield seated_note(looked_at, kept)
 
 

@@ -32,7 +32,7 @@ from workhold.model.pose import Pose
 from workhold.model.quality import figures_in
 from workhold.model.query import Query
 from workhold.model.result import Result
-from workhold.model.search_report import Proof
+from workhold.model.search_report import Proof, chosen_note
 from workhold.model.seating import Seating
 from workhold.model.solid import BESIDE_TOP
 from workhold.verification.reading import fixtures_of, with_working_forces
@@ -205,6 +205,11 @@ class Listing:
         return self.complete and dict(self.found) == dict(self.counts) and self.query.best is None
 
     @property
+    def is_chosen(self) -> bool:
+        """Whether somebody chose what is listed, which says nothing of the others."""
+        return chosen_note(sum(self.found.values()), len(self.fixtures)) in self.notes
+
+    @property
     def hardware(self) -> ToolkitRules:
         return ToolkitRules.of(self.query)
 
@@ -309,6 +314,7 @@ def keys_missing(head: Head) -> list[str]:
     spared = {"toolkit" if head.toolkit is None else "vise", "proof", "tolerance.fit"}
     # Where nobody counted pairs and seats a note says so, for which the account looks.
     spared |= {"workpiece.departure", "tolerance.departure", "pairs", "seats", "thickness"}
+    spared |= {"restrictions.touch", "max_location_error"}
     # Where steps count, its absence is a fault of the order.
     spared |= {"least_effective_error"}
     # A toolkit without flats, or heights of its own, says nothing of them.

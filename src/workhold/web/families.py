@@ -57,7 +57,7 @@ class FamilyForm(Form):
         ranking = asked_ranking(self.ranking, self.prefer, ()) or usual
         tolerance = None if self.tolerance is None else self.tolerance.tolerance()
         parts = [form.workpiece(most_segments) for form in self.workpieces]
-        asked = {"contact_margin": self.contact_margin, "ranking": ranking, "tolerance": tolerance}
+        asked = {"contact_margin": self.contact_margin, "rank_by": ranking, "tolerance": tolerance}
         return tuple(
             (part.name, Query(part, toolkit, self.types, **asked))  # type: ignore[arg-type]
             for part in parts

@@ -119,6 +119,7 @@ class RestrictionsForm(Form, RestrictionsPart):
     avoid: list[Annotated[int, Field(ge=0, le=MOST_VERTICES)]] = Field(default=[], max_length=MOST_VERTICES)
     zones: list[LoopForm] = Field(default=[], max_length=MOST_RANGES)
     angles: list[Point] = Field(default=[], max_length=MOST_RANGES)
+    touch: list[Annotated[int, Field(ge=0, le=MOST_VERTICES)]] = Field(default=[], max_length=MOST_VERTICES)
 
 
 class ToleranceForm(Form, TolerancePart):
@@ -164,6 +165,7 @@ class SearchForm(Form):
     types: list[Name] | None = Field(default=None, max_length=10)
     contact_margin: Annotated[float, Field(ge=0, le=LARGEST)] = 0.0
     restrictions: RestrictionsForm = RestrictionsForm()
+    max_location_error: Annotated[float, Field(gt=0, le=LARGEST)] | None = None
     ranking: list[Name] | None = Field(default=None, max_length=10)
     prefer: Name | None = None
     jaw_force: Annotated[float, Field(ge=0, le=LARGEST)] | None = None
@@ -190,6 +192,7 @@ class SearchForm(Form):
             listing=None if toolkit.closes_at_once else self.listing,
             program=program,
             peg_height=height,
+            max_location_error=self.max_location_error,
         )
 
 
@@ -235,7 +238,7 @@ class ExploreForm(SearchForm):
                 evolve(
                     asked,
                     toolkit=toolkit,
-                    arrangements=self.types,
+                    types=self.types,
                     tolerance=asked.tolerance if self.tolerance else tolerance,
                 ),
             )

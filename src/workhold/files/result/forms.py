@@ -154,9 +154,10 @@ class RestrictionsPart(FormPart):
     avoid: list[int] = []
     zones: list[list[list[float]]] = []
     angles: list[Pair] = []
+    touch: list[int] = []
 
     def restrictions(self) -> Restrictions:
-        return Restrictions(self.avoid, map(zone_of, self.zones), self.angles)
+        return Restrictions(self.avoid, map(zone_of, self.zones), self.angles, self.touch)
 
 
 class FitPart(FormPart):
@@ -265,6 +266,7 @@ class Head(FormPart):
     program: dict[str, Any] | None = None
     peg_height: float | None = None
     thickness: float | None = None
+    max_location_error: float | None = None
     pairs: Annotated[int, Field(ge=0)] | None = None
     seats: Annotated[int, Field(ge=0)] | None = None
     least_effective_error: Annotated[float, Field(ge=0)] | None = Field(
@@ -298,13 +300,14 @@ class Head(FormPart):
             self.types,
             contact_margin=self.contact_margin,
             restrictions=self.restrictions.restrictions(),
-            ranking=["closure_margin"] if self.ranking is None else self.ranking,
+            rank_by=["closure_margin"] if self.ranking is None else self.ranking,
             tolerance=None if self.tolerance is None else self.tolerance.tolerance(),
             loads=(part.load() for part in self.loads),
             best=self.best,
             jaw_force=self.jaw_force,
             listing=self.listing,
             seating=self.seating,
+            max_location_error=self.max_location_error,
             opening=self.opening,
             foolproof=self.foolproof,
             program=self.asked_program(),
