@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from workhold.files.part.load import load
     from workhold.files.part.loaded import solids_in
     from workhold.files.result.columns import answer_to_file
-    from workhold.files.result.reader import read_result as open
+    from workhold.files.result.reader import read_result
     from workhold.files.result.save import save
     from workhold.fixels.fence import Fence
     from workhold.fixels.flat_jaw import FlatJaw
@@ -34,9 +34,13 @@ if TYPE_CHECKING:
     from workhold.model.workpiece import Workpiece
     from workhold.presenting.assembly import from_build123d, from_cadquery
     from workhold.search.design import answer, design
+    from workhold.search.evaluating import evaluate
     from workhold.search.toolkit_search import count_contacts
     from workhold.seating.solver import seatings
 
+    open = read_result
+
+# What ``from workhold import *`` brings; not ``open``, which would hide Python's own.
 __all__ = [
     "Fence",
     "Fixture",
@@ -60,10 +64,10 @@ __all__ = [
     "circle_zone",
     "count_contacts",
     "design",
+    "evaluate",
     "from_build123d",
     "from_cadquery",
     "load",
-    "open",
     "polygon_zone",
     "save",
     "seatings",
@@ -94,6 +98,7 @@ HOMES = {
     "circle_zone": "workhold.model.requirements",
     "count_contacts": "workhold.search.toolkit_search",
     "design": "workhold.search.design",
+    "evaluate": "workhold.search.evaluating",
     "from_build123d": "workhold.presenting.assembly",
     "from_cadquery": "workhold.presenting.assembly",
     "load": "workhold.files.part.load",
@@ -119,4 +124,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted(__all__)
+    return sorted({*HOMES, "__version__"})

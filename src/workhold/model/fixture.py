@@ -8,10 +8,12 @@ from math import atan, tan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+import numpy as np
 from attrs import field, frozen
+from numpy.typing import NDArray
 
 from workhold.errors import InputError
-from workhold.fixels.carrier import WALL, hole_name
+from workhold.fixels.carrier import JAWS, WALL, hole_name
 from workhold.model.pose import Pose
 
 if TYPE_CHECKING:
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
     from workhold.model.support_triples import Supports
     from workhold.model.workpiece import Workpiece
     from workhold.presenting.papers import Picture
+    from workhold.statics.loads import LoadCase
 
 __all__ = ["Fixture", "Listed", "Pair", "Peg"]
 
@@ -37,14 +40,14 @@ class Peg:
     ----------
     carrier : name of what it stands on: "left" or "right" of a vise.
     column, row : the hole, counted from 0.
-    x, y : the peg's centre in the vise frame, in mm.
+    x, y : the peg's centre in mm, in the toolkit's frame (see :class:`Pose`), with the jaw or the clamp closed.
     face : number of the face it touches.
-    force : contact force per unit of clamping force; of two clamps per unit of the sum of theirs, at the
-        working ratio.
+    force : how hard it presses, as a ratio without unit: its contact force over the clamping force; of two clamps
+        over the sum of theirs, at the working ratio. In N it is this times the jaw force.
     place : what its place is called where that is no hole of its carrier: of a clamp its hole or its line.
     beside : number of a second face that it touches: of a corner that lies on a wall; None of all others.
-    flat_deg : which way its flat looks, in degrees from the x axis; None of a peg that touches with its round
-        side.
+    flat_deg : which way its flat looks, in degrees counter-clockwise from the toolkit's x axis; None of a peg
+        that touches with its round side.
     """
 
     carrier: str
@@ -141,6 +144,10 @@ class Listed:
         return Listed, (alone, 0, self.rank, self.count, self.others)
 
 
+# What an editor need not offer: other rooms use it.
+INTERNAL = frozenset({"asking", "figures", "listed", "listing", "passing", "placed", "refuse_others"})
+
+
 @frozen(repr=False)
 class Fixture:
     """One way to hold the workpiece.
@@ -151,8 +158,8 @@ class Fixture:
         on the right.
     pegs : in the order of the arrangement, those of a vise's left jaw first.
     pose : where the workpiece lies.
-    jaw_separation : x distance in mm from the left jaw's last column to the right jaw's first; of another
-        toolkit the travel of what moves.
+    travel : how far what moves has travelled, in mm: a jaw, a clamp from its hole, a sliding lattice; of two
+        clamps the first, see :attr:`travels`.
     quality : figures of merit by name.
     direction : in which the clamp moves when it clamps, such as "-x", or two clamps do, "-x -y"; None of a
         vise.
@@ -168,7 +175,7 @@ class Fixture:
     type: str
     pegs: tuple[Peg, ...]
     pose: Pose
-    jaw_separation: float
+    travel: float
     quality: Mapping[str, float] = field(eq=lambda quality: tuple(sorted(quality.items())))
     direction: str | None = None
     pair: Pair | None = None
@@ -176,6 +183,9 @@ class Fixture:
     seating: Any = field(default=None, eq=False)
     passing: Any = field(default=None, eq=False, repr=False)
     asking: Any = field(default=None, eq=False, repr=False)
+
+    def __dir__(self) -> list[str]:
+        return sorted(set(object.__dir__(self)) - INTERNAL)
 
     def __repr__(self) -> str:
         which = "Fixture" if self.listed is None else f"Fixture {self.listed.rank} of {self.listed.count}"
@@ -189,6 +199,9 @@ class Fixture:
             f"degrees{caught}>"
         )
 
+    def _repr_svg_(self) -> str | None:
+        return None if self.listed is None else self.draw()
+
     def _repr_html_(self) -> str | None:
         from workhold.presenting.notebook import fixture_html
 
@@ -197,7 +210,104 @@ class Fixture:
     @property
     def travels(self) -> tuple[float, ...]:
         """How far each thing that moves has travelled, in mm: the jaw, or the clamps in their order."""
-        return (self.jaw_separation,) if self.pair is None else self.pair.travels
+        return (self.travel,) if self.pair is None else self.pair.travels
+
+    @property
+    def jaw_separation(self) -> float | None:
+        """Of a vise the x distance in mm from the left jaw's last column to the right jaw's first; else None."""
+        return self.travel if {peg.carrier for peg in self.pegs} == set(JAWS) else None
+
+    @property
+    def rank(self) -> int:
+        """Its place in the list of its result, from 1.
+
+        Raises
+        ------
+        InputError
+            For a fixture that is not one of a result.
+        """
+        return self.listing.rank
+
+    @property
+    def contact_points(self) -> NDArray[np.float64]:
+        """Where pegs touch the part: (P, 2) in mm, in the toolkit's frame, in the order of the pegs.
+
+        ``pose.inverse.apply(contact_points)`` has them in the part's frame. The forces ``peg.force`` act there,
+        along minus the :attr:`normals`; without friction they balance.
+
+        Raises
+        ------
+        InputError
+            For a fixture that is not one of a result.
+
+        Examples
+        --------
+        >>> import workhold
+        >>> wedge = workhold.Workpiece.from_loops("wedge", [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]])
+        >>> first = workhold.design(wedge, workhold.Vise(pitch=15, columns=1, peg_radius=2))[0]
+        >>> away = first.contact_points - [(peg.x, peg.y) for peg in first.pegs]
+        >>> bool(np.allclose(away, -2 * first.normals))
+        True
+        """
+        from workhold.statics.loads import touched_points
+
+        result = self.listing.result
+        points, _ = touched_points(self, result.workpiece, result.toolkit)
+        return self.pose.apply(points)
+
+    @property
+    def normals(self) -> NDArray[np.float64]:
+        """Unit normals (P, 2) of the part where pegs touch it, out of the material, in the toolkit's frame.
+
+        Raises
+        ------
+        InputError
+            For a fixture that is not one of a result.
+        """
+        from workhold.statics.loads import touched_points
+
+        result = self.listing.result
+        return self.pose.turn(touched_points(self, result.workpiece, result.toolkit)[1])
+
+    def load_cases(
+        self,
+        loads: Load | Sequence[Load] | None = None,
+        *,
+        jaw_force: float | None = None,
+        friction: float | None = None,
+        jaw: str | float = "screw",
+    ) -> tuple[LoadCase, ...]:
+        """What each of some loads does to the pegs; each load acts by itself.
+
+        Parameters
+        ----------
+        loads : those of the query if None.
+        jaw_force : in N, with which what moves presses; that of the query if None, and without one as much as is
+            needed so that no peg lets go.
+        friction : Coulomb's coefficient between pegs and part, to say what it could add; None for none.
+        jaw : what keeps the jaw where it is: "screw", "constant" for a constant force, or how many times as
+            stiff as one contact it is.
+
+        Raises
+        ------
+        InputError
+            For a fixture that is not one of a result, and values that cannot be.
+
+        Examples
+        --------
+        >>> import workhold
+        >>> wedge = workhold.Workpiece.from_loops("wedge", [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]])
+        >>> first = workhold.design(wedge, workhold.Vise(pitch=15, columns=1, peg_radius=2))[0]
+        >>> (case,) = first.load_cases([workhold.Load(points=(15, 10), force=50)])
+        >>> case.jaw_force > 0, case.keeps_contact
+        (True, True)
+        """
+        from workhold.statics.loads import load_cases
+
+        query = self.listing.result.query
+        given = query.loads if loads is None else loads
+        force = query.jaw_force if jaw_force is None else jaw_force
+        return load_cases(self, query.workpiece, query.toolkit, given, force, friction, jaw)
 
     @property
     def placed(self) -> tuple[Peg, ...]:
@@ -401,6 +511,7 @@ class Fixture:
 
         Parameters
         ----------
+        path : of the file, whose name ends in .glb.
         thickness : of the part in mm; that of its solid, or 10, if None.
         supports : also the pads under the part and the clamp on top, of what :meth:`supports` returns.
         best : which of its sets of three, from 1.

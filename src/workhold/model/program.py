@@ -20,7 +20,7 @@ from attrs import evolve, field, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
-from workhold.limits import real, refuse_long
+from workhold.limits import real, refuse_long, with_names
 from workhold.model.cutting_forces import CuttingForces
 from workhold.model.cutting_tool import CuttingData, Cylinder, Tool
 from workhold.model.moves import (
@@ -84,7 +84,7 @@ class SweptArrays(NamedTuple):
     box: NDArray[np.bool_]
 
 
-@frozen(repr=False)
+@frozen(repr=False, field_transformer=with_names)
 class Program:
     """A program as it was understood, in the part's coordinates and mm; z is 0 where the part lies.
 
@@ -165,6 +165,7 @@ class Program:
 
         Parameters
         ----------
+        path : of the program.
         tools : file of a tool table, or a diameter or a :class:`Tool` for each number; what the program
             itself says of its tools if None.
         zero : where the program's X0 Y0 is on the part, in mm.

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
+import numpy as np
 from attrs import define, evolve, field
+from numpy.typing import ArrayLike, NDArray
 
-from workhold.errors import refuse_kind
+from workhold.errors import InputError, quoted, refuse_kind
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture, Listed
 from workhold.model.fixture_table import BLOCK, FixtureTable, fixture_at, fixtures_of
 from workhold.model.query import Query
-from workhold.model.search_report import Proof, asked_note, cut_note, fitted_note
+from workhold.model.search_report import Proof, asked_note, chosen_note, cut_note, fitted_note, kept_note
 from workhold.model.seating import Seating
 from workhold.model.workpiece import Workpiece
 
@@ -31,12 +33,18 @@ if TYPE_CHECKING:
 __all__ = ["Result"]
 
 
+# What an editor need not offer: other rooms use it.
+INTERNAL = frozenset({"cut_short", "listed", "part", "reasons", "seated", "words"})
+
+
 @define(frozen=True, repr=False)
 class Result:
     """All fixtures that a query asks for, best first, or the best of them.
 
     A result is a sequence: ``len(result)``, ``result[0]``, ``for fixture in result``. ``Fixture`` objects are
     made when asked for; the arrays behind them are in ``table``. Results that say the same are equal.
+    Some of the fixtures are a result again, see :meth:`choose`: ``result[:3]``, ``result[[4, 7]]``,
+    ``result[mask]``, ``result.where(...)``.
 
     Parameters
     ----------
@@ -118,20 +126,97 @@ class Result:
     def __getitem__(self, index: int) -> Fixture: ...
 
     @overload
-    def __getitem__(self, index: slice) -> list[Fixture]: ...
+    def __getitem__(self, index: slice | Sequence[int] | NDArray[Any]) -> Result: ...
 
-    def __getitem__(self, index: int | slice) -> Fixture | list[Fixture]:
+    def __getitem__(self, index: int | slice | Sequence[int] | NDArray[Any]) -> Fixture | Result:
         if isinstance(index, slice):
-            return [self[k] for k in range(*index.indices(len(self)))]
+            return self.choose(range(len(self))[index])
+        if not isinstance(index, int | np.integer):
+            return self.choose(index)
         if not -len(self) <= index < len(self):
             raise IndexError(f"fixture {index} of {len(self)}")
         index %= len(self)
+        index = int(index)
         made = fixture_at(self.table, self.toolkit, index, self.workpiece, self.listed(index))
         return self.seated(made, index)
 
     def seated(self, made: Fixture, index: int) -> Fixture:
         """The fixture of an index with its seating, where that is known."""
         return evolve(made, seating=self.seating[index]) if index < len(self.seating) else made
+
+    def choose(self, rows: ArrayLike) -> Result:
+        """The result with some of the fixtures, in their order here, each once; it saves as any other.
+
+        What was found stays as it is, and a note says that only some are listed.
+
+        Parameters
+        ----------
+        rows : a mask (N,) of booleans, one for each fixture, or numbers from 0, where those below 0 count from
+            the end.
+
+        Raises
+        ------
+        InputError
+            For a mask of another length, and for what are no numbers.
+        IndexError
+            For a number that there is no fixture of.
+
+        Examples
+        --------
+        >>> import workhold
+        >>> wedge = workhold.Workpiece.from_loops("wedge", [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]])
+        >>> result = workhold.design(wedge, workhold.Vise(pitch=15, columns=1, peg_radius=2))
+        >>> len(result[:3]), len(result[[4, 7]]), result[[4, 7]][0].pegs == result[4].pegs
+        (3, 2, True)
+        """
+        given = np.asarray(rows)
+        if given.dtype == np.bool_:
+            if given.shape != (len(self),):
+                raise InputError(
+                    f"a mask has one truth for each of the {len(self)} fixtures, not the form {given.shape}."
+                )
+            chosen = np.flatnonzero(given)
+        elif given.ndim != 1 or not (np.issubdtype(given.dtype, np.integer) or not given.size):
+            raise InputError(
+                f"fixtures cannot be chosen by {quoted(rows)}: give their numbers from 0, or a mask of booleans."
+            )
+        else:
+            away = (given < -len(self)) | (given >= len(self))
+            if away.any():
+                raise IndexError(f"fixture {given[away][0]} of {len(self)}")
+            chosen = np.unique(given.astype(np.int64) % max(len(self), 1))
+        if len(chosen) == len(self):
+            return self
+        found = sum(self.found.values())
+        gone = {told(found, len(self)) for told in (chosen_note, kept_note, cut_note)}
+        kept = (note for note in self.reasons if note not in gone)
+        return evolve(
+            self,
+            table=self.table.take(chosen),
+            seating=tuple(self.seating[row] for row in chosen if row < len(self.seating)),
+            notes=(*kept, chosen_note(found, len(chosen))),
+        )
+
+    def where(self, condition: Callable[[Fixture], bool] | ArrayLike) -> Result:
+        """The result with the fixtures for which something holds, see :meth:`choose`.
+
+        Parameters
+        ----------
+        condition : asked of each fixture; or a mask (N,) of booleans, such as a column of :meth:`to_pandas`
+            compared with a number.
+
+        Examples
+        --------
+        >>> import workhold
+        >>> wedge = workhold.Workpiece.from_loops("wedge", [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]])
+        >>> result = workhold.design(wedge, workhold.Vise(pitch=15, columns=1, peg_radius=2))
+        >>> three_left = result.where(lambda fixture: fixture.type == "II")
+        >>> len(three_left) == result.counts["II"], three_left.counts["I"]
+        (True, 0)
+        """
+        if callable(condition):
+            return self.choose(np.array([bool(condition(fixture)) for fixture in self], np.bool_))
+        return self.choose(condition)
 
     def part(self, rows: slice) -> Result:
         """The result with the fixtures of a slice only."""
@@ -158,6 +243,9 @@ class Result:
         where = f"{self.toolkit.wording.inside.partition(' ')[0]} a {self.toolkit.noun}"
         seated = f", with the seating of the first {len(self.seating):,}" if self.seating else ""
         return f"{count} of {self.workpiece.name} {where} ({kinds}){seated}{whole}"
+
+    def __dir__(self) -> list[str]:
+        return sorted(set(object.__dir__(self)) - INTERNAL)
 
     def __repr__(self) -> str:
         return f"<Result: {self.words}>"

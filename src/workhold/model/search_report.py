@@ -31,6 +31,7 @@ __all__ = [
     "asked_note",
     "best_note",
     "by_hand_note",
+    "chosen_note",
     "cut_note",
     "fitted_note",
     "kept_note",
@@ -305,6 +306,11 @@ def fitted_note(departure: float) -> str:
 def kept_note(found: int, kept: int) -> str:
     """The remark on a server that keeps only the best of the fixtures found."""
     return f"{found:,} fixtures were found; this server keeps the best {kept:,} of them."
+
+
+def chosen_note(found: int, chosen: int) -> str:
+    """The remark on a result of which somebody kept some fixtures."""
+    return f"Of {found:,} fixtures found, {chosen:,} were chosen to be listed."
 
 
 def many_note(count: int, listed: int) -> str:

@@ -29,7 +29,7 @@ from attrs.converters import optional
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
-from workhold.limits import real, refuse_long
+from workhold.limits import real, refuse_long, with_names
 from workhold.model.cutting_tool import Tool
 from workhold.model.moves import Moves, Stretches, along, shares_between
 
@@ -59,7 +59,7 @@ def shape_of(value: Any) -> StockShape:
     raise InputError(f"the shape '{str(value)[:20]}' of the stock is not known: give outline or block.")
 
 
-@frozen
+@frozen(field_transformer=with_names)
 class Stock:
     """What the part is cut from.
 

@@ -19,13 +19,13 @@ from attrs import Factory, evolve, field, frozen
 from attrs.converters import optional
 from numpy.typing import ArrayLike, NDArray
 
-from workhold.errors import InputError
+from workhold.errors import InputError, quoted
 from workhold.fixels.support_hardware import SupportPads, TopClamp
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.loop import checked_vertices, loop_segments
 from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.distance import is_inside
-from workhold.limits import real, refuse_long, refuse_strong
+from workhold.limits import real, refuse_long, refuse_strong, with_names
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.numbered_outlines import NumberedOutlines
 from workhold.model.requirements import (
@@ -72,13 +72,14 @@ def usual_head(tip_radius: float) -> float:
 
 def pair_of(values: Any) -> Span:
     """Two numbers in their order."""
-    one, other = values
-    return real(one), real(other)
+    if not isinstance(values, Iterable) or isinstance(values, str) or len(pair := tuple(values)) != 2:
+        raise InputError(f"two numbers cannot be {quoted(values)}: give two.")
+    return real(pair[0]), real(pair[1])
 
 
 def span_of(value: Any) -> Span:
     """A range of numbers from one number or two, the smaller first."""
-    if isinstance(value, Sequence) and len(value) == 2:
+    if isinstance(value, Sequence | np.ndarray) and not isinstance(value, str) and len(value) == 2:
         low, high = (real(one) for one in value)
         return (low, high) if low <= high else (high, low)
     number = real(value)
@@ -102,7 +103,7 @@ def rings_of(reach: Iterable[Iterable[float]]) -> tuple[tuple[float, float, floa
     return tuple((x, y, least, most) for x, y, least, most in rings)
 
 
-@frozen
+@frozen(field_transformer=with_names)
 class SpatialLoad:
     """A load as it acts in space; force, axial force and moments act together, their ranges by themselves.
 
@@ -176,7 +177,7 @@ class SpatialLoad:
         return self if self.heights is not None else evolve(self, heights=(thickness, thickness))
 
 
-@frozen
+@frozen(field_transformer=with_names)
 class SupportRequest:
     """What supports and the clamp are, and where they may touch; lengths in mm, the part's coordinates.
 

@@ -238,10 +238,10 @@ def recounted(fixture: Fixture, toolkit: Toolkit, triple: Triple, start: Hole = 
         When there are no such holes, as of supports that do not fit the toolkit.
     """
     plates = [plate for plate in toolkit.carriers if plate.has_lattice]
-    travel = fixture.jaw_separation if triple.travel is None else triple.travel
+    travel = fixture.travel if triple.travel is None else triple.travel
     for columns, rows in moves(toolkit, start):
         shifts = {
-            plate.name: shift_of(plate, plates[0], (columns, rows), travel - fixture.jaw_separation)
+            plate.name: shift_of(plate, plates[0], (columns, rows), travel - fixture.travel)
             for plate in plates
         }
         if all(fits(plate, shifts[plate.name], fixture, toolkit, triple) for plate in plates):

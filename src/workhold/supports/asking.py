@@ -7,6 +7,7 @@ a clamp so far inside its triangle. Ends of dowels as thick as those that locate
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import islice
 from typing import Any
 
 from attrs import evolve, fields
@@ -192,4 +193,6 @@ def result_supports(
     """
     count, sets = counting_number("best", best), counting_number("each", each)
     request, sets = asked_request(result.query, thickness, given(asked)), 3 if sets is None else sets
-    return tuple(supports_one_by_one(result[:count], result.query, request, loads, jaw_force, sets))
+    return tuple(
+        supports_one_by_one(list(islice(result, count)), result.query, request, loads, jaw_force, sets)
+    )
