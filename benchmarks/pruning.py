@@ -51,7 +51,7 @@ def compared(part: str, pitch: float, columns: int, peg_radius: float) -> list[d
         outcomes.append(
             {
                 "kept": kept,
-                "same": list(best) == everything[:kept],
+                "same": list(best) == list(everything)[:kept],
                 "examined": best.statistics["contacts_examined"],
                 "all": everything.statistics["contacts_examined"],
                 "seconds": seconds,

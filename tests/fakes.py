@@ -48,7 +48,7 @@ def fake_result(count: int, seed: int = 0, **changes: object) -> Result:
     )
     counts = vise.arrangements_counted(arrangement)
     result = Result(
-        Query(plate(), vise, ranking="closure_margin"),
+        Query(plate(), vise, rank_by="closure_margin"),
         table,
         counts,
         {"I": counts["I"] // 2, "II": counts["II"] // 2},

@@ -45,7 +45,7 @@ def listed(fixtures: Iterable[Fixture]) -> list[Listed]:
                 for p in f.pegs
             ],
             "pose": {"theta_deg": f.pose.theta_deg, "x": f.pose.x, "y": f.pose.y},
-            "jaw_separation": f.jaw_separation,
+            "jaw_separation": f.travel,
         }
         for f in fixtures
     ]

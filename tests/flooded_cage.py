@@ -116,7 +116,7 @@ class Flood:
     def gaps(self, theta: float, heights: Array, moving: bool) -> list[list[Interval]]:
         """The places along the way that are free of the pegs that move, or of the others, at each height (N,)."""
         lows, highs = [], []
-        pegs = self.turned(self.obstacle.pegs + self.obstacle.ways * self.fixture.jaw_separation)
+        pegs = self.turned(self.obstacle.pegs + self.obstacle.ways * self.fixture.travel)
         for peg, way, radius in zip(pegs, self.obstacle.ways, self.obstacle.radii, strict=True):
             if bool(np.abs(way).sum() > 0.0) == moving:
                 low, high = self.blocked(theta, peg[1] - heights, radius)

@@ -70,7 +70,7 @@ def moved(fixture: Fixture, order: list[int], half_turn: bool, shift: tuple[floa
         sign * fixture.pose.y + shift[1],
     )
     # The pegs at separation 0 stand where they stood: the separation stays as it is told.
-    return Fixture("I", tuple(pegs), pose, fixture.jaw_separation, {})
+    return Fixture("I", tuple(pegs), pose, fixture.travel, {})
 
 
 def equilibria_of(closing: Closing) -> Equilibria:
@@ -92,7 +92,7 @@ class Obstacle:
         self.right = np.array([float(peg.carrier == RIGHT) for peg in fixture.pegs])
         # Which way each peg moves as S grows, and whether a smaller S clamps.
         self.ways, self.clamping, self.has_wall = np.outer(self.right, [1.0, 0.0]), 1, False
-        self.pegs = np.array([[peg.x, peg.y] for peg in fixture.pegs]) - self.ways * fixture.jaw_separation
+        self.pegs = np.array([[peg.x, peg.y] for peg in fixture.pegs]) - self.ways * fixture.travel
 
     @classmethod
     def about(cls, part: Workpiece, fixture: Fixture, toolkit: Toolkit) -> Obstacle:
@@ -103,14 +103,14 @@ class Obstacle:
         carriers = [toolkit.carrier(peg.carrier) for peg in pegs]
         out.radii = np.array([carrier.peg_radius for carrier in carriers])
         out.ways = np.array([carrier.travel.unit if carrier.travel else (0.0, 0.0) for carrier in carriers])
-        out.pegs = np.array([[peg.x, peg.y] for peg in pegs]) - out.ways * fixture.jaw_separation
+        out.pegs = np.array([[peg.x, peg.y] for peg in pegs]) - out.ways * fixture.travel
         out.clamping = toolkit.clamping
         return out
 
     def start(self, fixture: Fixture) -> Array:
         """theta, x and y of the middle of the part's box, and S."""
         x, y = fixture.pose.apply(*self.center)
-        return np.array([np.radians(fixture.pose.theta_deg), x, y, fixture.jaw_separation])
+        return np.array([np.radians(fixture.pose.theta_deg), x, y, fixture.travel])
 
     def near(self, config: Array, reach: float) -> list[tuple[float, Array]]:
         """Clearances below a reach, with their slopes over theta, x, y and S."""

@@ -8,11 +8,9 @@ The public face is small. The function :func:`load` reads a part; :class:`Vise`,
 
 from __future__ import annotations
 
-from functools import partial
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from workhold.delegates import hand_over
 from workhold.version import __version__ as __version__
 
 if TYPE_CHECKING:
@@ -21,7 +19,7 @@ if TYPE_CHECKING:
     from workhold.files.part.load import load
     from workhold.files.part.loaded import solids_in
     from workhold.files.result.columns import answer_to_file
-    from workhold.files.result.reader import read_result as open
+    from workhold.files.result.reader import read_result
     from workhold.files.result.save import save
     from workhold.fixels.fence import Fence
     from workhold.fixels.flat_jaw import FlatJaw
@@ -36,9 +34,13 @@ if TYPE_CHECKING:
     from workhold.model.workpiece import Workpiece
     from workhold.presenting.assembly import from_build123d, from_cadquery
     from workhold.search.design import answer, design
+    from workhold.search.evaluating import evaluate
     from workhold.search.toolkit_search import count_contacts
     from workhold.seating.solver import seatings
 
+    open = read_result
+
+# What ``from workhold import *`` brings; not ``open``, which would hide Python's own.
 __all__ = [
     "Fence",
     "Fixture",
@@ -62,10 +64,10 @@ __all__ = [
     "circle_zone",
     "count_contacts",
     "design",
+    "evaluate",
     "from_build123d",
     "from_cadquery",
     "load",
-    "open",
     "polygon_zone",
     "save",
     "seatings",
@@ -96,6 +98,7 @@ HOMES = {
     "circle_zone": "workhold.model.requirements",
     "count_contacts": "workhold.search.toolkit_search",
     "design": "workhold.search.design",
+    "evaluate": "workhold.search.evaluating",
     "from_build123d": "workhold.presenting.assembly",
     "from_cadquery": "workhold.presenting.assembly",
     "load": "workhold.files.part.load",
@@ -108,41 +111,10 @@ HOMES = {
 }
 
 
-# The functions that methods of the model's classes call, see ``delegates``.
-DELEGATES = {
-    "clamp_with_friction": "workhold.supports.friction",
-    "fixture_html": "workhold.presenting.notebook",
-    "fixture_picture": "workhold.presenting.papers",
-    "fixture_supports": "workhold.supports.asking",
-    "preset_fields": "workhold.files.toolkit_file",
-    "preset_names_of": "workhold.files.toolkit_file",
-    "preset_tolerance": "workhold.files.toolkit_file",
-    "read_program": "workhold.files.program.reader",
-    "result_html": "workhold.presenting.notebook",
-    "result_picture": "workhold.presenting.papers",
-    "result_supports": "workhold.supports.asking",
-    "result_widget": "workhold.presenting.notebook",
-    "save_glb": "workhold.presenting.assembly",
-    "save_sheet": "workhold.presenting.papers",
-    "seating_html": "workhold.presenting.notebook",
-    "supports_html": "workhold.presenting.notebook",
-    "to_arrow": "workhold.presenting.data",
-    "to_build123d": "workhold.presenting.assembly",
-    "to_cadquery": "workhold.presenting.assembly",
-    "to_pandas": "workhold.presenting.data",
-    "why_none": "workhold.presenting.notebook",
-    "workpiece_html": "workhold.presenting.notebook",
-    "workpiece_picture": "workhold.presenting.papers",
-}
-
-
 def imported(name: str, home: str) -> Any:
     """Imports an object; ``home`` is its module, and behind a colon its name there if that is another."""
     module, _, known_as = home.partition(":")
     return getattr(import_module(module), known_as or name)
-
-
-hand_over({name: partial(imported, name, home) for name, home in DELEGATES.items()})
 
 
 def __getattr__(name: str) -> Any:
@@ -152,4 +124,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted(__all__)
+    return sorted({*HOMES, "__version__"})

@@ -7,6 +7,7 @@ same where the verification says so (``verification.repeats``).
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from itertools import islice
 from pathlib import Path
 from threading import Event
 from typing import Any
@@ -44,6 +45,7 @@ def verify(
 
     Parameters
     ----------
+    source : the result, or the path of its file.
     complete : also answer the query again, and compare which fixtures there are, how many, and the account of
         the search.
     threads, cancel : of that search, see :func:`workhold.answer`; when it is cancelled, nothing is compared.
@@ -116,7 +118,7 @@ def differences(listing: Listing, result: Result) -> Iterator[str]:
     listed, found = len(listing.fixtures), sum(listing.found.values())
     # A server may have kept a part: the best of what had been found.
     best_kept = listing.complete and KeptBest(found, listed) in listing.notes
-    expected = result[:listed] if best_kept else result
+    expected = islice(result, listed) if best_kept else result
     matches = [(fixture, seen.find(fixture)) for fixture in expected]
     surplus = sorted(set(range(listed)) - {match for _, match in matches})
     if surplus:
@@ -129,7 +131,7 @@ def differences(listing: Listing, result: Result) -> Iterator[str]:
             if listing.found[kind] > number:
                 yield f"found says {listing.found[kind]} for {kind}, and there are {number} in all"
         return
-    missing = [fixture for fixture, match in matches if match is None]
+    missing = [fixture for fixture, match in matches if match is None and not listing.is_chosen]
     if missing:
         yield (
             f"a search finds {counted(len(missing))} that it does not list, the first of them "

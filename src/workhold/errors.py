@@ -19,6 +19,7 @@ __all__ = [
     "lacks_memory",
     "listed",
     "plain",
+    "quoted",
     "refuse_kind",
     "shortened",
 ]
@@ -134,6 +135,16 @@ def lacks_memory(error: BaseException | None) -> bool:
     )
 
 
+def quoted(value: object) -> str:
+    """A value as a sentence shows it: text within quotes, numbers as they are written, all cut to some length.
+
+    >>> quoted("12"), quoted(2.5)
+    ("'12'", '2.5')
+    """
+    plainly = isinstance(value, int | float) or type(value).__module__ == "numpy"
+    return shortened(str(value) if plainly else repr(value), LONGEST_VALUE)
+
+
 def refuse_kind(value: object, kind: type, name: str, remedy: str) -> None:
     """Refuses an argument of another type than it must have.
 
@@ -155,4 +166,4 @@ def refuse_kind(value: object, kind: type, name: str, remedy: str) -> None:
     workhold.errors.InputError: the length cannot be 'x': give a number.
     """
     if not isinstance(value, kind):
-        raise InputError(f"{name} cannot be {shortened(repr(value), LONGEST_VALUE)}: {remedy}.")
+        raise InputError(f"{name} cannot be {quoted(value)}: {remedy}.")

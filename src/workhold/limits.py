@@ -9,10 +9,15 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from functools import partial
 from math import ceil, inf, nan, sqrt
 from typing import Any
 
-from workhold.errors import InputError
+import numpy as np
+from attrs import Attribute
+from numpy.typing import NDArray
+
+from workhold.errors import InputError, quoted
 
 __all__ = [
     "MOST_BLOCKED",
@@ -26,32 +31,99 @@ __all__ = [
     "MOST_STEPS",
     "MOST_WAYS",
     "counting_number",
+    "read_number",
     "real",
+    "real_array",
     "refuse_little_space",
     "refuse_long",
     "refuse_many_steps",
     "refuse_much_work",
     "refuse_strong",
     "thread_count",
+    "with_names",
 ]
 
 
-def real(value: Any) -> float:
-    """A number as a float: infinite for a whole number too large for a float, NaN for what is no number.
+def real(value: Any, name: str = "a number") -> float:
+    """A number as a float: infinite for a whole number too large for a float.
 
     A check that refuses numbers that are not finite then refuses these as well.
 
+    Parameters
+    ----------
+    name : of the value, in words that begin a sentence.
+
+    Raises
+    ------
+    InputError
+        For text, also of digits, for arrays, and for all else that is no number.
+
     Examples
     --------
-    >>> real(3), real(-(10**400)), real("three")
-    (3.0, -inf, nan)
+    >>> real(3), real(-(10**400))
+    (3.0, -inf)
+    >>> real("12", "the force")
+    Traceback (most recent call last):
+        ...
+    workhold.errors.InputError: the force cannot be '12': give a number.
+    """
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        try:
+            return float(value)
+        except OverflowError:
+            return inf if value > 0 else -inf
+    is_one = not isinstance(value, str | bytes | bool) and getattr(value, "ndim", 0) == 0
+    try:
+        number = float(value) if is_one else None
+    except (TypeError, ValueError):
+        number = None
+    if number is None:
+        raise InputError(f"{name} cannot be {quoted(value)}: give a number.")
+    return number
+
+
+def with_names(cls: type, fields: list[Attribute[Any]]) -> list[Attribute[Any]]:
+    """Fields of an attrs class, whose numbers are called by the names of their fields where they are refused."""
+    numbers: Any = real
+    return [
+        one.evolve(converter=partial(real, name=one.name.replace("_", " ")))
+        if one.converter is numbers
+        else one
+        for one in fields
+    ]
+
+
+def read_number(text: Any) -> float:
+    """The number that a file or an option says in words or as a number; NaN for what is none.
+
+    >>> read_number("12.5"), read_number("three")
+    (12.5, nan)
     """
     try:
-        return float(value)
+        return float(text)
     except OverflowError:
-        return inf if value > 0 else -inf
+        return inf if text > 0 else -inf
     except (TypeError, ValueError):
         return nan
+
+
+def real_array(values: Any, name: str) -> NDArray[np.float64]:
+    """A copy of numbers as an array of floats.
+
+    Raises
+    ------
+    InputError
+        Quoting what is text.
+    TypeError, ValueError, OverflowError
+        For rows of unlike lengths, and what is no number otherwise.
+    """
+    array = np.array(values)
+    if array.ndim == 0:
+        raise TypeError("one value is no array of numbers")
+    if array.dtype.kind not in "iuf":
+        for value in np.array(values, dtype=object).flat:
+            real(value, name)
+    return np.array(values, dtype=np.float64)
 
 
 def counting_number(name: str, value: Any) -> int | None:
@@ -69,7 +141,7 @@ def counting_number(name: str, value: Any) -> int | None:
             return int(value)
     except (TypeError, ValueError, OverflowError):
         pass
-    raise InputError(f"{name} {value} is not a positive whole number: give 1 or more.")
+    raise InputError(f"{name} {quoted(value)} is not a positive whole number: give 1 or more.")
 
 
 # Coordinates and lengths in mm: a double of this size is known to 1e-10 mm, a tenth of the width of a rule's

@@ -51,7 +51,7 @@ def test_the_whole_way(folder: Path) -> None:
     opened = workhold.open("some.json")
     assert some["result_file"] == "some.json" and some["listed"] == len(opened) == 7
     assert opened.query.loads[0].force == 200.0 and len(opened.query.restrictions.zones) == 2
-    assert opened.query.ranking[:2] == ("warnings", "load_reaction")
+    assert opened.query.rank_by[:2] == ("warnings", "load_reaction")
     shown = told("show", folder, result_file="some.json", rank=2, jaw_force=5)
     assert shown["fixture"]["rank"] == 2 and shown["loads"][0]["jaw_force"] == 5.0
     assert told("sheet", folder, result_file="some.json", path="setup.svg", zero="centre")["written"] == [

@@ -42,7 +42,7 @@ def test_the_search_is_asked_what_the_user_asked(run: Any, searched: dict[str, A
     vise = asked.toolkit
     assert (vise.pitch, vise.columns, vise.rows, vise.peg_radius) == ((10, 12.7), 3, 9, 3)
     assert (vise.min_gap, vise.max_opening, vise.row_offset) == (2.5, 80, -1.5)
-    assert (asked.arrangements, asked.contact_margin, asked.best) == (("II",), 0.5, 4)
+    assert (asked.types, asked.contact_margin, asked.best) == (("II",), 0.5, 4)
     assert asked.workpiece.name == "widget"
     assert searched["options"]["threads"] == 2
     assert not searched["options"]["cancel"].is_set()
@@ -59,7 +59,7 @@ def test_what_is_not_said_has_the_defaults_of_the_model(run: Any, searched: dict
         None,
         0,
     )
-    assert (asked.arrangements, asked.contact_margin, asked.best) == (("I", "II"), 0, None)
+    assert (asked.types, asked.contact_margin, asked.best) == (("I", "II"), 0, None)
 
 
 def test_result_and_table(run: Any, searched: dict[str, Any], tmp_path: Path) -> None:

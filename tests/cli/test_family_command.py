@@ -122,12 +122,8 @@ def test_rules_reach_every_part(run: Any, drawings: Path, monkeypatch: pytest.Mo
     assert len(seen["asked"]) == 4
     for query in (one.query for one in seen["asked"]):
         assert query.restrictions.avoid == (1,) and query.restrictions.angles == ((0.0, 90.0),)
-        assert (
-            len(query.restrictions.zones) == 1
-            and query.arrangements == ("II",)
-            and query.contact_margin == 0.5
-        )
-        assert query.ranking == ("closure_margin", "tilt") and query.tolerance.peg == 0.02
+        assert len(query.restrictions.zones) == 1 and query.types == ("II",) and query.contact_margin == 0.5
+        assert query.rank_by == ("closure_margin", "tilt") and query.tolerance.peg == 0.02
     (limit,) = seen["thresholds"]
     assert (limit.figure.key, limit.value) == ("location_error", 0.05)
     assert (seen["unfit"], seen["most_loss"], seen["seconds"], seen["threads"]) == (True, 1.5, 3.0, 1)

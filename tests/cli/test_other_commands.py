@@ -30,7 +30,7 @@ def test_show_tells_all_that_has_to_be_set(run: Any, result_file: Path) -> None:
     assert outcome.exit_code == 0
     fixture = fake_result(6)[1]
     assert f"Fixture 2 of 6, type {fixture.type}" in outcome.stdout
-    assert f"Opening S {fixture.jaw_separation:.3f} mm" in outcome.stdout
+    assert f"Opening S {fixture.travel:.3f} mm" in outcome.stdout
     assert f"turned by {fixture.pose.theta_deg:.3f} degrees" in outcome.stdout
     for peg in fixture.pegs:
         row = next(line for line in outcome.stdout.splitlines() if line.split()[:1] == [peg.hole])

@@ -46,7 +46,7 @@ def test_the_program_reaches_the_search_as_it_was_typed(
     assert (query.program.zero, query.program.rapid, query.program.clearance) == ((1.0, 2.0), "box", 2.5)
     assert query.program.z_zero == query.peg_height == 10.0
     assert query.program.tools[1].diameter == 12.0
-    assert query.ranking[1] == "program_clearance"
+    assert query.rank_by[1] == "program_clearance"
 
 
 @pytest.mark.thorough
@@ -196,7 +196,7 @@ def test_forces_rank_where_they_are_asked_for(
             assert outcome.exit_code == 2 and "spindle's speed, S" in outcome.stderr
             continue
         assert outcome.exit_code == 0, outcome.stderr
-        assert searched["asked"].ranking[1] == "load_reaction"
+        assert searched["asked"].rank_by[1] == "load_reaction"
     bare = run("design", "widget", *HELD, *words, "--rank-by", "jaw-force-needed")
     assert bare.exit_code == 2 and "there is no load to rank by" in bare.stderr
 

@@ -74,7 +74,7 @@ def test_loads_ranking_and_tolerance_reach_the_search(
     first, second = asked.loads
     assert (first.force, first.points, first.directions) == (200.0, ((10.0, 5.0),), (30.0, 60.0))
     assert (second.name, second.moment) == ("drill", 5000.0)
-    assert asked.ranking == ("load_reaction", "end_distance")
+    assert asked.rank_by == ("load_reaction", "end_distance")
     assert asked.tolerance == Tolerance(0.02, 0.05)
 
 

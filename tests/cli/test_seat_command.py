@@ -69,7 +69,7 @@ def test_it_tells_what_to_do_and_what_to_read(
     result = workhold.open(result_file)
     [told] = workhold.seatings(result)
     text = " ".join(outcome.stdout.split())
-    right = f"{result[0].jaw_separation:.3f} mm"
+    right = f"{result[0].travel:.3f} mm"
     assert f"When it has come home the opening S is {right}. While that is more" in text
     assert f"which is {told.capture_opening:.3f} mm from where they hold the part" in text
     assert f"With a friction below {told.sticking_friction:.3f}" in text
@@ -99,7 +99,7 @@ def test_a_design_tells_it_of_the_first_and_lists_what_is_as_asked(
     for figure in ("capture_opening", "reading"):
         assert f"{result[0].figures[figure]:.2f}" in first
     shown, told = (" ".join(run(command, out, 1).stdout.split()) for command in ("show", "seat"))
-    sentence = f"When it has come home the opening S is {result[0].jaw_separation:.3f} mm."
+    sentence = f"When it has come home the opening S is {result[0].travel:.3f} mm."
     assert sentence in shown and sentence in told
     data = json.loads(run("show", out, 1, "--json").stdout)
     assert data["fixture"]["seating"] == json.loads(json.dumps(result.seating[0].as_fields()))
@@ -107,7 +107,7 @@ def test_a_design_tells_it_of_the_first_and_lists_what_is_as_asked(
     opened = run(*asked, "--opening", opening, "--foolproof", "--rank-by", "reading", "--out", out, "--force")
     assert opened.exit_code == 0, opened.stderr
     query = workhold.open(out).query
-    assert (query.opening, query.foolproof, query.ranking) == (opening, True, ("reading",))
+    assert (query.opening, query.foolproof, query.rank_by) == (opening, True, ("reading",))
     assert "listed for their seating" in " ".join(opened.stdout.split()) and "as asked" in opened.stderr
     alone = run("design", "widget", "--pitch", 8, "--columns", 1, "--peg-radius", 3, "--foolproof")
     assert alone.exit_code == 2 and "need --seating K" in alone.stderr
@@ -268,7 +268,7 @@ def test_a_clamp_is_drawn_back(
     [told] = workhold.seatings(result)
     outcome = run("seat", tmp_path / "p.json", 1, "--draw", tmp_path / "seats.svg")
     text = " ".join(outcome.stdout.split())
-    right = result[0].pegs[-1].y if travel is None else -result[0].jaw_separation
+    right = result[0].pegs[-1].y if travel is None else -result[0].travel
     assert words.format(wide=f"{right - told.capture_opening:.3f}", by=f"{told.capture_opening:.3f}") in text
     assert f"is {right:.3f} mm. While that is less, the part is stuck" in text
     reads = [
@@ -276,9 +276,7 @@ def test_a_clamp_is_drawn_back(
         for line in outcome.stdout.splitlines()
         if line.split()[:1] and line.split()[0].isdigit()
     ]
-    rest = [
-        right - (seat.jaw_separation - result[0].jaw_separation) for seat in told.seats if not seat.is_own
-    ]
+    rest = [right - (seat.jaw_separation - result[0].travel) for seat in told.seats if not seat.is_own]
     shown = [
         one for one in told.seats if not one.is_own and (travel is None or one.jaw_separation <= -travel[0])
     ]
@@ -300,6 +298,6 @@ def test_an_opening_vise_is_closed_to_put_the_part_in(run: Any, tmp_path: Path) 
     result = workhold.open(tmp_path / "o.json")
     [told] = workhold.seatings(result)
     text = " ".join(run("seat", tmp_path / "o.json", 1).stdout.split())
-    right = result[0].jaw_separation
+    right = result[0].travel
     assert f"Close the jaws to more than {right - told.capture_opening:.3f} mm" in text
     assert f"the opening S is {right:.3f} mm. While that is less" in text

@@ -33,7 +33,7 @@ def diamond_result() -> Result:
         face=np.array([[peg.face for peg in fixture.pegs]], np.int32),
         theta=np.radians([fixture.pose.theta_deg]),
         position=np.array([[fixture.pose.x, fixture.pose.y]]),
-        jaw_separation=np.array([fixture.jaw_separation]),
+        jaw_separation=np.array([fixture.travel]),
         force=np.array([[peg.force for peg in fixture.pegs]]),
         quality=unknown_quality(null_vector.min(axis=1)),
     )

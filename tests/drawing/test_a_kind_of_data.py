@@ -149,7 +149,7 @@ def test_the_page_and_the_terminal_tell_it() -> None:
 @pytest.mark.parametrize("travelled", [30.0 + OUT, 40.0])
 def test_what_shows_of_it_keeps_the_wall_below_the_part(travelled: float) -> None:
     """The plate slides above and does not go on below the wall."""
-    seen = shown(evolve(HELD, jaw_separation=travelled), TOOLKIT, HOUSE)
+    seen = shown(evolve(HELD, travel=travelled), TOOLKIT, HOUSE)
     (wall,), (plate,) = seen.walls, seen.carriers
     assert wall.bar.y1 == 0.0 and wall.ends == (0.0, 40.0)
     assert plate.plate.y0 > wall.bar.y1 and plate.travelled == travelled

@@ -138,8 +138,8 @@ def test_a_seat_like_a_fixture_is_said_to_lie_flush() -> None:
     """In the picture of seats, and among those of the terminal, where a seat of pegs alone touches with four."""
     result = held(KITE, travel=(4, 30))
     fixture = result[0]
-    seat = Seat("fixture", fixture.pose, fixture.jaw_separation + 1.0, 1.0, False, False, (), (), None, False)
-    own = evolve(seat, jaw_separation=fixture.jaw_separation, difference=0.0, is_own=True)
+    seat = Seat("fixture", fixture.pose, fixture.travel + 1.0, 1.0, False, False, (), (), None, False)
+    own = evolve(seat, jaw_separation=fixture.travel, difference=0.0, is_own=True)
     picture = texts(draw_seats([own, seat], fixture, result.workpiece, result.toolkit))
     assert picture.count("flush") == 2 and "four pegs" not in picture
     lengths = LengthUnit.suiting(MILLIMETRE, 10.0)

@@ -67,7 +67,7 @@ def test_everything_a_machinist_needs_is_written(held: Held) -> None:
         assert wanted in words
     assert workpiece.name in words
     (separation,) = (word for word in words if word.startswith("S = "))
-    assert float(separation.removeprefix("S = ").removesuffix(" mm")) == pytest.approx(fixture.jaw_separation)
+    assert float(separation.removeprefix("S = ").removesuffix(" mm")) == pytest.approx(fixture.travel)
 
 
 def test_page_is_all_that_is_used(held: Held) -> None:

@@ -79,7 +79,7 @@ def test_the_clamp_can_be_set_up_from_the_sheet(way: str, bolted: bool) -> None:
     words, tip = facts(draw_sheet(*held, details)), fixture.pegs[3]
     towards = {"-x": "to the left", "+x": "to the right", "-y": "downward", "+y": "upward"}[way]
     place = tip.hole.removeprefix("clamp ")
-    length = -fixture.jaw_separation if bolted else tip.x if way[1] == "x" else tip.y
+    length = -fixture.travel if bolted else tip.x if way[1] == "x" else tip.y
     number = f"{length:.3f} mm".replace("-", "−")
     assert f"Clamp {'bolted in' if bolted else 'along'} {place}" in words
     assert f"{towards}, {way}".replace("-", "−") in words and number in words

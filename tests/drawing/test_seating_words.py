@@ -105,7 +105,7 @@ def test_bounds_are_never_told_too_wide(result: Result, told: list[Seating], uni
     number_of = [float(word) * unit.millimetres for word in first.split() if word.replace(".", "").isdigit()]
     wide, more, room = number_of
     assert one.capture_opening is not None and one.placing is not None and one.drop_room is not None
-    right = result[number].jaw_separation
+    right = result[number].travel
     assert (
         right < wide <= right + one.capture_opening
         and 0.9 * one.capture_opening < more <= one.capture_opening
@@ -130,7 +130,7 @@ def test_the_nearest_readings_come_first(result: Result, told: list[Seating]) ->
     written = [word for page in pages for word in texts(page)]
     assert f"S = {near.jaw_separation:.3f} mm" in written
     assert f"{abs(near.difference):.3f} mm {'more' if near.difference > 0 else 'less'}" in written
-    assert f"S = {result[1].jaw_separation:.3f} mm" in written and "right" in written
+    assert f"S = {result[1].travel:.3f} mm" in written and "right" in written
     most = sorted(seat.jaw_separation for seat in told[1].seats if seat.is_wrong)[2] + 1e-6
     assert len(words_for(result, evolve(told[1], most=most), 1).wrong) == 3
     near = words_for(result, evolve(told[1], opening=words.wrong[2].difference + 1e-6), 1)
@@ -153,7 +153,7 @@ def test_what_never_gets_out_may_be_opened_as_far_as_one_likes(result: Result, t
     """And what gets out only where the jaws do not reach, as far as they go."""
     free = words_for(result, evolve(told[0], capture_opening=None, placing=None)).steps(WEDGE)
     assert "as far as you like" in free[0] and not any("Put the part in" in step for step in free)
-    most = result[0].jaw_separation + 0.5 * (told[0].capture_opening or 0.0)
+    most = result[0].travel + 0.5 * (told[0].capture_opening or 0.0)
     assert "as far as possible" in words_for(result, evolve(told[0], most=most)).steps(WEDGE)[0]
 
 
@@ -234,7 +234,7 @@ def test_a_clamp_is_drawn_back_and_tightened() -> None:
     (told,) = workhold.seatings(plate)
     words = words_for(plate, told)
     steps = words.steps(WEDGE)
-    right, capture = -plate[0].jaw_separation, told.capture_opening or 0.0
+    right, capture = -plate[0].travel, told.capture_opening or 0.0
     least = float(steps[0].split("stroke = ")[1].split()[0])
     assert steps[0].startswith("Draw the clamp back to stroke = ") and "at least" in steps[0]
     assert right - capture <= least < right - capture + 0.01

@@ -144,7 +144,7 @@ def test_pegs_are_labelled_by_the_holes_they_stand_in(held: Held) -> None:
     for peg, circle in zip(fixture.pegs, by_class(page, "peg"), strict=True):
         x, y = to_model(group, float(circle.attrib["cx"]), float(circle.attrib["cy"]))
         column, row = ord(peg.hole[2]) - ord("A"), int(peg.hole[3:]) - 1
-        place = vise.carriers[int(peg.hole[0] == "R")].place(column, row, fixture.jaw_separation)
+        place = vise.carriers[int(peg.hole[0] == "R")].place(column, row, fixture.travel)
         assert distance((x, y), place) < 1e-3 * vise.peg_radius
         assert peg.hole in flags
         assert texts(page).count(peg.hole) >= 2  # on the plan and in the table
@@ -163,7 +163,7 @@ def test_all_a_machinist_needs_is_written(size: float) -> None:
         "0123456789ab…",
         "workhold 1.2.3",
         "Fixture 3 of 70",
-        lengths.words(fixture.jaw_separation),
+        lengths.words(fixture.travel),
         lengths.words(pose.x),
         lengths.words(pose.y),
         "45.0000°",
@@ -233,9 +233,7 @@ def test_calipers_measure_the_jaw_separation() -> None:
     """Level holes at the opening are S apart, and those with pegs are preferred."""
     fixture, _, vise = example()
     check = caliper_check(fixture, vise)
-    assert (check.left, check.right) == ((1, 0), (0, 0)) and check.distance == pytest.approx(
-        fixture.jaw_separation
-    )
+    assert (check.left, check.right) == ((1, 0), (0, 0)) and check.distance == pytest.approx(fixture.travel)
     assert check.placed == 1
     both = evolve(fixture.pegs[2], row=4, y=40.0)
     pegs = (fixture.pegs[0], fixture.pegs[1], both, fixture.pegs[3])
@@ -248,8 +246,8 @@ def test_calipers_know_jaws_that_are_not_level(offset: float) -> None:
     fixture, _, vise = example()
     vise = evolve(vise, row_offset=offset)
     check = caliper_check(fixture, vise)
-    left = vise.carriers[0].place(*check.left, fixture.jaw_separation)
-    right = vise.carriers[1].place(*check.right, fixture.jaw_separation)
+    left = vise.carriers[0].place(*check.left, fixture.travel)
+    right = vise.carriers[1].place(*check.right, fixture.travel)
     assert abs(left[1] - right[1]) <= vise.pitch[1] / 2
     assert check.distance == pytest.approx(distance(left, right))
 

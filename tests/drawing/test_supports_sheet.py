@@ -37,7 +37,7 @@ def test_supports_stand_on_the_plan_in_the_holes_that_are_named(name: str) -> No
     found, toolkit = supports_of_sheet(name), result_of(name).toolkit
     page = sheet(result_of(name, False), thickness=HEIGHT, supports=found)[0]
     (group,) = by_class(page, "supports")
-    pose, travel = found.recounted.fixture.pose, found.recounted.fixture.jaw_separation
+    pose, travel = found.recounted.fixture.pose, found.recounted.fixture.travel
     places = [
         to_model(group, float(one.attrib["cx"]), float(one.attrib["cy"])) for one in by_class(page, "support")
     ]
@@ -214,12 +214,12 @@ def test_holes_with_other_names_are_said_to_be_so() -> None:
     """Where jaws stand nearer for supports between the pegs, the sheet has the new opening and says by how much."""
     found = supports_of_sheet("vise")
     listed, new = found.supports.fixture, found.recounted.fixture
-    assert new.jaw_separation != listed.jaw_separation
+    assert new.travel != listed.travel
     words = printed(sheet(result_of("vise", False), thickness=HEIGHT, supports=found))
-    less = listed.jaw_separation - new.jaw_separation
+    less = listed.travel - new.travel
     assert f"the opening is {less:.3f} mm narrower than the fixture was listed with" in words
-    assert f"S = {new.jaw_separation:.3f} mm" in words
-    assert f"S = {listed.jaw_separation:.3f} mm" not in words
+    assert f"S = {new.travel:.3f} mm" in words
+    assert f"S = {listed.travel:.3f} mm" not in words
     for peg in new.pegs:
         assert (
             f"{peg.hole} {peg.carrier} {peg.touched} {peg.x:.3f} {peg.y:.3f}".replace("-0.000", "0.000")

@@ -70,7 +70,7 @@ def setting_of(tip: Peg, held: Held) -> tuple[str, float]:
 def settings(held: Held) -> list[tuple[str, float]]:
     """Signs and lengths to set, in order."""
     tips = tips_of(held.fixture)
-    return [setting_of(tip, held) for tip in tips] or [("S", held.fixture.jaw_separation)]
+    return [setting_of(tip, held) for tip in tips] or [("S", held.fixture.travel)]
 
 
 def ways_in(words: str) -> set[str]:
@@ -304,7 +304,7 @@ def test_a_sheet_tells_pose_calipers_and_figures(held: Held) -> None:
         left, right = ((ord(calipers[k]) - ord("A"), int(calipers[k + 1]) - 1) for k in (1, 3))
         columns = 1 if held.made.startswith("gripper") else 3
         start = PITCH[0] * left[0], PITCH[1] * left[1]
-        end = PITCH[0] * (columns - 1 + right[0]) + fixture.jaw_separation, PITCH[1] * right[1] + 4.0
+        end = PITCH[0] * (columns - 1 + right[0]) + fixture.travel, PITCH[1] * right[1] + 4.0
         apart = hypot(end[0] - start[0], end[1] - start[1])
         assert (calipers[6], calipers[7]) == (mm(apart - 6.0), mm(apart + 6.0))
 

@@ -36,7 +36,7 @@ TWENTY = shop_parts(20)
 def asked(parts: list[Workpiece], toolkit: Toolkit, **more: object) -> list[Asked]:
     """Parts to be members, ranked by location error first."""
     ranking = RANKINGS[toolkit.travels]
-    return [Asked(part.name, Query(part, toolkit, **{"ranking": ranking, **more})) for part in parts]  # type: ignore[arg-type]
+    return [Asked(part.name, Query(part, toolkit, **{"rank_by": ranking, **more})) for part in parts]  # type: ignore[arg-type]
 
 
 @pytest.fixture(scope="module")

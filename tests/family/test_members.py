@@ -31,7 +31,7 @@ LOAD = Load([(50, 12)], 200.0, (20.0, 70.0), moment=300.0)
 def lever_query(restrictions: Restrictions) -> Query:
     """What is asked for the lever, under a load."""
     vise = Vise(pitch=10, columns=2, peg_radius=3)
-    return Query(LEVER, vise, restrictions=restrictions, ranking=["location_error"], loads=[LOAD])
+    return Query(LEVER, vise, restrictions=restrictions, rank_by=["location_error"], loads=[LOAD])
 
 
 @pytest.mark.thinned(2)
@@ -104,7 +104,7 @@ def test_the_other_side_of_a_solid_is_that_which_is_read() -> None:
         Workpiece.from_loops("part", [loop], solid=one) for loop, one in ((here, solid), (there, turned))
     )
     asked = Restrictions(avoid=(2, 3), zones=[circle_zone(70.0, 11.0, 5.0)])
-    query = Query(part, toolkit, restrictions=asked, ranking=RANKINGS[1])
+    query = Query(part, toolkit, restrictions=asked, rank_by=RANKINGS[1])
     side = Asked("part", query, zero=part_zero(part, "corner")).lying_as(other)
     assert (side.name, side.query.workpiece.name) == ("part, side 2", "part, side 2")
     assert side.query.workpiece.solid == turned and side.query.restrictions.avoid == (1, 2)
@@ -116,7 +116,7 @@ def test_the_other_side_of_a_solid_is_that_which_is_read() -> None:
 
 def test_both_sides_share_pins() -> None:
     parts = [
-        Asked(p.name, Query(p, Vise(pitch=10, columns=2, peg_radius=3), ranking=RANKINGS[1]))
+        Asked(p.name, Query(p, Vise(pitch=10, columns=2, peg_radius=3), rank_by=RANKINGS[1]))
         for p in shop_parts(2)
     ]
     family = family_of([side for one in parts for side in (one, one.lying_as(None))], threads=1)
@@ -145,7 +145,7 @@ def test_with_the_same_zero_a_set_up_has_one(toolkit: Plate | Vise) -> None:
         Workpiece.from_loops(str(w), [[[0, 0, 0], [w, 0, 0], [w, 45.0, 0], [0, 45.0, 0]]])
         for w in (60.0, 63.0, 71.5, 84.0)
     ]
-    asked = [Asked(part.name, Query(part, toolkit, ranking=ranking)) for part in parts]
+    asked = [Asked(part.name, Query(part, toolkit, rank_by=ranking)) for part in parts]
     free, strict = family_of(asked, threads=1), family_of(asked, same_zero=True, threads=1)
     assert len(strict.members) == 4
     for plan in strict.plans:

@@ -29,7 +29,7 @@ def family_in(toolkit: Vise | Plate, count: int) -> Family:
     """A family of so many parts."""
     ranking = RANKINGS[toolkit.travels]
     return family_of(
-        [Asked(part.name, Query(part, toolkit, ranking=ranking)) for part in shop_parts(count)], threads=1
+        [Asked(part.name, Query(part, toolkit, rank_by=ranking)) for part in shop_parts(count)], threads=1
     )
 
 
@@ -196,7 +196,7 @@ def test_heights_of_their_own_are_told_where_solids_are_held() -> None:
     toolkit = Plate(pitch=10, peg_radius=3, columns=8, rows=8, clamp_heights=(12.7, 25.4))
     solid, prism = stepped({"clamp": ((12.7, 25.4), STEM)}), shop_parts(1)[0]
     for parts, said in (([solid], True), ([prism], False), ([solid, prism], True)):
-        asked = [Asked(part.name, Query(part, toolkit, ranking=RANKINGS[1])) for part in parts]
+        asked = [Asked(part.name, Query(part, toolkit, rank_by=RANKINGS[1])) for part in parts]
         family = family_of(asked, threads=1)
         plan = family.plans[0]
         pages = draw_setups(plan, family.figure, DAY, INCH)

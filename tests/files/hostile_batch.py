@@ -89,7 +89,7 @@ def check_result(path: Path) -> None:
             [peg[key] for key in ("jaw", "column", "row", "segment", "force")] for peg in told["pegs"]
         ]
         assert pegs == sorted(map(tuple, told_pegs))
-        assert fixture.jaw_separation == approx(told["jaw_separation"])
+        assert fixture.travel == approx(told["jaw_separation"])
         assert fixture.pose.x == approx(told["pose"]["x"])
 
 
@@ -108,7 +108,7 @@ def check_columns(path: Path) -> None:
         assert len(read) == len(told["theta"])
         for k, fixture in enumerate(read):
             assert fixture.pose.theta_deg % 360 == approx(np.degrees(told["theta"][k]) % 360)
-            assert [fixture.pose.x, fixture.pose.y, fixture.jaw_separation] == approx(
+            assert [fixture.pose.x, fixture.pose.y, fixture.travel] == approx(
                 [*told["position"][k], told["jaw_separation"][k]]
             )
             holes = zip(*(told[name][k].tolist() for name in ("column", "row", "face", "force")), strict=True)

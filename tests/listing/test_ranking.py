@@ -41,7 +41,7 @@ def figures(count: int, **columns: list[float]) -> np.ndarray:
 def keys(quality: np.ndarray, ranking: Sequence[str], tolerance: Tolerance, angles: Any = 0) -> OrderKeys:
     """The keys of fixtures without any factor."""
     error = quality[:, LOCATION_ERROR] if has_house_order(ranking) else None
-    asked: Any = SimpleNamespace(ranking=ranking, tolerance=tolerance)
+    asked: Any = SimpleNamespace(rank_by=ranking, tolerance=tolerance)
     return keys_of(quality, asked, error, np.zeros(len(quality), np.int64) + angles)
 
 

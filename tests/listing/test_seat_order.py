@@ -62,7 +62,7 @@ def queries(seed: int, count: int) -> Iterator[Query]:
             plate,
             contact_margin=random.choice([0.0, 2.0]),
             restrictions=random.choice([None, None, restrictions]),
-            ranking=random.choice([None, random.sample(figures, random.randint(1, 4))]),
+            rank_by=random.choice([None, random.sample(figures, random.randint(1, 4))]),
             tolerance=random.choice([None, Tolerance(peg=0.05, face=0.0)]),
             loads=loads,
             listing=random.choice(["best", "all"]),
@@ -162,7 +162,7 @@ def test_no_fixture_ranks_before_the_bound_of_its_locators(monkeypatch: pytest.M
         ["clamp_freedom"],
         ["warnings"],
     ):
-        answer(Query(part(NOTCHED), Plate((20, 16), 3, clamps=2), ranking=ranking, listing="all", best=10**6))
+        answer(Query(part(NOTCHED), Plate((20, 16), 3, clamps=2), rank_by=ranking, listing="all", best=10**6))
     assert sum(seen) > 100
 
 

@@ -54,9 +54,9 @@ def test_no_location_error_is_below_what_tolerances_make(toolkit: Toolkit, toler
 
 RANKINGS: dict[str, Mapping[str, Any]] = {
     "usual": {},
-    "tilt": {"ranking": ["tilt", "end-distance"]},
-    "penalty": {"ranking": ["penalty", "wrench-radius"]},
-    **{name: {"ranking": [key.replace("_", "-") for key in keys]} for name, keys in PREFERENCES.items()},
+    "tilt": {"rank_by": ["tilt", "end-distance"]},
+    "penalty": {"rank_by": ["penalty", "wrench-radius"]},
+    **{name: {"rank_by": [key.replace("_", "-") for key in keys]} for name, keys in PREFERENCES.items()},
 }
 
 
@@ -100,7 +100,7 @@ def test_the_points_of_a_tilted_part_are_those_of_the_theorem() -> None:
     square, small, large = (Workpiece.from_loops("square", [outer, *hole]) for hole in holes)
     points = []
     for part in (square, small, large):
-        query = Query(part, vise, ranking=["penalty"])
+        query = Query(part, vise, rank_by=["penalty"])
         bound = tilted_keys(query, Problem.of(query))
         assert bound is not None
         points.append(float(bound.first[0, 1]))
@@ -111,7 +111,7 @@ def test_where_tilt_has_no_say_there_is_no_bound() -> None:
     """Nor of flat jaws, and of pegs that meet other outlines than the silhouette."""
     part, vise = load("widget"), Vise(pitch=8, columns=1, peg_radius=3)
     for ranking in (["closure-margin"], ["clamp-amplification", "location-error"]):
-        query = Query(part, vise, ranking=ranking)
+        query = Query(part, vise, rank_by=ranking)
         assert tilted_keys(query, Problem.of(query)) is None
     flat = Query(part, Vise(pitch=8, columns=1, peg_radius=3, flat=(2.5, 1.5)))
     assert tilted_keys(flat, Problem.of(flat)) is None

@@ -49,7 +49,7 @@ def test_all_stands_in_the_middle_and_nothing_changes_among_itself(kind: str) ->
             assert (other.x - one.x, other.y - one.y) == pytest.approx(by)
             carrier = toolkit.carrier(one.carrier)
             if carrier.has_lattice:
-                assert carrier.place(other.column, other.row, placed.jaw_separation) == pytest.approx(
+                assert carrier.place(other.column, other.row, placed.travel) == pytest.approx(
                     (other.x, other.y)
                 )
                 assert 0 <= other.column < (toolkit.plates[0].columns or 99)

@@ -36,12 +36,12 @@ def full(**changes: Any) -> Query:
     fields: dict[str, Any] = {
         "workpiece": part(),
         "toolkit": Vise(pitch=(10, 12.5), columns=2, peg_radius=2, rows=6, blocked=["L-A2", "R-B"]),
-        "arrangements": ["II"],
+        "types": ["II"],
         "contact_margin": 0.25,
         "restrictions": Restrictions(
             [3], [circle_zone(1, 2, 3), polygon_zone([(0, 0), (4, 0), (0, 5)])], [[-10, 40.5]]
         ),
-        "ranking": ["load-reaction", "closure margin"],
+        "rank_by": ["load-reaction", "closure margin"],
         "tolerance": Tolerance(0.02, 0.0),
         "loads": [Load([(1, 2), (3, 4)], force=5, directions=(10, 30), moment=-7, name="drill")],
         "best": 12,
@@ -53,11 +53,11 @@ OTHERS: list[dict[str, Any]] = [
     {"workpiece": part(9.5)},
     {"toolkit": OpeningVise(pitch=(10, 12.5), columns=2, peg_radius=2, rows=6, blocked=["L-A2", "R-B"])},
     {"toolkit": Vise(pitch=(10, 12.5), columns=2, peg_radius=2, rows=6, blocked=["L-A2", "R-B1"])},
-    {"arrangements": None},
+    {"types": None},
     {"contact_margin": 0.0},
     {"restrictions": Restrictions([3], [circle_zone(1, 2, 3.5)], [[-10, 40.5]])},
     {"restrictions": None},
-    {"ranking": None},
+    {"rank_by": None},
     {"tolerance": None},
     {"loads": [Load(moment=1.0)]},
     {"best": None},
@@ -97,7 +97,7 @@ def test_a_result_survives_pickling() -> None:
 @pytest.mark.thorough
 def test_a_query_is_answered_in_another_process() -> None:
     """A process started anew gives the answer that this one gives."""
-    query = full(restrictions=None, arrangements=None)
+    query = full(restrictions=None, types=None)
     with get_context("spawn").Pool(1) as pool:
         there = pool.apply(answer, [query])
     here = answer(query)
@@ -106,25 +106,23 @@ def test_a_query_is_answered_in_another_process() -> None:
 
 def test_one_word_is_not_taken_for_its_letters() -> None:
     """Of types and of figures, by Query and by design."""
-    query = full(arrangements="II", ranking="wrench-radius")
-    assert query.arrangements == ("II",) and query.ranking == ("wrench_radius",)
-    assert set(design(part(), Vise(pitch=10, columns=1, peg_radius=2), types="II").query.arrangements) == {
-        "II"
-    }
+    query = full(types="II", rank_by="wrench-radius")
+    assert query.types == ("II",) and query.rank_by == ("wrench_radius",)
+    assert set(design(part(), Vise(pitch=10, columns=1, peg_radius=2), types="II").query.types) == {"II"}
 
 
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"arrangements": ["III"]}, "type III is unknown: choose I or II"),
-        ({"arrangements": []}, "no type to seek"),
+        ({"types": ["III"]}, "type III is unknown: choose I or II"),
+        ({"types": []}, "no type to seek"),
         ({"contact_margin": -1.0}, "contact margin -1 is not a length"),
-        ({"contact_margin": "1"}, "contact margin 1 is not a length"),
+        ({"contact_margin": "1"}, "contact margin cannot be '1'"),
         ({"best": 0}, "best 0 is not a positive whole number"),
         ({"best": 1.5}, "best 1.5 is not a positive whole number"),
-        ({"ranking": ["load-reaction"], "loads": []}, "there is no load to rank by"),
-        ({"ranking": ["beauty"]}, "'beauty' is no figure to rank by"),
-        ({"ranking": 5}, "the names are no list, but 5"),
+        ({"rank_by": ["load-reaction"], "loads": []}, "there is no load to rank by"),
+        ({"rank_by": ["beauty"]}, "'beauty' is no figure to rank by"),
+        ({"rank_by": 5}, "the names are no list, but 5"),
         ({"workpiece": "widget"}, "the workpiece cannot be 'widget': give a Workpiece"),
         ({"toolkit": {"pitch": 10}}, "the toolkit cannot be .*: give a toolkit, such as workhold.Vise"),
         ({"restrictions": [3]}, "the restrictions cannot be .3.: give Restrictions"),

@@ -48,7 +48,7 @@ def refuse_moved(fixture: Fixture, toolkit: Toolkit, triple: Triple, found: Reco
         if carrier.is_wall:
             assert peg.y == pytest.approx(0.0, abs=1e-9)
             continue
-        travelled = next(travels) if carrier.on is not None else new.jaw_separation
+        travelled = next(travels) if carrier.on is not None else new.travel
         assert carrier.place(peg.column, peg.row, travelled) == pytest.approx((peg.x, peg.y), abs=1e-9)
         assert peg.place in (None, carrier.place_name(peg.column, peg.row))
         home = toolkit.carrier(carrier.stands_on)
@@ -59,7 +59,7 @@ def refuse_moved(fixture: Fixture, toolkit: Toolkit, triple: Triple, found: Reco
     for old, pad in zip(triple.supports, found.supports, strict=True):
         plate = toolkit.carrier(pad.carrier)
         assert (pad.x, pad.y) == (old.x, old.y)
-        assert plate.place(pad.column, pad.row, new.jaw_separation) == pytest.approx(
+        assert plate.place(pad.column, pad.row, new.travel) == pytest.approx(
             new.pose.apply(pad.x, pad.y), abs=1e-9
         )
         assert 0 <= pad.column < (plate.columns or 10**9) and 0 <= pad.row < (plate.rows or 10**9)
@@ -79,9 +79,9 @@ def test_everything_has_a_hole_and_keeps_its_place(name: str) -> None:
             again = recounted(fixture, toolkit, triple)
             refuse_moved(fixture, toolkit, triple, again)
             count += 1
-            moved += again.move != (0, 0) or again.fixture.jaw_separation != fixture.jaw_separation
+            moved += again.move != (0, 0) or again.fixture.travel != fixture.travel
             if toolkit.travels and toolkit.moving.has_lattice and triple.travel is not None:
-                assert again.fixture.jaw_separation == pytest.approx(triple.travel, abs=1e-9)
+                assert again.fixture.travel == pytest.approx(triple.travel, abs=1e-9)
     assert count > 0
     if name in ("vise", "narrow jaws"):
         assert moved > 0

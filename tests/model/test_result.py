@@ -4,23 +4,65 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from attrs import evolve
 
 from fakes import fake_result
-from workhold import Fixture
+from workhold import Fixture, InputError, Result, Vise, Workpiece, design, save, verify
+from workhold import open as open_result
 from workhold.model.fixture_table import FixtureTable
+from workhold.model.notes import Chosen
 
 
 def test_a_result_is_a_sequence():
-    """len, indices from both ends, slices, iteration and IndexError as for a list."""
+    """len, indices from both ends, iteration and IndexError as for a list."""
     result = fake_result(7)
     everything = list(result)
     assert len(result) == len(everything) == 7
     assert all(isinstance(fixture, Fixture) for fixture in everything)
     assert result[0] == everything[0] and result[-1] == everything[6] and result[-7] == everything[0]
-    assert result[2:5] == everything[2:5] and result[::-2] == everything[::-2] and result[9:] == []
     for index in (7, -8):
         with pytest.raises(IndexError):
             result[index]
+
+
+def test_some_fixtures_are_a_result_again(tmp_path):
+    """Slices, numbers, masks and conditions choose the same fixtures as of a list, in its order, and say so."""
+    result = fake_result(7)
+    everything, mask = list(result), np.arange(7) % 3 == 1
+    for chosen, there in [
+        (result[2:5], everything[2:5]),
+        (result[[6, 1, -1]], [everything[1], everything[6]]),
+        (result[np.array([4])], [everything[4]]),
+        (result[mask], [everything[1], everything[4]]),
+        (result.where(mask), [everything[1], everything[4]]),
+        (result.where(lambda fixture: fixture == everything[3]), [everything[3]]),
+        (result[9:], []),
+    ]:
+        assert isinstance(chosen, Result) and list(chosen) == there and chosen.found == result.found
+        assert [fixture.rank for fixture in chosen] == list(range(1, len(there) + 1))
+        assert chosen.notes == (*result.notes, Chosen(sum(result.found.values()), len(there)))
+    assert result[:] == result and result[1:4][1:].notes == result[2:4].notes
+
+
+def test_chosen_fixtures_are_saved_opened_and_verified(tmp_path):
+    """A note says that not all is listed, so that neither the account nor a new search misses the others."""
+    wedge = Workpiece.from_loops("wedge", [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]])
+    result = design(wedge, Vise(pitch=15, columns=1, peg_radius=2))
+    chosen = result[np.arange(len(result)) % 2 == 1]
+    for name in ("some.json", "some.npz"):
+        save(chosen, tmp_path / name)
+        again = open_result(tmp_path / name)
+        assert np.array_equal(again.table.row, chosen.table.row) and again.notes == chosen.notes
+        assert verify(tmp_path / name, complete=True).faults == ()
+    silent = evolve(chosen, notes=())
+    assert any("nothing says why" in fault for fault in verify(silent).faults)
+
+
+@pytest.mark.parametrize("rows", [np.ones(3, bool), "first", 1.5, [0.5], [[1, 2]]])
+def test_what_chooses_no_fixtures_is_refused(rows):
+    """In a sentence that says how to."""
+    with pytest.raises(InputError, match=r"a mask has one truth|give their numbers"):
+        fake_result(7)[rows]
 
 
 def test_counts_count_what_is_listed():
@@ -40,7 +82,7 @@ def test_fixtures_repeat_their_row_of_the_table():
         for m, peg in enumerate(fixture.pegs):
             left, right = result.toolkit.carriers
             carrier = left if peg.carrier == "left" else right
-            assert (peg.x, peg.y) == carrier.place(peg.column, peg.row, fixture.jaw_separation)
+            assert (peg.x, peg.y) == carrier.place(peg.column, peg.row, fixture.travel)
             assert peg.face == result.table.face[k, m] and peg.force == result.table.force[k, m]
         assert np.radians(fixture.pose.theta_deg) == pytest.approx(result.table.theta[k])
         assert fixture.quality["closure_margin"] == pytest.approx(result.table.null_vector[k].min())

@@ -213,3 +213,19 @@ def test_a_hole_is_drawn_as_large_as_its_peg(peg_radius: float, hole: float) -> 
     fixture = pegs_in(toolkit, 20.0, ("left", 0, 0), ("left", 1, 2), ("right", 0, 0), ("right", 1, 1))
     seen = shown_beside(Box(0.0, 0.0, 20.0, 30.0), fixture, toolkit)
     assert [each.hole_radius for each in seen.carriers] == pytest.approx([hole, hole])
+
+
+def test_a_pose_takes_arrays_of_points() -> None:
+    """As rows they go the same way as their coordinates, by its matrix, and back by its inverse; text is refused."""
+    pose, points = Pose(33.0, 4.0, -7.0), np.array([[1.0, 2.0], [-3.0, 0.5], [8.0, 8.0]])
+    there = pose.apply(points)
+    assert np.array_equal(there, np.column_stack(pose.apply(points[:, 0], points[:, 1])))
+    assert there == pytest.approx((pose.matrix @ np.column_stack([points, np.ones(3)]).T)[:2].T)
+    assert pose.inverse.apply(there) == pytest.approx(points) and pose.apply([1, 2]) == pytest.approx(
+        there[0]
+    )
+    assert pose.turn(points) == pytest.approx(there - (4.0, -7.0))
+    with pytest.raises(InputError, match="a coordinate cannot be '1'"):
+        pose.apply([("1", 2)])
+    with pytest.raises(InputError, match="theta deg cannot be '33'"):
+        Pose("33", 0, 0)  # type: ignore[arg-type]

@@ -54,14 +54,14 @@ def test_pads_stand_in_holes_of_the_plates_under_the_part(part: Workpiece, toolk
     """Written out, all holes are on the plates and not blocked, and all stays where it was on the part."""
     found = found_in(toolkit, part)
     if part is PLATE:
-        assert {triple.travel for triple in found.triples} - {found.fixture.jaw_separation}
+        assert {triple.travel for triple in found.triples} - {found.fixture.travel}
     for triple in found.triples:
         built = written_out(found, triple)
         fixture, pads = built.fixture, built.supports
         carriers = {one.name: one for one in toolkit.carriers}
         for pad, before in zip(pads, triple.supports, strict=True):
             carrier = carriers[pad.carrier]
-            place = carrier.place(pad.column, pad.row, fixture.jaw_separation)
+            place = carrier.place(pad.column, pad.row, fixture.travel)
             assert place == pytest.approx(fixture.pose.apply(pad.x, pad.y), abs=1e-9)
             assert (pad.x, pad.y) == (before.x, before.y)
         for peg, old in zip(fixture.pegs, found.fixture.pegs, strict=True):
@@ -69,10 +69,10 @@ def test_pads_stand_in_holes_of_the_plates_under_the_part(part: Workpiece, toolk
                 found.fixture.pose.inverse.apply(old.x, old.y), abs=1e-9
             )
             if len(toolkit.plates) == 2:
-                place = carriers[peg.carrier].place(peg.column, peg.row, fixture.jaw_separation)
+                place = carriers[peg.carrier].place(peg.column, peg.row, fixture.travel)
                 assert place == pytest.approx((peg.x, peg.y), abs=1e-9)
         if len(toolkit.plates) == 2:
-            assert fixture.jaw_separation == triple.travel
+            assert fixture.travel == triple.travel
             for one in (*fixture.pegs, *pads):
                 carrier = carriers[one.carrier]
                 assert 0 <= one.column < carrier.column_count and one.row >= 0

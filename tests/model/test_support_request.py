@@ -65,6 +65,6 @@ def test_each_peg_has_the_band_of_its_face_cut_at_the_thickness() -> None:
 def test_the_engine_takes_the_bands_of_the_solid() -> None:
     """What it found says the bands that its figures hold for, and they are those of the faces touched."""
     result = design(SOLID, Vise(pitch=10, columns=6, peg_radius=3), best=3)
-    for one in result.supports(best=3, each=1, top=None):
+    for one in result.supports(best=3, each=1, top="outline"):
         faces = [peg.face for peg in one.fixture.pegs]
         assert one.request.bands == tuple(BANDS[face] if face != 3 else (0.0, 25.0) for face in faces)

@@ -96,7 +96,7 @@ REFUSED = {
     "no loops": ([], "no loop"),
     "flat list": ([[1, 2, 3]], "loop 0 is not a list of"),
     "ragged": ([[[0, 0, 0], [1, 0], [1, 1, 0]]], "loop 0 is not a list of"),
-    "words": ([[["a", 0, 0], [1, 0, 0], [1, 1, 0]]], "loop 0 is not a list of"),
+    "words": ([[["a", 0, 0], [1, 0, 0], [1, 1, 0]]], "part: loop 0: a coordinate cannot be 'a'"),
     "empty loop": ([SQUARE, []], "loop 1"),
     "nan": ([[[0, 0, 0], [nan, 0, 0], [1, 1, 0]]], "loop 0, segment 1 has a coordinate or bulge"),
     "inf": (

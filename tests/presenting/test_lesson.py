@@ -61,7 +61,7 @@ def test_fixtures_are_those_of_the_list(taught: Any) -> None:
         fixture = fixtures[one["rank"] - 1]
         pegs = [[peg.column, peg.row, peg.x, peg.y, peg.face, peg.force] for peg in fixture.pegs]
         assert one["pegs"] == pegs
-        assert one["opening"] == fixture.jaw_separation
+        assert one["opening"] == fixture.travel
         assert one["pose"] == [radians(fixture.pose.theta_deg), fixture.pose.x, fixture.pose.y]
 
 

@@ -116,7 +116,7 @@ def test_a_closing_comes_home() -> None:
         assert closing["keyframes"][0][3] > 0 and len(closing["keyframes"]) <= 121
         if len(closing["keyframes"]) > 2:
             shown += 1
-            assert f"S = {picture.fixture.jaw_separation:.3f} mm" in closing["words"]
+            assert f"S = {picture.fixture.travel:.3f} mm" in closing["words"]
             assert any(abs(value) > 0.1 for value in closing["keyframes"][0][:3])
             opened = [one[3] for one in closing["keyframes"]]
             assert opened == sorted(opened, reverse=True)

@@ -76,6 +76,6 @@ def test_what_cannot_be_is_told_in_a_sentence(
 
 def test_a_fixture_that_was_changed_has_no_sheet(tmp_path: Path) -> None:
     """The sheet would show the one that is listed."""
-    changed = attrs.evolve(RESULT[0], jaw_separation=RESULT[0].jaw_separation + 1)
+    changed = attrs.evolve(RESULT[0], travel=RESULT[0].travel + 1)
     with pytest.raises(InputError, match="was changed since it was listed"):
         changed.save_sheet(tmp_path / "sheet.svg")

@@ -89,7 +89,7 @@ def test_supports_show_in_the_holes_that_the_sheet_names() -> None:
     widget.force = [40.0, 30.0, 150.0, 240.0]
     assert [one["hole"] for one in widget.answer["forces"]] == pegs
     widget.asked_closing = 1
-    assert f"S = {chosen.recounted.fixture.jaw_separation:.3f} mm" in widget.closing["words"]
+    assert f"S = {chosen.recounted.fixture.travel:.3f} mm" in widget.closing["words"]
     assert 'class="support"' not in result.widget().picture["svg"]
 
 

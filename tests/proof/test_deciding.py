@@ -170,7 +170,7 @@ def test_both_kinds_of_interval_arithmetic_decide_alike(
     assert np.abs(other.table.theta - result.table.theta).max() < 1e-12
     assert other.proof is not None and result.proof is not None
     assert other.proof.verified == result.proof.verified
-    assert set(other.query.arrangements) == set(other.found)
+    assert set(other.query.types) == set(other.found)
 
 
 def test_overlapping_boxes_of_the_same_pegs_are_one(

@@ -70,7 +70,7 @@ def carried_over(fixtures: Iterable[Fixture], part: Workpiece, vise: Vise) -> li
     judge = Judge(Query(part, vise))
     out = []
     for fixture in fixtures:
-        start = [radians(fixture.pose.theta_deg), fixture.pose.x, fixture.pose.y, fixture.jaw_separation]
+        start = [radians(fixture.pose.theta_deg), fixture.pose.x, fixture.pose.y, fixture.travel]
         with ctx.workprec(256):
             faces = BallOutline.of(part).faces
             contacts = [judge.hardware.contact(peg, faces[peg.face]) for peg in fixture.pegs]
@@ -94,7 +94,7 @@ def solved_fixture(fixture: Fixture, contacts: list[BallContact], zero: list[arb
     across = pose.cosine, -pose.sine
     push = -sum((vector[k] * dot(across, normals[k]) for k in range(4) if not contacts[k].way[0] > 0), arb(0))
     theta, x, y, separation = (float(entry.mid()) for entry in zero)
-    opened = separation - fixture.jaw_separation
+    opened = separation - fixture.travel
     first, second, third, fourth = (
         evolve(peg, x=peg.x + opened * (peg.carrier == "right"), force=float((entry / push).mid()))
         for peg, entry in zip(fixture.pegs, vector, strict=True)

@@ -43,7 +43,7 @@ def test_the_best_are_the_first_of_all(
     full = design(load(name), vise, rank_by=rank_by)
     best = design(load(name), vise, rank_by=rank_by, best=most, threads=threads)
     assert len(best) == min(most, len(full))
-    assert list(best) == full[: len(best)]
+    assert list(best) == list(full[: len(best)])
     assert best.proof is not None and not best.proof.undecided
 
 
@@ -130,7 +130,7 @@ def waiting_records(part: str, vise: Vise) -> tuple[Problem, list[np.ndarray]]:
     """A problem of the best five, and what its search hands over, in two shares."""
     problem = Problem.of(Query(load(part), vise, best=5))
     search = ToolkitSearch.of(problem, threads=1)
-    records = np.concatenate([block.work(Needed()) for block in search.blocks(problem.query.arrangements)])
+    records = np.concatenate([block.work(Needed()) for block in search.blocks(problem.query.types)])
     return problem, np.array_split(records, 2)
 
 

@@ -121,7 +121,7 @@ def test_what_limits_save_is_told(limited: list[float]) -> None:
 def found_errors(search: ToolkitSearch, **asked: Any) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
     """Effective errors in mm of the fixtures that a search finds, and which are fit and without a warning."""
     problem = search.problem
-    blocks = search.blocks(problem.query.arrangements, **asked)
+    blocks = search.blocks(problem.query.types, **asked)
     records = np.concatenate([np.zeros((0, 19)), *(block.work(Needed()) for block in blocks)])
     candidates = listed_once(listed_form(records, problem, Course(len(records)))[0])
     keys = order_keys(
@@ -219,7 +219,7 @@ def test_what_lies_square_is_found_with_the_curves_that_come_there(part: str) ->
     whole, some = (ToolkitSearch.of(problem, only=only) for only in ((), first))
     assert len(some.table) < len(whole.table)
     one, other = (
-        np.concatenate([block.work(Needed()) for block in search.blocks(query.arrangements, first=first)])
+        np.concatenate([block.work(Needed()) for block in search.blocks(query.types, first=first)])
         for search in (whole, some)
     )
     assert len(one) == len(other) and (one == other).all()
@@ -251,7 +251,7 @@ def test_the_next_limit_is_no_larger_than_it_must_be() -> None:
     "changed",
     [
         lambda q: Query(q.workpiece, q.toolkit, tolerance=TOLERANCE),
-        lambda q: Query(q.workpiece, q.toolkit, tolerance=TOLERANCE, best=3, ranking=["closure-margin"]),
+        lambda q: Query(q.workpiece, q.toolkit, tolerance=TOLERANCE, best=3, rank_by=["closure-margin"]),
         lambda q: Query(q.workpiece, q.toolkit, tolerance=Tolerance(0.0, 0.0), best=3),
     ],
     ids=["all", "another order", "no tolerance"],

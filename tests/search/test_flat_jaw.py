@@ -301,8 +301,8 @@ def test_pegs_move_back_where_the_jaw_opens_no_wider() -> None:
     assert seen(free) == seen(tight)
     for fixture in tight:
         least = min(peg.row for peg in fixture.pegs[2:])
-        assert 3 <= fixture.jaw_separation <= 30 + 1e-9
-        assert least == 0 or fixture.jaw_separation + 10 > 30
+        assert 3 <= fixture.travel <= 30 + 1e-9
+        assert least == 0 or fixture.travel + 10 > 30
     few = workhold.design(part(KITE), FlatJaw(pitch=10, peg_radius=3, max_opening=30, rows=3))
     assert 0 < len(few) < len(tight)
     assert all(max(peg.row for peg in fixture.pegs) <= 2 for fixture in few)

@@ -123,9 +123,7 @@ def known(fixture: Fixture) -> tuple[Any, ...]:
     """What a fixture is, however wide the jaw: angle, holes from the first, faces of pegs, places from the first peg."""
     one, other = fixture.pegs[2:]
     theta = round(fixture.pose.theta_deg % 360.0, 5) % 360.0
-    places = [
-        round(value, 4) + 0.0 for value in (fixture.pose.x - one.x, fixture.pose.y, fixture.jaw_separation)
-    ]
+    places = [round(value, 4) + 0.0 for value in (fixture.pose.x - one.x, fixture.pose.y, fixture.travel)]
     return theta, other.column - one.column, one.row, other.row, one.face, other.face, *places
 
 
@@ -235,7 +233,7 @@ def test_a_width_asks_for_columns_and_a_length() -> None:
 def test_why_a_jaw_holds_nothing_names_its_width() -> None:
     """What it takes away, and that a jaw as wide as the part helps; also where that has no figure to rank by."""
     query = workhold.Query(
-        part(KITE), FlatJaw(pitch=40, peg_radius=2, columns=2, jaw_width=1.0), ranking="jaw-contact"
+        part(KITE), FlatJaw(pitch=40, peg_radius=2, columns=2, jaw_width=1.0), rank_by="jaw-contact"
     )
     result = workhold.design(query.workpiece, query.toolkit)
     assert len(result) == 0 and "with the columns, rows, opening and jaw width given" in str(result.notes[0])

@@ -212,7 +212,7 @@ def cuts_of(program: Program) -> Any:
 @pytest.mark.thorough
 def test_both_engines_list_the_same() -> None:
     part, _, program = random_case(5, "vise")
-    query = asked(part, Vise(12.5, 2, 3), program, arrangements="II")
+    query = asked(part, Vise(12.5, 2, 3), program, types="II")
     assert keys(answer(query, threads=1)) == keys(answer_by_algebra(query))
 
 
@@ -220,7 +220,7 @@ def test_both_engines_list_the_same() -> None:
 @pytest.mark.parametrize("kind", ["vise", "bolted", "bolted pair", "fence pair", "flat"])
 def test_the_best_are_the_first_of_all(kind: str) -> None:
     part, toolkit, program = random_case(5, kind)
-    query = asked(part, toolkit, program, ranking=["program-clearance", "closure-margin"])
+    query = asked(part, toolkit, program, rank_by=["program-clearance", "closure-margin"])
     every, best = answer(query, threads=1), answer(evolve(query, best=6), threads=1)
     assert [fixture.pegs for fixture in best] == [fixture.pegs for fixture in every[:6]]
     # What is none for a workshop stands behind all others.
@@ -331,7 +331,7 @@ def test_heights_are_asked_for_where_nobody_knows_them() -> None:
     with pytest.raises(InputError, match="peg height -1 is not a length"):
         Query(part, Vise(10.0, 1, 3.0), program=program, peg_height=-1.0)
     with pytest.raises(InputError, match="there is no program to rank by"):
-        Query(part, Vise(10.0, 1, 3.0), ranking=["program-clearance"])
+        Query(part, Vise(10.0, 1, 3.0), rank_by=["program-clearance"])
 
 
 @pytest.mark.thorough

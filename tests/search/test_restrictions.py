@@ -181,7 +181,7 @@ def can_stand(fixture: Fixture, vise: Vise, blocked: tuple[object, ...]) -> bool
         pegs = [(jaw, column - base[jaw], row - low) for jaw, column, row in outward]
         highest = max(row for _, _, row in pegs)
         lifts = range(20) if vise.rows is None else range(vise.rows - highest)
-        opening = fixture.jaw_separation + vise.pitch[0] * (sum_outward(fixture, vise))
+        opening = fixture.travel + vise.pitch[0] * (sum_outward(fixture, vise))
         for left in range(vise.columns):
             for right in range(vise.columns):
                 if opening - (left + right) * vise.pitch[0] < vise.min_gap - 1e-9:

@@ -117,7 +117,7 @@ def test_angles_that_are_asked_for_stay_so() -> None:
 
 def records_of(search: ToolkitSearch, **asked: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
     """All that some blocks of a search find, each record once."""
-    blocks = search.blocks(search.problem.query.arrangements, **asked)
+    blocks = search.blocks(search.problem.query.types, **asked)
     return np.unique(np.concatenate([block.work(Needed()) for block in blocks]), axis=0)
 
 

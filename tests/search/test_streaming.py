@@ -17,7 +17,7 @@ QUERIES = {
     "widget": Query(workhold.load("widget"), Vise(pitch=8, columns=1, peg_radius=3)),
     "symmetric": Query(workhold.load("large4Handle"), Vise(pitch=10, columns=2, peg_radius=3)),
     "ranked by one": Query(
-        workhold.load("small4Handle"), Vise(pitch=10, columns=3, peg_radius=3), ranking="closure-margin"
+        workhold.load("small4Handle"), Vise(pitch=10, columns=3, peg_radius=3), rank_by="closure-margin"
     ),
     "none": Query(workhold.load("small4Handle"), Vise(pitch=70, columns=1, peg_radius=3)),
     "several ways": Query(

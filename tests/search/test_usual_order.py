@@ -107,15 +107,15 @@ def test_old_files_keep_their_order(tmp_path: Path) -> None:
     """Files ranked by figures alone say no least error, and verify."""
     figures = ["warnings", "penalty", "clamp_freedom", "clamp_amplification"]
     plate = Workpiece.from_loops("plate", [PLATE])
-    result = answer(Query(plate, TOOLKITS["two clamps"], ranking=figures), threads=1)
+    result = answer(Query(plate, TOOLKITS["two clamps"], rank_by=figures), threads=1)
     assert result.least_effective_error is None
     workhold.save(result, tmp_path / "old.json")
     assert "least_effective_error" not in json.loads((tmp_path / "old.json").read_text())
     again = workhold.open(tmp_path / "old.json")
-    assert again.query.ranking == tuple(figures) and len(again) == len(result)
+    assert again.query.rank_by == tuple(figures) and len(again) == len(result)
     usual = answer(Query(plate, TOOLKITS["two clamps"]), threads=1)
     workhold.save(usual, tmp_path / "new.json")
-    assert workhold.open(tmp_path / "new.json").query.ranking[:3] == HOUSE_ORDER
+    assert workhold.open(tmp_path / "new.json").query.rank_by[:3] == HOUSE_ORDER
 
 
 def test_the_first_lies_as_drawn_where_others_are_hardly_better() -> None:

@@ -68,7 +68,7 @@ def test_what_is_put_nearer_than_placing_comes_home():
             continue
         free += 1
         assert played.ending == "right" and played.seat.is_own
-        assert played.travels[-1] == pytest.approx(fixture.jaw_separation, abs=1e-4)
+        assert played.travels[-1] == pytest.approx(fixture.travel, abs=1e-4)
         check_way(solver, fixture, played)
     assert free >= 3
 
@@ -85,7 +85,7 @@ def test_each_seat_is_where_closing_from_just_above_it_ends(turned_over):
         opening = seat.difference + min(0.2 * seat.depth, 0.05)
         if opening < 0.0:
             opening = seat.difference
-            with_less = evolve(fixture, jaw_separation=fixture.jaw_separation + seat.difference)
+            with_less = evolve(fixture, travel=fixture.travel + seat.difference)
             played = simulate_closing(
                 solver, moved_right(with_less, seat.difference), told.seats, seat.pose, 0.01, turned_over
             )
@@ -156,7 +156,7 @@ def test_a_loose_seat_is_known_by_its_reading():
     fixture = held([(LEFT, 0, 0), (LEFT, 0, 20), (RIGHT, 25, 0), (RIGHT, 25, 20)], (0.0, 15.0, 10.0), 25.0)
     apart = 2.0 * np.sqrt(18.0**2 - 10.0**2)
     seat = Seat("loose", Pose(0.0, apart / 2, 10.0), apart, 0.0, False, False, (), (), None, False)
-    fixture = evolve(moved_right(fixture, apart - 25.0), jaw_separation=apart)
+    fixture = evolve(moved_right(fixture, apart - 25.0), travel=apart)
     played = simulate_closing(
         Solver(disc, Vise(10, 2, 3)), fixture, (seat,), Pose(77.0, apart / 2 + 0.3, 10.4), 2.0
     )
@@ -171,7 +171,7 @@ def test_a_part_that_enters_a_peg_a_little_is_pushed_out():
     played = simulate_closing(
         solver, fixture, told.seats, put(fixture, solver.workpiece, 0.0, -enters, 0.0), 3.0 + enters
     )
-    assert played.travels[0] == pytest.approx(fixture.jaw_separation + 3.0 + enters)
+    assert played.travels[0] == pytest.approx(fixture.travel + 3.0 + enters)
     check_way(solver, fixture, played)
 
 
@@ -180,9 +180,7 @@ def test_starts_that_cannot_be_are_refused_in_a_sentence():
     with pytest.raises(InputError, match=r"^the peg in .* stands in the part there: put the part elsewhere"):
         simulate_closing(solver, fixture, told.seats, put(fixture, solver.workpiece, 0.0, -15.0, 0.0), 1.0)
     with pytest.raises(InputError, match=r"^pegs meet before what moves stands there"):
-        simulate_closing(
-            solver, fixture, told.seats, Pose(0.0, 0.0, 500.0), told.stop - fixture.jaw_separation - 1.0
-        )
+        simulate_closing(solver, fixture, told.seats, Pose(0.0, 0.0, 500.0), told.stop - fixture.travel - 1.0)
 
 
 def test_a_way_that_nobody_wants_any_more_ends():
@@ -216,12 +214,12 @@ def test_whatever_clamps_leads_home(part, toolkit):
     fixture, (told,) = result[0], workhold.seatings(result, with_cage=False)
     opening = 0.5 * min(told.capture_opening or 2.0, 2.0)
     if toolkit.moving.travel.most is not None and toolkit.clamping > 0:
-        opening = min(opening, toolkit.moving.travel.most - fixture.jaw_separation)
+        opening = min(opening, toolkit.moving.travel.most - fixture.travel)
     assert opening > 0.05
     played = simulate_closing(Solver(part, toolkit), fixture, told.seats, fixture.pose, opening)
     assert played.ending == "right"
-    assert played.travels[0] == pytest.approx(fixture.jaw_separation + toolkit.clamping * opening)
-    assert played.travels[-1] == pytest.approx(fixture.jaw_separation, abs=1e-4)
+    assert played.travels[0] == pytest.approx(fixture.travel + toolkit.clamping * opening)
+    assert played.travels[-1] == pytest.approx(fixture.travel, abs=1e-4)
     assert played.poses[-1].theta_deg == pytest.approx(fixture.pose.theta_deg, abs=1e-4)
     assert (played.poses[-1].x, played.poses[-1].y) == pytest.approx(
         (fixture.pose.x, fixture.pose.y), abs=1e-3
@@ -233,7 +231,7 @@ def test_jaws_are_opened_no_farther_than_they_go():
     for toolkit, farther in ((Vise(20, 2, 3, max_opening=60), 1), (FENCE, 2)):
         result = workhold.design(WEDGE, toolkit, best=1)
         fixture, solver = result[0], Solver(WEDGE, toolkit)
-        most = toolkit.moving.travel.most - fixture.jaw_separation
+        most = toolkit.moving.travel.most - fixture.travel
         away = Pose(0.0, 500.0, 500.0)
         assert simulate_closing(solver, fixture, (), away, most).ending == "outside"
         with pytest.raises(InputError, match="does not go so far: open it by less"):

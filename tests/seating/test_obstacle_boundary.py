@@ -95,7 +95,7 @@ FIXTURE = held(
 def test_patterns_that_differ_by_names_places_and_the_zero_of_the_separation_are_one():
     key = Pattern.of(FIXTURE, VISE).key()
     assert Pattern.of(moved(FIXTURE, [2, 1, 3, 0], False, (20.0, -30.0)), VISE).key() == key
-    assert Pattern.of(evolve(FIXTURE, jaw_separation=33.0), VISE).key() == key
+    assert Pattern.of(evolve(FIXTURE, travel=33.0), VISE).key() == key
     other = evolve(FIXTURE, pegs=(*FIXTURE.pegs[:3], evolve(FIXTURE.pegs[3], x=40.0)))
     assert Pattern.of(other, VISE).key() != key
 

@@ -162,7 +162,7 @@ def test_beyond_the_pass_lies_another_place(number):
     solver, fixture, told = solved(number)
     pattern = Pattern.of(fixture, solver.toolkit)
     tree = solver.trees(pattern)[0]
-    place = next(k for k, row in enumerate(tree.seats) if abs(row[3] - fixture.jaw_separation) < 1e-6)
+    place = next(k for k, row in enumerate(tree.seats) if abs(row[3] - fixture.travel) < 1e-6)
     join = tree.join_of(place)
     assert join.separation == pytest.approx(told.lowest_pass.jaw_separation, abs=1e-12)
     assert place in join.places and len(set(join.places)) == 2
@@ -215,15 +215,13 @@ def test_another_drawing_of_the_part_says_the_same():
     theta = radians(fixture.pose.theta_deg - 35.0)
     x, y = -(c * 12.0 + s * 7.0), -(s * 12.0 - c * 7.0)
     u, v = fixture.pose.apply(x, y)
-    same = Fixture("I", fixture.pegs, Pose(degrees(theta), float(u), float(v)), fixture.jaw_separation, {})
+    same = Fixture("I", fixture.pegs, Pose(degrees(theta), float(u), float(v)), fixture.travel, {})
     other = Solver(lying, vise).of(same, with_cage=False)
     assert figures(other) == pytest.approx(figures(told), abs=1e-8)
     # Turned over about a line along the jaws' way, so that the jaws stay where they are: y to -y.
     pegs = tuple(Peg(peg.carrier, 0, 0, peg.x, -peg.y, 0, 0.0) for peg in fixture.pegs)
     flipped = Pose(180.0 - fixture.pose.theta_deg, fixture.pose.x, -fixture.pose.y)
-    over = Solver(part.turned_over, vise).of(
-        Fixture("I", pegs, flipped, fixture.jaw_separation, {}), with_cage=False
-    )
+    over = Solver(part.turned_over, vise).of(Fixture("I", pegs, flipped, fixture.travel, {}), with_cage=False)
     assert figures(over) == pytest.approx(figures(told), abs=1e-8)
     for mirrored in (False, True):
         assert separations(over, mirrored) == pytest.approx(separations(told, mirrored), abs=1e-8)

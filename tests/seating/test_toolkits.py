@@ -77,8 +77,7 @@ def test_all_fixtures_of_a_pattern_are_among_its_seats(name):
         for fixture, one in zip(fixtures, told, strict=True):
             [own] = [seat for seat in one.seats if seat.is_own]
             assert (
-                own.jaw_separation == pytest.approx(fixture.jaw_separation, abs=1e-6)
-                and abs(own.difference) < 1e-9
+                own.jaw_separation == pytest.approx(fixture.travel, abs=1e-6) and abs(own.difference) < 1e-9
             )
             assert abs((own.pose.theta_deg - fixture.pose.theta_deg + 180.0) % 360.0 - 180.0) < 1e-6
             assert (own.pose.x, own.pose.y) == pytest.approx((fixture.pose.x, fixture.pose.y), abs=1e-6)
@@ -105,12 +104,10 @@ def test_every_seat_lies_free_where_its_pose_says(name):
     fixture, told = result[0], told_of(name, 0)
     assert len(told.seats) > 1 and any(seat.mirrored for seat in told.seats)
     # What is reached with what moves open by a millimetre.
-    rises = [
-        told.clamping * (seat.jaw_separation - fixture.jaw_separation) for seat in told.seats if seat.is_wrong
-    ]
+    rises = [told.clamping * (seat.jaw_separation - fixture.travel) for seat in told.seats if seat.is_wrong]
     assert len(told.wrong_within(1.0)) == sum(rise < 1.0 for rise in rises)
     for seat in told.seats:
-        assert seat.difference == pytest.approx(seat.jaw_separation - fixture.jaw_separation, abs=1e-9)
+        assert seat.difference == pytest.approx(seat.jaw_separation - fixture.travel, abs=1e-9)
         part = result.workpiece.turned_over if seat.mirrored else result.workpiece
         obstacle = Obstacle.about(part, fixture, result.toolkit)
         config = np.array(
@@ -171,7 +168,7 @@ def test_the_cage_is_told_in_the_frame_of_the_toolkit(name):
     for (low, high), at in zip((told.cage.x, told.cage.y), (x - u, y - v), strict=True):
         assert low - 1e-9 <= min(0.0, at) and max(0.0, at) <= high + 1e-9
     assert told.way_out is None or told.way_out >= told.capture_opening - 1e-12
-    rise = told.lowest_pass.jaw_separation - fixture.jaw_separation
+    rise = told.lowest_pass.jaw_separation - fixture.travel
     assert rise == pytest.approx(told.clamping * told.capture_opening, abs=1e-9)
 
 
@@ -210,7 +207,7 @@ def quarter_turned(fixture: Fixture, names: dict[str, str], quarters: int) -> Fi
     )
     at = fixture.pose
     pose = Pose(at.theta_deg + 90.0 * quarters, c * at.x - s * at.y, s * at.x + c * at.y)
-    return Fixture("clamp", pegs, pose, fixture.jaw_separation, {})
+    return Fixture("clamp", pegs, pose, fixture.travel, {})
 
 
 @pytest.mark.parametrize(("direction", "quarters"), [("-y", 1), ("+x", 2), ("+y", 3)])
@@ -234,7 +231,7 @@ def test_part_and_plate_turned_over_say_the_same():
     fixture = result[0]
     pegs = tuple(Peg(peg.carrier, 0, 0, peg.x, -peg.y, 0, 0.0) for peg in fixture.pegs)
     pose = Pose(180.0 - fixture.pose.theta_deg, fixture.pose.x, -fixture.pose.y)
-    over = Fixture("clamp", pegs, pose, fixture.jaw_separation, {})
+    over = Fixture("clamp", pegs, pose, fixture.travel, {})
     same(Solver(WEDGE.turned_over, result.toolkit).of(over, with_cage=False), told_of("left", 0))
 
 
@@ -245,7 +242,7 @@ def test_an_opening_vise_is_a_closing_one_seen_from_its_other_jaw():
         opening = Pattern.of(fixture, result.toolkit)
         places = np.array([[peg.x, peg.y] for peg in fixture.pegs])
         right = np.array([int(peg.carrier == "right") for peg in fixture.pegs])
-        places[:, 0] -= right * fixture.jaw_separation
+        places[:, 0] -= right * fixture.travel
         closing = Pattern(
             places, 1 - right, opening.radii, opening.stop, opening.widest, ClosingFrame(0, 1.0)
         )
@@ -283,7 +280,7 @@ def test_a_clamp_stops_where_its_tip_meets_a_locator():
     )
     pattern = Pattern.of(fixture, Plate(pitch=20, peg_radius=3, clamp_radius=4))
     assert (pattern.stop, pattern.widest) == pytest.approx((7.0, 40.0 - np.sqrt(49.0 - 9.0)))
-    stroke = evolve(fixture, jaw_separation=-30.0)
+    stroke = evolve(fixture, travel=-30.0)
     short = Pattern.of(stroke, Plate(pitch=20, peg_radius=3, clamp_radius=4, travel=(5, 35)))
     assert short.stop == -35.0
     assert (

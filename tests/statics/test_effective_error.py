@@ -153,7 +153,7 @@ def test_why_first_says_what_counts() -> None:
     quarter = Workpiece.from_loops("standing", [[(y, -x, b) for x, y, b in BLOCK]])
     tilted = answer(Query(quarter, two, restrictions=Restrictions(angles=((90.0, 90.0),)), best=3), threads=1)
     assert "counted as" in why_first(tilted) and "(turned by 90°" in why_first(tilted)
-    assert why_first(answer(Query(block(), two, ranking="penalty", best=3), threads=1)) == ""
+    assert why_first(answer(Query(block(), two, rank_by="penalty", best=3), threads=1)) == ""
 
 
 def test_why_first_says_what_stands_square() -> None:

@@ -141,10 +141,10 @@ def test_a_longer_path_never_asks_for_less(direction: Any) -> None:
 
 def test_loads_of_a_program_rank_like_other_loads() -> None:
     result = result_of("vise")
-    assert result.query.ranking[5] == "load_reaction"
+    assert result.query.rank_by[5] == "load_reaction"
     bare = evolve(result.query.program, forces=None)
-    assert evolve(result.query, program=bare, ranking=None).ranking[5] == "clamp_amplification"
-    assert "load_reaction" not in result.query.without_program.ranking
+    assert evolve(result.query, program=bare, rank_by=None).rank_by[5] == "clamp_amplification"
+    assert "load_reaction" not in result.query.without_program.rank_by
     weak = result_of("vise", jaw_force=1.0)
     assert weak[0].quality["warnings"] >= 1 and weak[0].quality["jaw_force_needed"] > 1
 

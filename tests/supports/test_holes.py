@@ -32,7 +32,7 @@ def widest(vise: Vise, fixture: Fixture, standing: list[Standing]) -> float | No
     columns, rows = vise.columns, vise.rows or 12
     shifts = np.arange(-3 * columns, 3 * columns + 1)
     left, right, lift = np.meshgrid(shifts, shifts, np.arange(-rows, rows + 1), indexing="ij")
-    opening = fixture.jaw_separation + (left - right) * vise.pitch[0]
+    opening = fixture.travel + (left - right) * vise.pitch[0]
     may = (opening >= vise.min_gap - 1e-9) & (opening <= (vise.max_opening or 1e9) + 1e-9)
     for jaw, own_column, own_row in standing:
         column, row = own_column + (left, right)[jaw], own_row + lift

@@ -29,7 +29,7 @@ def found() -> Supports:
         request = SupportRequest.of(part, 30.0, toolkit=result.toolkit)
         some = supports_of(fixture, result.query, request, [LOAD], best=3)
         if some.triples:
-            opened = fixture.jaw_separation + 20.0
+            opened = fixture.travel + 20.0
             return evolve(some, triples=tuple(evolve(one, travel=opened) for one in some.triples))
     raise AssertionError("take another part")
 
@@ -52,7 +52,7 @@ def test_both_say_the_same(found: Supports) -> None:
 
 def test_nothing_is_said_of_what_is_not_there(found: Supports) -> None:
     """Without loads, openings of their own, or a solid; one known side leaves the other to be named alone."""
-    still = tuple(evolve(one, travel=found.fixture.jaw_separation) for one in found.triples)
+    still = tuple(evolve(one, travel=found.fixture.travel) for one in found.triples)
     plain = evolve(found, triples=still, loads=())
     assert [note for note in notes_of_page(plain, "mm") if "level face" not in note] == []
     assert flat_faces_notes(workhold.load("widget"), ("a", "b")) == []

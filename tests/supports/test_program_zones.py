@@ -235,7 +235,7 @@ def test_supports_of_a_fixture_with_a_program_keep_off_what_it_sweeps() -> None:
     (fixture, *_) = list(answer(query))
     request = SupportRequest(THICKNESS, PAD, TIP)
     found = supports_of(fixture, query, request)
-    free = supports_of(fixture, evolve(query, program=None, peg_height=None, ranking=None), request)
+    free = supports_of(fixture, evolve(query, program=None, peg_height=None, rank_by=None), request)
     assert 0 < len(found.triples) < len(free.triples)
     pads = np.array([[pad.x, pad.y] for one in found.triples for pad in one.supports])
     tips = np.array([one.best.at for one in found.triples])

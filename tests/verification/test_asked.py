@@ -141,8 +141,8 @@ def test_other_keys_to_rank_by_are_a_fault(limited: Result) -> None:
     for ranking in (
         ("closure_margin",),
         ("end_distance", "location_error"),
-        tuple(reversed(figures_ranked_by(limited.query.ranking))),
+        tuple(reversed(figures_ranked_by(limited.query.rank_by))),
     ):
-        outcome = verify(attrs.evolve(limited, query=attrs.evolve(limited.query, ranking=ranking)))
+        outcome = verify(attrs.evolve(limited, query=attrs.evolve(limited.query, rank_by=ranking)))
         assert len(outcome.faults) == 1, ranking
         assert ", ".join(ranking) in outcome.faults[0]

@@ -238,7 +238,7 @@ def test_a_tip_keeps_off_the_wall() -> None:
     assert pair is not None
     pegs = (*first.pegs[:3], evolve(clamp, x=clamp.x + 1.0), evolve(first.pegs[4], y=first.pegs[4].y + 1.0))
     travels = pair.travels[0] + 1.0, pair.travels[1] + 1.0
-    thick = evolve(first, pegs=pegs, jaw_separation=travels[0], pair=evolve(pair, travels=travels))
+    thick = evolve(first, pegs=pegs, travel=travels[0], pair=evolve(pair, travels=travels))
     ruling = verify_fixture(thick, result.workpiece, evolve(toolkit, clamp_radius=4.0))
     assert ruling.verdict == "refuted" and "clamp 1 enters the fence by 1 mm" in ruling.reason
 

@@ -295,7 +295,7 @@ def test_its_seating_knows_where_it_stops_and_which_pegs_stand_alike(known: Know
     alike: dict[Any, list[tuple[tuple[float, ...], float]]] = {}
     for item in known.items:
         fixture = known.read(item)
-        assert stop_of(fixture.pegs, known.toolkit, fixture.jaw_separation) == pytest.approx(3.0)
+        assert stop_of(fixture.pegs, known.toolkit, fixture.travel) == pytest.approx(3.0)
         here = stance(fixture, known.toolkit)
         assert here.anchor == (0.0, 0.0) and here.apart == pytest.approx(
             min((p["x"], p["y"]) for p in item["pegs"])[1]

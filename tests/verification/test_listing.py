@@ -123,7 +123,7 @@ def test_every_number_is_kept_as_written(widget_data: Data, tmp_path: Path) -> N
     path.write_text(json.dumps(widget_data), encoding="utf-8")
     listing = read_listing(path)
     for fixture, written in zip(listing.fixtures, widget_data["fixtures"], strict=True):
-        assert fixture.jaw_separation == written["jaw_separation"]
+        assert fixture.travel == written["jaw_separation"]
         assert fixture.quality == written["quality"]
         for peg_read, peg_written in zip(fixture.pegs, written["pegs"], strict=True):
             names = {"segment": "face", "jaw": "carrier"}

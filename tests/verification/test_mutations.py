@@ -130,7 +130,7 @@ def wedge_result(toolkit: Toolkit) -> Result:
     loads = [Load(((10.0, 5.0),), 100.0, (20.0, 70.0), 3.0, "cutter")]
     ranking = ("location_error", "load_reaction", "closure_margin")
     result = answer(
-        Query(wedge, toolkit, contact_margin=0.25, restrictions=asked, ranking=ranking, loads=loads)
+        Query(wedge, toolkit, contact_margin=0.25, restrictions=asked, rank_by=ranking, loads=loads)
     )
     assert result.proof is not None and len(result) > 6
     counts = {"candidates": result.proof.candidates + 1, "escalated": max(result.proof.escalated, 1)}

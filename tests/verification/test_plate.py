@@ -329,7 +329,7 @@ def bolted_in(fixture: Fixture, hole: tuple[int, int], plate: Plate) -> Fixture:
     if min(clamp.column, clamp.row) >= 0:
         moved[3] = attrs.evolve(clamp, place=carrier.place_name(clamp.column, clamp.row))
     pose = attrs.evolve(fixture.pose, x=fixture.pose.x - x, y=fixture.pose.y - y)
-    return attrs.evolve(fixture, pegs=tuple(moved), pose=pose, jaw_separation=travel, quality={})
+    return attrs.evolve(fixture, pegs=tuple(moved), pose=pose, travel=travel, quality={})
 
 
 @pytest.mark.thorough
@@ -406,9 +406,7 @@ def test_a_clamp_that_would_have_to_pull_is_refuted() -> None:
     for fixture in fixtures:
         clamp = attrs.evolve(fixture.pegs[3], carrier="clamp +x")
         pegs = (*fixture.pegs[:3], clamp)
-        other = attrs.evolve(
-            fixture, pegs=pegs, direction="+x", jaw_separation=-fixture.jaw_separation, quality={}
-        )
+        other = attrs.evolve(fixture, pegs=pegs, direction="+x", travel=-fixture.travel, quality={})
         assert verify_fixture(fixture, workpiece, plate).verdict == "proven"
         assert "the clamp does not push the part" in verify_fixture(other, workpiece, turned).reason
         assert "which is not asked for" in verify_fixture(other, workpiece, plate).reason

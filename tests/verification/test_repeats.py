@@ -29,7 +29,7 @@ def renamed(fixture: Fixture) -> Fixture:
 
 def half_turned(fixture: Fixture) -> Fixture:
     """The fixture seen from the other side of the vise, whose jaws have two columns: (x, y) becomes (width - x, -y)."""
-    width = fixture.jaw_separation + 16.0
+    width = fixture.travel + 16.0
     pegs = [
         attrs.evolve(
             peg,
@@ -64,7 +64,7 @@ def test_not_the_same(widget_result: Result) -> None:
     seen = known_in(widget_result.toolkit)
     fixture = widget_result[0]
     right = [attrs.evolve(peg, x=peg.x + 5.0 * (peg.carrier == "right")) for peg in fixture.pegs]
-    wider = attrs.evolve(fixture, pegs=tuple(right), jaw_separation=fixture.jaw_separation + 5.0)
+    wider = attrs.evolve(fixture, pegs=tuple(right), travel=fixture.travel + 5.0)
     assert [seen.add(k, f) for k, f in enumerate((fixture, moved(fixture, 0.01), wider))] == [
         None,
         None,

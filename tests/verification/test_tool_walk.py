@@ -40,7 +40,7 @@ def program_of_result(result: Result) -> Program:
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_fixture_of_a_list_is_proven_in_either_form(kind: str, tmp_path: Path) -> None:
-    result = result_of(kind, best=6, ranking=["program-clearance", "closure-margin"])
+    result = result_of(kind, best=6, rank_by=["program-clearance", "closure-margin"])
     save(result, tmp_path / "a.json")
     save(result, tmp_path / "a.npz")
     for name in ("a.json", "a.npz"):
@@ -131,7 +131,7 @@ def test_a_figure_without_a_program_is_refuted(tmp_path: Path) -> None:
 
 
 def test_a_query_of_more_clearance_than_was_kept_is_refuted() -> None:
-    result = result_of("vise", best=4, ranking=["closure-margin"])
+    result = result_of("vise", best=4, rank_by=["closure-margin"])
     program = evolve(program_of_result(result), clearance=50.0)
     found = verify(evolve(result, query=evolve(result.query, program=program)))
     assert found.refuted == len(result)

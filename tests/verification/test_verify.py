@@ -96,7 +96,7 @@ def test_a_separation_of_exactly_the_smallest_gap_is_proven() -> None:
     outcome = verify(result)
     assert outcome.proven == outcome.fixtures > 500
     assert outcome.bits == 128
-    assert sum(abs(fixture.jaw_separation - vise.min_gap) < 1e-12 for fixture in result) >= 2
+    assert sum(abs(fixture.travel - vise.min_gap) < 1e-12 for fixture in result) >= 2
 
 
 def test_a_contact_exactly_at_a_tangent_joint_is_proven() -> None:

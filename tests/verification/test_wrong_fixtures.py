@@ -121,9 +121,7 @@ def test_neighbours_of_fixtures(name: str) -> None:
     for _ in range(300):
         before = result[random.randrange(len(result))]
         holes = neighbour(random, before, vise, faces)
-        start = np.array(
-            [np.radians(before.pose.theta_deg), before.pose.x, before.pose.y, before.jaw_separation]
-        )
+        start = np.array([np.radians(before.pose.theta_deg), before.pose.x, before.pose.y, before.travel])
         z = None if holes is None else solved(workpiece, vise, holes, start)
         if holes is None or z is None:
             continue
@@ -131,7 +129,7 @@ def test_neighbours_of_fixtures(name: str) -> None:
         written = listed_one(fixture)
         faults, marginal = judge.check(written)
         # The checker calls what is within 1e-6 of an edge marginal, and does not look at the separation as written.
-        edge = marginal or near_an_end(judge, written) or fixture.jaw_separation < vise.min_gap
+        edge = marginal or near_an_end(judge, written) or fixture.travel < vise.min_gap
         if edge and not faults:
             continue
         ruling = verify_fixture(fixture, workpiece, vise)

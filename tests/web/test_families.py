@@ -47,7 +47,7 @@ def test_the_curve_is_that_of_the_program(server: RunningServer, job: str) -> No
     answer = server.client.get(f"{job}/family").json()
     vise = Vise(pitch=10, columns=1, peg_radius=3)
     family = family_of(
-        [Asked(part.name, Query(part, vise, ranking=RANKINGS[1])) for part in PARTS], threads=1
+        [Asked(part.name, Query(part, vise, rank_by=RANKINGS[1])) for part in PARTS], threads=1
     )
     assert [(one["setups"], one["loss"]) for one in answer["points"]] == [
         (p.setups, p.loss) for p in family.points

@@ -252,7 +252,7 @@ def answer_by_algebra(
     solver = ResultantSolver(problem.rows, problem.frame, query.contact_margin, problem.diameter)
     records: list[Array] = []
     complete = True
-    for found in stages(solver, query.arrangements):
+    for found in stages(solver, query.types):
         records.append(found)
         if progress is not None:
             progress(1.0 - 0.9 ** len(records), sum(map(len, records)))

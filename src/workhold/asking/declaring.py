@@ -193,7 +193,7 @@ class Declaration:
 
     def number(self, value: Any, wrong: str, unit: str) -> float:
         """Convert a number, and refuse one that is not finite or too small."""
-        number = real(value)
+        number = real(value, self.words)
         is_low = number <= 0 if self.least == "above 0" else number < 0 and self.least == "0"
         if not isfinite(number) or is_low:
             raise InputError(f"{self.words} {number:g} {wrong}: give {WANTED[self.least]}{unit}.")

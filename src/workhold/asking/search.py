@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
 from typing import Any
 
 from attrs import frozen
@@ -18,45 +17,40 @@ RULING_OUT, LOADS, RANKING, SEATING, SEARCH = "Ruling out", "Loads", "Ranking", 
 HEIGHTS = "Heights"
 
 
-def ascending(numbers: Iterable[int]) -> tuple[int, ...]:
-    """Numbers in order, each once."""
-    return tuple(sorted(set(numbers)))
-
-
-def angle_pairs(ranges: Iterable[Iterable[float]]) -> tuple[tuple[float, float], ...]:
-    return tuple((float(low), float(high)) for low, high in ranges)
-
-
 @frozen(field_transformer=check_fields)
 class RuledOut:
-    """What fixtures must keep clear of; :class:`workhold.Restrictions` explains the fields."""
+    """What fixtures must keep clear of, and what they must touch; :class:`workhold.Restrictions` explains the fields."""
 
-    avoid: Sequence[int] = declare(
+    avoid: Any = declare(
         "faces",
         "Faces that no peg may touch.",
         default=(),
-        converter=ascending,
         section=RULING_OUT,
         typed="Faces that no peg may touch, such as 3,7 (see workhold features).",
     )
-    zones: Sequence[Any] = declare(
+    zones: Any = declare(
         "zones",
         "Where no peg may stand.",
         default=(),
-        converter=tuple,
         section=RULING_OUT,
         word="keep_out",
         typed="Where no peg may stand, in the drawing's coordinates: circle=X,Y,RADIUS or "
         "polygon=X,Y;X,Y;X,Y. May be repeated.",
     )
-    angles: Sequence[Sequence[float]] = declare(
+    angles: Any = declare(
         "angles",
         "Angles the part may lie at, in degrees.",
         default=(),
-        converter=angle_pairs,
         section=RULING_OUT,
         word="angle",
         typed="Angles the part may lie at, in degrees: -10..10. May be repeated.",
+    )
+    touch: Any = declare(
+        "faces",
+        "Faces that every fixture must touch; not with two clamps.",
+        default=(),
+        section=RULING_OUT,
+        typed="Faces that every fixture must touch, such as 3,7; not with two clamps.",
     )
 
 
@@ -70,6 +64,12 @@ class SearchQuestion:
         PageLabel("Edge margin", "0"),
         default=0.0,
         least="0",
+        section=RULING_OUT,
+    )
+    max_location_error: float | None = declare(
+        "length",
+        "List only fixtures whose location error is at most this.",
+        PageLabel("Largest location error", "any"),
         section=RULING_OUT,
     )
     best: int | None = declare("count", "Keep only the best K.", section=SEARCH, most=10_000, metavar="K")

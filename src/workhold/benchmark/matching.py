@@ -33,7 +33,7 @@ from workhold.files.budget import LIMITS, Budget
 from workhold.files.tables import SAVED, CsvRow, table_of
 from workhold.files.text import json_value, read_text
 from workhold.geometry.symmetry import centroid_of_joints, rotated, rotations_onto_itself
-from workhold.limits import real, refuse_long
+from workhold.limits import read_number, refuse_long
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -161,7 +161,7 @@ def role_of(peg: Mapping[str, Any], direction: str | None) -> str:
 
 
 def finite(value: Any) -> float:
-    number = nan if isinstance(value, bool) else real(value)
+    number = nan if isinstance(value, bool) else read_number(value)
     if not isfinite(number):
         raise ValueError(f"{str(value)[:40]!r} is no number")
     refuse_long("the number", number)

@@ -140,6 +140,12 @@ class DesignArguments(LoadArguments):
     avoid: list[int] = Field(
         default=[], description="faces not to touch, by number, such as those to be machined"
     )
+    touch: list[int] = Field(
+        default=[], description="faces that every fixture must touch, by number; not with two clamps"
+    )
+    max_location_error: Positive | None = Field(
+        default=None, description="list only fixtures whose location error is at most this, in mm"
+    )
     keep_out: list[Circle | Polygon] = Field(default=[], description="places that no peg may stand over")
     angles: list[Pair] = Field(default=[], description="ranges of angles that the part may lie at")
     prefer: Literal["square", "strong", "precise", "roomy"] | None = Field(

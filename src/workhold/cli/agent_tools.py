@@ -137,7 +137,7 @@ def answered(asked: DesignArguments, cancel: Event) -> tuple[Loaded, Result]:
         loaded.workpiece,
         toolkit,
         asked.types,
-        Restrictions(avoid=asked.avoid, zones=zones, angles=asked.angles),
+        Restrictions(asked.avoid, zones, asked.angles, asked.touch),
         asked_ranking(None, asked.prefer, bool(loads) or has_forces, program is not None),
         with_fit_of(None, tolerance),
         loads,

@@ -109,7 +109,7 @@ def explore(
     types = list(dict.fromkeys(name for one in found for name in one.found))
     # Toolkits with one clamp and with two have a default ranking each; the first that can be asked gives the
     # columns.
-    ranking = next((query.ranking for _, query in queries if not isinstance(query, InputError)), ())
+    ranking = next((query.rank_by for _, query in queries if not isinstance(query, InputError)), ())
     first = first_choice(found, ranking, is_sold)
     if not json_:
         known = [figures_known(*each) for each in zip(found, queries, strict=False)]

@@ -159,7 +159,7 @@ class QueryWords:
         names = None if self.rank_by is None else [word for word in self.rank_by.split(",") if word.strip()]
         return read_words(OF_SEARCHES, self, unit) | {
             "restrictions": Restrictions(**read_words(OF_RESTRICTIONS, self, unit)),
-            "ranking": asked_ranking(names, self.prefer, bool(loads) or has_forces, has_program),
+            "rank_by": asked_ranking(names, self.prefer, bool(loads) or has_forces, has_program),
             "tolerance": asked_tolerance(self.tolerance, unit),
             "loads": loads,
         }

@@ -167,7 +167,7 @@ def setting_words(seating: Seating, gauge: Gauge, unit: Unit) -> list[str]:
     elif seating.capture_opening is None:
         words = [f"However {ways.far}, the part cannot get to another place: put it in and {ways.close}."]
     else:
-        wide = gauge.at(gauge.fixture.jaw_separation + seating.clamping * seating.capture_opening)
+        wide = gauge.at(gauge.fixture.travel + seating.clamping * seating.capture_opening)
         words = [
             f"{ways.open} to {named}{less} than {unit.text(wide)}, which is "
             f"{unit.text(seating.capture_opening)} from where {ways.hold} the part. Put the part in its "

@@ -261,7 +261,7 @@ def draw_hole_names(
         columns = [(column, view((x, 0.0))[0]) for column, x in shown.named_columns]
         rims = (("top", frame.y0, plate.y0, -1), ("bottom", frame.y1, plate.y1, 1))
         for column, x, used in labelled(columns, used_columns, 17.0):
-            anchor = inner_anchor(shown, column, bench.fixture.jaw_separation * view.scale)
+            anchor = inner_anchor(shown, column, bench.fixture.travel * view.scale)
             for side, rim, inner, way in rims:
                 if side not in shown.facing:
                     ruling(group, (x, rim), (x, inner))

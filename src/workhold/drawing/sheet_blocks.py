@@ -141,7 +141,7 @@ def write_opening(column: TextColumn, sheet: Sheet) -> None:
     fixture, toolkit, lengths = sheet.fixture, sheet.toolkit, sheet.lengths
     first, moving = toolkit.plates[0], toolkit.moving
     heading(column, f"Opening S of the {moving.noun}s")
-    column.words(lengths.words(fixture.jaw_separation), 28, bold=True, gap=0.4)
+    column.words(lengths.words(fixture.travel), 28, bold=True, gap=0.4)
     if first == moving:
         column.paragraph(f"From {sheet.datum.y} to the centres of row 1 of the {moving.title}.", NOTE)
         return
@@ -174,7 +174,7 @@ def opening_steps(sheet: Sheet) -> list[str]:
     pegs = "both" if count == 2 else f"all {NUMBERS[count]}"
     return [
         put_words(sheet),
-        f"{there} the {moving.noun}s a little {more} than S = {lengths.words(fixture.jaw_separation)} and "
+        f"{there} the {moving.noun}s a little {more} than S = {lengths.words(fixture.travel)} and "
         f"lay the part in as drawn, {lies_words(sheet)}{against}.{inside_words(sheet)}",
         f"{back} the {moving.title} until {pegs} pegs touch. The opening is then S; if not, the part "
         "lies another way.",

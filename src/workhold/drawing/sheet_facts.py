@@ -188,7 +188,7 @@ def caliper_check(fixture: Fixture, toolkit: Toolkit) -> CaliperCheck:
     first, second = toolkit.carriers
     rows = sorted({peg.row for peg in fixture.pegs})
     used = {(peg.carrier, peg.column, peg.row) for peg in fixture.pegs}
-    last, travelled = first.column_count - 1, fixture.jaw_separation
+    last, travelled = first.column_count - 1, fixture.travel
     shift = round((second.offset[1] - first.offset[1]) / first.pitch[1])
     best: tuple[float, int, int, int] | None = None
     for low, high in {

@@ -232,7 +232,7 @@ def counting_words(sheet: Sheet, chosen: ChosenSupports) -> list[str]:
             f"So that supports have holes near the middle of the {sheet.plates_noun}, all stands "
             f"{moved_words(recounted.move)} than the fixture is listed."
         )
-    travelled = recounted.fixture.jaw_separation - chosen.supports.fixture.jaw_separation
+    travelled = recounted.fixture.travel - chosen.supports.fixture.travel
     if sheet.toolkit.moving.has_lattice and abs(travelled) > 1e-6:
         sentences.append(
             f"Supports stand between the pegs, so the opening is {sheet.lengths.words(abs(travelled))} "

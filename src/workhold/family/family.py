@@ -171,7 +171,7 @@ def family_of(
     >>> def triangle(width, height):
     ...     return Workpiece.from_loops("", [[[0, 0, 0], [width, 0, 0], [width / 3, height, 0]]])
     >>> sizes = (40, 35), (50, 40), (62, 31)
-    >>> parts = [Asked(str(size), Query(triangle(*size), vise, ranking=by)) for size in sizes]
+    >>> parts = [Asked(str(size), Query(triangle(*size), vise, rank_by=by)) for size in sizes]
     >>> [(point.setups, round(point.loss, 2)) for point in family_of(parts).points]
     [(1, 1.06), (2, 1.03), (3, 1.0)]
     """
@@ -186,7 +186,7 @@ def family_of(
             )
         if one.query.program is not None:
             raise InputError(f"{one.name} has a program to let pass: a family of parts is planned without.")
-        if one.query.ranking[0] != first.ranking[0]:
+        if one.query.rank_by[0] != first.rank_by[0]:
             raise InputError(
                 f"{one.name} is ranked by another figure: the losses of a family are of one figure."
             )
@@ -205,7 +205,7 @@ def family_of(
             members.append(member)
         else:
             out.append(LeftOut(one.name, one.path, reason_of(member, bool(len(member.words)))))
-    figure = FIGURES[figure_number(first.ranking[0]) or 0]
+    figure = FIGURES[figure_number(first.rank_by[0]) or 0]
     if not members:
         return Family(first.toolkit, figure, (), tuple(out), (), None)
     table = table_of(members)

@@ -188,7 +188,10 @@ def other_side(query: Query, read: Workpiece | None = None) -> Query:
     part, asked, called = query.workpiece, query.restrictions, f"{query.workpiece.name}, {OTHER_SIDE}"
     if read is not None:
         workpiece = evolve(read, name=called)
-        avoid = read.numbered.segments_under(part.numbered.faces_over(asked.avoid))
+        avoid, touch = (
+            read.numbered.segments_under(part.numbered.faces_over(faces))
+            for faces in (asked.avoid, asked.touch)
+        )
     elif part.solid is not None:
         raise InputError(
             f"{part.name} is an outline at the height of pegs, and on its other side it has another: give "
@@ -199,7 +202,9 @@ def other_side(query: Query, read: Workpiece | None = None) -> Query:
         workpiece = Workpiece.from_loops(called, loops, departure=part.departure)
         numbers = segment_numbers(part)
         # A number that no face has is refused where the part as it is drawn is asked for.
-        avoid = [numbers.get(number, number) for number in asked.avoid]
+        avoid, touch = (
+            [numbers.get(number, number) for number in faces] for faces in (asked.avoid, asked.touch)
+        )
     return evolve(
         query,
         workpiece=workpiece,
@@ -207,6 +212,7 @@ def other_side(query: Query, read: Workpiece | None = None) -> Query:
             avoid=avoid,
             zones=[zone_of(mirrored(zone.loop).tolist()) for zone in asked.zones],
             angles=asked.angles,
+            touch=touch,
         ),
         loads=[mirrored_load(load) for load in query.loads],
     )
@@ -277,7 +283,7 @@ def member_of(
     whether patterns also differ where the zero lies elsewhere or the part is turned otherwise.
     """
     query = result.query
-    figure = FIGURES[figure_number(query.ranking[0]) or 0]
+    figure = FIGURES[figure_number(query.rank_by[0]) or 0]
     table, number = with_half_turns(result.table, query)
     values = figure_column(table.quality, figure)
     if figure.key == LOCATION:

@@ -175,7 +175,7 @@ class Holding:
 
     @property
     def figure(self) -> float:
-        return float(self.row.quality[0, figure_number(self.member.query.ranking[0]) or 0])
+        return float(self.row.quality[0, figure_number(self.member.query.rank_by[0]) or 0])
 
 
 @frozen(eq=False)

@@ -8,9 +8,9 @@ command line, a field of the page, an argument in Python.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
-from workhold.errors import InputError
+from workhold.errors import InputError, quoted
 
 __all__ = [
     "AXIS",
@@ -29,6 +29,7 @@ __all__ = [
     "UNIT",
     "UnitAskedError",
     "by_height",
+    "layers_given",
     "number_or_name",
     "refuse_axis",
     "refuse_fit",
@@ -89,6 +90,14 @@ def number_or_name(part: int | str | None) -> int | str | None:
     """
     text = part.strip() if isinstance(part, str) else ""
     return int(text) if text.isascii() and text.isdigit() and len(text) < 10 else part
+
+
+def layers_given(layers: Sequence[str] | str | None) -> Sequence[str] | None:
+    """Names of layers, of which one may stand by itself; refuses what are none."""
+    names = [layers] if isinstance(layers, str) else layers
+    if names is not None and not (isinstance(names, Iterable) and all(isinstance(one, str) for one in names)):
+        raise InputError(f"layers cannot be {quoted(layers)}: give their names in a list.")
+    return names if names is None else list(names)
 
 
 def refuse_layers(layers: Sequence[str] | None) -> None:

@@ -93,7 +93,7 @@ def pad_of(hole: tuple[str, int, int], fixture: Fixture, query: Query, path: Pat
     plates = {plate.name: plate for plate in query.toolkit.plates}
     if name not in plates:
         raise InputError(f"{path}: a support stands on {name!r}: give {' or '.join(plates)}.")
-    x, y = fixture.pose.inverse.apply(*plates[name].place(column, row, fixture.jaw_separation))
+    x, y = fixture.pose.inverse.apply(*plates[name].place(column, row, fixture.travel))
     return SupportPad(name, column, row, float(x), float(y))
 
 

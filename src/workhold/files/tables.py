@@ -22,7 +22,7 @@ from attrs import define, field, frozen
 
 from workhold.errors import InputError
 from workhold.files.budget import Budget
-from workhold.limits import real
+from workhold.limits import read_number
 
 __all__ = ["MOST_COLUMNS", "MOST_LETTERS", "NOT_GIVEN", "SAVED", "CsvRow", "CsvTable", "table_of"]
 
@@ -81,7 +81,7 @@ class CsvRow:
             With line, row and column, where there is none.
         """
         value = self.value(name)
-        number = nan if value is None else real(value)
+        number = nan if value is None else read_number(value)
         if not isfinite(number):
             said = "there is no number" if value is None else f"'{value[:40]}' is not a finite number"
             raise InputError(f"{self}, column {name}: {said}: write one, such as 12.5.")

@@ -20,6 +20,7 @@ from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, ROUND_PIN, TOWARDS, WA
 from workhold.fixels.pegs import Flat
 
 __all__ = [
+    "JAWS",
     "WALL",
     "Carrier",
     "Heights",
@@ -29,6 +30,7 @@ __all__ = [
     "column_letters",
     "hole_name",
     "holes_named",
+    "letter_of",
 ]
 
 # The carrier that is the only one with holes.
@@ -116,6 +118,8 @@ def holes_named(name: str, carriers: Iterable[str], noun: str) -> Holes:
 Heights = tuple[float, float]
 # The name of the carrier that is a wall.
 WALL = "wall"
+# What the carriers of a vise are called.
+JAWS = ("left", "right")
 
 # What is set on a carrier that moves: the opening of jaws, a clamp's stroke from its hole, or the place of
 # its tip.

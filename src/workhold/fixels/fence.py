@@ -41,6 +41,9 @@ class Fence(Plate):
         here.
     wall_offset : distance in mm from the fence to the first row of holes, the peg radius or more.
     locator_heights, clamp_heights, wall_heights : as of a :class:`workhold.Plate`, and the same of the fence.
+    supports, top_clamp, pins : the owner's supports under the part, clamp on top and limits of pins, as mappings
+        of figures in mm and MPa (see ``fixels.support_hardware``); None is the usual.
+    tolerance : how far these pegs and the faces on them may be off; None is not known.
 
     Raises
     ------

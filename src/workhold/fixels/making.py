@@ -39,22 +39,22 @@ __all__ = [
 ]
 
 
-def pair(value: float | Iterable[float]) -> tuple[float, float]:
+def pair(value: Any) -> tuple[float, float]:
     """One pitch for both directions, or one for x and one for y."""
-    numbers = tuple(value) if isinstance(value, Iterable) else (value, value)
+    numbers = tuple(value) if isinstance(value, Iterable) and not isinstance(value, str) else (value, value)
     if len(numbers) != 2:
         raise InputError(f"pitch {value} is not one number or two: give one pitch, or X,Y.")
-    return real(numbers[0]), real(numbers[1])
+    return real(numbers[0], "pitch"), real(numbers[1], "pitch")
 
 
-def whole(value: Any) -> Any:
-    """A whole number as an int; None and anything else as it is, to be looked at later."""
-    return int(value) if isfinite(real(value)) and value == int(value) else value
+def whole(value: Any, name: str = "a count") -> Any:
+    """A whole number as an int; None and other numbers as they are, to be looked at later."""
+    return int(value) if value is not None and isfinite(real(value, name)) and value == int(value) else value
 
 
-def optional_length(value: float | None) -> float:
+def optional_length(value: float | None, name: str = "a length") -> float:
     """A length, or NaN (which the vise resolves) for None."""
-    return nan if value is None else inf if isnan(real(value)) else real(value)
+    return nan if value is None else inf if isnan(real(value, name)) else real(value)
 
 
 def refuse_lattice(
@@ -129,9 +129,12 @@ def converter_of(row: ToolkitField) -> Callable[[Any], Any]:
     """Returns the converter of a field's values; values that cannot be are refused when all are known."""
     match row.form:
         case "length" if row.follows:
-            return optional_length
+            return partial(optional_length, name=row.words)
         case "length":
-            return real if row.is_required or row.default is not None else optional(real)
+            number = partial(real, name=row.words)
+            return number if row.is_required or row.default is not None else optional(number)
+        case "count":
+            return partial(whole, name=row.words)
         case "holes":
             return partial(all_holes, carriers=row.carriers, noun=row.carrier_noun)
         case form:
@@ -188,7 +191,6 @@ def refuse_direction(name: Any) -> None:
 
 
 CONVERTERS: dict[str, Callable[[Any], Any]] = {
-    "count": whole,
     "pitch": pair,
     "span": partial(
         two_lengths,

@@ -50,6 +50,9 @@ class Plate(Toolkit):
         width, in mm; None for round ones. A clamp's tip is round.
     locator_heights, clamp_heights : lower and upper end in mm, above the plane on which the part lies, of the
         locators, and of the clamps with their tips. None where they reach up to the peg height.
+    supports, top_clamp, pins : the owner's supports under the part, clamp on top and limits of pins, as mappings
+        of figures in mm and MPa (see ``fixels.support_hardware``); None is the usual.
+    tolerance : how far these pegs and the faces on them may be off; None is not known.
 
     Raises
     ------

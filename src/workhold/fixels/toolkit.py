@@ -24,7 +24,6 @@ import numpy as np
 from attrs import evolve, frozen
 from numpy.typing import NDArray
 
-from workhold.delegates import delegate
 from workhold.errors import InputError
 from workhold.fixels.carrier import Carrier, Heights, Travel
 from workhold.fixels.contacts import CLAMP_TIP, Arrangement, ContactKind, Symmetry
@@ -289,9 +288,11 @@ class Toolkit:
         >>> Vise.preset("plate-20mm", columns=2).pitch, Plate.preset("clamp-plate-20mm").clamp_radius
         ((20.0, 20.0), 5.0)
         """
-        given = {**delegate("preset_fields")(cls, name), **changes}
+        from workhold.files.toolkit_file import preset_fields, preset_tolerance
+
+        given = {**preset_fields(cls, name), **changes}
         if PEG_RADIUS not in changes:
-            given.setdefault("tolerance", delegate("preset_tolerance")(name))
+            given.setdefault("tolerance", preset_tolerance(name))
         try:
             return cls(**given)
         except TypeError as error:
@@ -307,8 +308,9 @@ class Toolkit:
         >>> Fence.presets()
         ('fence-20mm',)
         """
-        names: tuple[str, ...] = delegate("preset_names_of")(cls)
-        return names
+        from workhold.files.toolkit_file import preset_names_of
+
+        return preset_names_of(cls)
 
     def changed(self, fields: Mapping[str, Any]) -> Self:
         # Other pegs are as good as nobody says.

@@ -41,6 +41,9 @@ class Vise(Toolkit):
         mm; None for round ones.
     left_heights, right_heights : lower and upper end in mm, above the plane on which the part lies, of the
         pegs of each jaw. None where they reach up to the peg height.
+    supports, top_clamp, pins : the owner's supports under the part, clamp on top and limits of pins, as mappings
+        of figures in mm and MPa (see ``fixels.support_hardware``); None is the usual.
+    tolerance : how far these pegs and the faces on them may be off; None is not known.
 
     Raises
     ------

@@ -41,7 +41,7 @@ from workhold.geometry.segment import (
     segment_rows,
 )
 from workhold.kernels.base.distance import turns_around
-from workhold.limits import MOST_COMPARED, MOST_LENGTH, MOST_RADIUS
+from workhold.limits import MOST_COMPARED, MOST_LENGTH, MOST_RADIUS, real_array
 
 __all__ = [
     "Comparisons",
@@ -151,7 +151,9 @@ def checked_vertices(vertices: ArrayLike, loop: str, place: Place) -> NDArray[np
     """
     no_list = f"{loop} is not a list of [x, y, bulge] numbers: give three numbers for every vertex."
     try:
-        array = np.array(vertices, dtype=np.float64)
+        array = real_array(vertices, f"{loop}: a coordinate")
+    except InputError:
+        raise
     except (TypeError, ValueError, OverflowError) as error:
         raise InputError(no_list) from error
     if array.ndim != 2 or array.shape[1] != 3:

@@ -77,7 +77,7 @@ MANY = 1 << 20
 def first_of_clamps(query: Query) -> int | None:
     """The place in a ranking of the first figure that pairs of clamps bound; None where there is none."""
     keys = {FIGURES[number].key for number in BOUNDED}
-    return next((place for place, key in enumerate(query.ranking) if key in keys), None)
+    return next((place for place, key in enumerate(query.rank_by) if key in keys), None)
 
 
 def pair_bounds(
@@ -107,7 +107,7 @@ def pair_bounds(
         one, other = (arrangement.direction or "").split()
         asked[DIRECTION_NAMES.index(one), DIRECTION_NAMES.index(other)] = 1
     out, place = np.empty((len(starts), BOUND_LENGTH)), first_of_clamps(query)
-    wants_margin = place is not None and query.ranking[place] == FIGURES[CLOSURE_MARGIN].key
+    wants_margin = place is not None and query.rank_by[place] == FIGURES[CLOSURE_MARGIN].key
     bounds_of_pairs(ends, directions[kept], forces[kept], asked, wants_margin, out, np.empty((2, LOCATORS)))
     return out
 

@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 from workhold.contact.problem import Problem, Progress
 from workhold.conventions import MARGIN_SLACK
 from workhold.kernels.contact import record
+from workhold.listing.asked import are_as_asked
 from workhold.listing.canonical_form import (
     Candidates,
     candidates_of,
@@ -88,12 +89,18 @@ def blocks_of(records: Iterable[Array]) -> Iterator[Array]:
 
 
 def listed_form(records: Array, problem: Problem, course: Course) -> tuple[Candidates, Account]:
-    """Records (N, 19) decided: the fixtures among them that fit the toolkit, in the form they are listed in,
-    and an account of all."""
+    """Records (N, 19) decided: the fixtures among them that fit the toolkit and are as asked, in the form they
+    are listed in, and an account of all."""
     proven, account = decided(records, problem, course)
     candidates = canonical_form(candidates_of(proven, problem), problem.frame.swapped)
     fits = placeable(candidates, problem)
-    return candidates if fits.all() else candidates.take(fits), account
+    if not fits.all():
+        candidates = candidates.take(fits)
+    if problem.query.is_sifted:
+        candidates = candidates.take(
+            are_as_asked(measured(placed(candidates, problem), problem), problem.query)
+        )
+    return candidates, account
 
 
 @define(eq=False)

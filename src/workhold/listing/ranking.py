@@ -378,7 +378,7 @@ def keys_of(quality: Array, query: Query, error: Array | IntArray | None, angle:
     """
     bad = unfit(quality, query.tolerance).astype(np.float64)
     # What is no number counts as the worst there is.
-    figures = [np.where(np.isnan(key), inf, key) for key in figure_keys(quality, query.ranking)]
+    figures = [np.where(np.isnan(key), inf, key) for key in figure_keys(quality, query.rank_by)]
     if error is None:
         return OrderKeys(np.column_stack([bad, *figures]), None, np.zeros((len(bad), 0)))
     first = np.column_stack([bad, quality[:, WARNINGS] > 0.0])

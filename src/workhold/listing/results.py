@@ -16,6 +16,7 @@ from attrs import define, evolve, field, frozen
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem, Progress
+from workhold.listing.asked import are_as_asked
 from workhold.listing.canonical_form import Candidates
 from workhold.listing.collector import BestFixtures, ResultCollector
 from workhold.listing.identity import Identity, SetCount, identity_order
@@ -225,8 +226,11 @@ class RankedTable:
             return
         query, most, table = self.query, self.query.best, FixtureTable.joined(self.waiting)
         self.waiting = []
+        table = measured_as(table, query, self.touched)
+        if query.is_sifted:
+            table = table.take(are_as_asked(table, query))
         self.count.add(table)
-        self.tables.append(measured_as(table, query, self.touched))
+        self.tables.append(table)
         if most is not None:
             together = self.together()
             keys = order_keys(together, query, self.effective)

@@ -38,10 +38,12 @@ from workhold.kernels.contact.clamp_pairs import (
     Hardware,
     pairs_of,
 )
+from workhold.listing.asked import are_precise
 from workhold.listing.canonical_form import changes, clusters, packed
 from workhold.listing.clamp_contacts import ClampContacts, box_beside
 from workhold.listing.clamp_placement import DIRECTION_NAMES, FAR, OPENING, is_bolted, is_upright, last_holes
 from workhold.listing.identity import half_turns
+from workhold.listing.ranking import measured_as
 from workhold.listing.results import RankedTable, Work
 from workhold.model.fixture_table import FixtureTable, unknown_quality
 from workhold.model.quality import CLAMP_FREEDOM
@@ -256,12 +258,20 @@ class ClampedSeats:
                 half[~kept] = -1
             seats = self.sharpened(seats, rows[rows[:, OPEN] != 0.0])
             rows = pairs_of(seats.spans, half, seats.clamps, self.hardware, every)
+        rows = self.precise(rows, seats)
         is_open = rows[:, OPEN] != 0.0
         self.undecided += undecided_pairs(self.table_of(rows[is_open], seats), self.toolkit)
         rows = rows[~is_open]
         self.pairs += int(rows[:, COUNT].sum())
         self.seats += self.held_in(rows)
         self.ranked.add(self.table_of(rows, seats))
+
+    def precise(self, rows: Array, seats: Seats) -> Array:
+        """The pairs (N, 10) at seats with no larger location error than asked, which is that of the locators."""
+        if self.query.max_location_error is None or not len(rows):
+            return rows
+        table = measured_as(self.table_of(rows, seats), self.query, self.ranked.touched)
+        return np.asarray(rows[are_precise(table, self.query)])
 
     def of_interest(self, rows: Array, seats: Seats) -> Array:
         """The pairs (N, 10) of seats that may be among the best.

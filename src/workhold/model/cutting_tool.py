@@ -16,7 +16,7 @@ from attrs.converters import optional
 
 from workhold.asking.program import CuttingQuestion
 from workhold.errors import InputError
-from workhold.limits import real, refuse_long, refuse_strong
+from workhold.limits import read_number, real, refuse_long, refuse_strong
 
 __all__ = [
     "ANY",
@@ -123,7 +123,7 @@ def material_named(text: str) -> CutMaterial:
     >>> round(material_named("steel").force(0.1, 5.0))
     1245
     """
-    numbers = [real(word) for word in text.split(",")]
+    numbers = [read_number(word) for word in text.split(",")]
     if len(numbers) == 2 and all(map(isfinite, numbers)):
         return CutMaterial(text.strip(), "a material of your own", numbers[0], numbers[1], "given")
     name = "-".join(text.lower().replace("_", " ").replace("-", " ").split())

@@ -2,17 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from datetime import date
 from math import atan, tan
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, Literal
 
+import numpy as np
 from attrs import field, frozen
+from numpy.typing import NDArray
 
-from workhold.delegates import delegate
 from workhold.errors import InputError
-from workhold.fixels.carrier import WALL, hole_name
+from workhold.fixels.carrier import JAWS, WALL, hole_name
 from workhold.model.pose import Pose
+
+if TYPE_CHECKING:
+    import build123d
+    import cadquery
+
+    from workhold.fixels.toolkit import Toolkit
+    from workhold.model.requirements import Load, Zone
+    from workhold.model.result import Result
+    from workhold.model.support_request import Faces, SpatialLoad
+    from workhold.model.support_triples import Supports
+    from workhold.model.workpiece import Workpiece
+    from workhold.presenting.papers import Picture
+    from workhold.statics.loads import LoadCase
 
 __all__ = ["Fixture", "Listed", "Pair", "Peg"]
 
@@ -25,14 +40,14 @@ class Peg:
     ----------
     carrier : name of what it stands on: "left" or "right" of a vise.
     column, row : the hole, counted from 0.
-    x, y : the peg's centre in the vise frame, in mm.
+    x, y : the peg's centre in mm, in the toolkit's frame (see :class:`Pose`), with the jaw or the clamp closed.
     face : number of the face it touches.
-    force : contact force per unit of clamping force; of two clamps per unit of the sum of theirs, at the
-        working ratio.
+    force : how hard it presses, as a ratio without unit: its contact force over the clamping force; of two clamps
+        over the sum of theirs, at the working ratio. In N it is this times the jaw force.
     place : what its place is called where that is no hole of its carrier: of a clamp its hole or its line.
     beside : number of a second face that it touches: of a corner that lies on a wall; None of all others.
-    flat_deg : which way its flat looks, in degrees from the x axis; None of a peg that touches with its round
-        side.
+    flat_deg : which way its flat looks, in degrees counter-clockwise from the toolkit's x axis; None of a peg
+        that touches with its round side.
     """
 
     carrier: str
@@ -111,7 +126,7 @@ class Listed:
     in_same_holes : how many of these use the same holes; None until it is counted.
     """
 
-    result: Any
+    result: Result
     row: int
     rank: int
     count: int
@@ -129,6 +144,10 @@ class Listed:
         return Listed, (alone, 0, self.rank, self.count, self.others)
 
 
+# What an editor need not offer: other rooms use it.
+INTERNAL = frozenset({"asking", "figures", "listed", "listing", "passing", "placed", "refuse_others"})
+
+
 @frozen(repr=False)
 class Fixture:
     """One way to hold the workpiece.
@@ -139,8 +158,8 @@ class Fixture:
         on the right.
     pegs : in the order of the arrangement, those of a vise's left jaw first.
     pose : where the workpiece lies.
-    jaw_separation : x distance in mm from the left jaw's last column to the right jaw's first; of another
-        toolkit the travel of what moves.
+    travel : how far what moves has travelled, in mm: a jaw, a clamp from its hole, a sliding lattice; of two
+        clamps the first, see :attr:`travels`.
     quality : figures of merit by name.
     direction : in which the clamp moves when it clamps, such as "-x", or two clamps do, "-x -y"; None of a
         vise.
@@ -156,7 +175,7 @@ class Fixture:
     type: str
     pegs: tuple[Peg, ...]
     pose: Pose
-    jaw_separation: float
+    travel: float
     quality: Mapping[str, float] = field(eq=lambda quality: tuple(sorted(quality.items())))
     direction: str | None = None
     pair: Pair | None = None
@@ -164,6 +183,9 @@ class Fixture:
     seating: Any = field(default=None, eq=False)
     passing: Any = field(default=None, eq=False, repr=False)
     asking: Any = field(default=None, eq=False, repr=False)
+
+    def __dir__(self) -> list[str]:
+        return sorted(set(object.__dir__(self)) - INTERNAL)
 
     def __repr__(self) -> str:
         which = "Fixture" if self.listed is None else f"Fixture {self.listed.rank} of {self.listed.count}"
@@ -177,14 +199,115 @@ class Fixture:
             f"degrees{caught}>"
         )
 
+    def _repr_svg_(self) -> str | None:
+        return None if self.listed is None else self.draw()
+
     def _repr_html_(self) -> str | None:
-        shown: str | None = delegate("fixture_html")(self)
-        return shown
+        from workhold.presenting.notebook import fixture_html
+
+        return fixture_html(self)
 
     @property
     def travels(self) -> tuple[float, ...]:
         """How far each thing that moves has travelled, in mm: the jaw, or the clamps in their order."""
-        return (self.jaw_separation,) if self.pair is None else self.pair.travels
+        return (self.travel,) if self.pair is None else self.pair.travels
+
+    @property
+    def jaw_separation(self) -> float | None:
+        """Of a vise the x distance in mm from the left jaw's last column to the right jaw's first; else None."""
+        return self.travel if {peg.carrier for peg in self.pegs} == set(JAWS) else None
+
+    @property
+    def rank(self) -> int:
+        """Its place in the list of its result, from 1.
+
+        Raises
+        ------
+        InputError
+            For a fixture that is not one of a result.
+        """
+        return self.listing.rank
+
+    @property
+    def contact_points(self) -> NDArray[np.float64]:
+        """Where pegs touch the part: (P, 2) in mm, in the toolkit's frame, in the order of the pegs.
+
+        ``pose.inverse.apply(contact_points)`` has them in the part's frame. The forces ``peg.force`` act there,
+        along minus the :attr:`normals`; without friction they balance.
+
+        Raises
+        ------
+        InputError
+            For a fixture that is not one of a result.
+
+        Examples
+        --------
+        >>> import workhold
+        >>> wedge = workhold.Workpiece.from_loops("wedge", [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]])
+        >>> first = workhold.design(wedge, workhold.Vise(pitch=15, columns=1, peg_radius=2))[0]
+        >>> away = first.contact_points - [(peg.x, peg.y) for peg in first.pegs]
+        >>> bool(np.allclose(away, -2 * first.normals))
+        True
+        """
+        from workhold.statics.loads import touched_points
+
+        result = self.listing.result
+        points, _ = touched_points(self, result.workpiece, result.toolkit)
+        return self.pose.apply(points)
+
+    @property
+    def normals(self) -> NDArray[np.float64]:
+        """Unit normals (P, 2) of the part where pegs touch it, out of the material, in the toolkit's frame.
+
+        Raises
+        ------
+        InputError
+            For a fixture that is not one of a result.
+        """
+        from workhold.statics.loads import touched_points
+
+        result = self.listing.result
+        return self.pose.turn(touched_points(self, result.workpiece, result.toolkit)[1])
+
+    def load_cases(
+        self,
+        loads: Load | Sequence[Load] | None = None,
+        *,
+        jaw_force: float | None = None,
+        friction: float | None = None,
+        jaw: str | float = "screw",
+    ) -> tuple[LoadCase, ...]:
+        """What each of some loads does to the pegs; each load acts by itself.
+
+        Parameters
+        ----------
+        loads : those of the query if None.
+        jaw_force : in N, with which what moves presses; that of the query if None, and without one as much as is
+            needed so that no peg lets go.
+        friction : Coulomb's coefficient between pegs and part, to say what it could add; None for none.
+        jaw : what keeps the jaw where it is: "screw", "constant" for a constant force, or how many times as
+            stiff as one contact it is.
+
+        Raises
+        ------
+        InputError
+            For a fixture that is not one of a result, and values that cannot be.
+
+        Examples
+        --------
+        >>> import workhold
+        >>> wedge = workhold.Workpiece.from_loops("wedge", [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]])
+        >>> first = workhold.design(wedge, workhold.Vise(pitch=15, columns=1, peg_radius=2))[0]
+        >>> (case,) = first.load_cases([workhold.Load(points=(15, 10), force=50)])
+        >>> case.jaw_force > 0, case.keeps_contact
+        (True, True)
+        """
+        from workhold.statics.loads import load_cases
+
+        query = self.listing.result.query
+        given = query.loads if loads is None else loads
+        force = query.jaw_force if jaw_force is None else jaw_force
+        return load_cases(self, query.workpiece, query.toolkit, given, force, friction, jaw)
 
     @property
     def placed(self) -> tuple[Peg, ...]:
@@ -214,7 +337,7 @@ class Fixture:
             )
         return self.listed
 
-    def refuse_others(self, workpiece: Any, toolkit: Any) -> None:
+    def refuse_others(self, workpiece: Workpiece, toolkit: Toolkit) -> None:
         """Refuses a part and a toolkit that it is not a fixture of.
 
         What is listed belongs to the part and the toolkit of its result. One that was put together otherwise,
@@ -249,7 +372,7 @@ class Fixture:
         title: str | None = None,
         unit: str = "mm",
         overwrite: bool = False,
-    ) -> str:
+    ) -> Picture:
         """The picture to set it up from: SVG text, which a notebook shows as a picture.
 
         Parameters
@@ -272,41 +395,70 @@ class Fixture:
         >>> "Fixture 1 of" in result[0].draw()
         True
         """
-        asked = {"title": title, "unit": unit, "overwrite": overwrite}
-        picture: str = delegate("fixture_picture")(self, path, **asked)
-        return picture
+        from workhold.presenting.papers import fixture_picture
+
+        return fixture_picture(self, path, title=title, unit=unit, overwrite=overwrite)
 
     def save_sheet(
         self,
         path: str | Path,
         *,
         unit: str = "mm",
-        clearance: float | None = None,
-        result_file: str | Path | None = None,
-        supports: Any = None,
+        paper: Literal["", "a4", "letter"] = "",
+        day: date | None = None,
+        part_name: str | None = None,
+        dowel: str | None = None,
+        jaw_force: float | None = None,
+        jaw: str | float = "screw",
+        friction: float | None = None,
+        loads: Sequence[Load] | None = None,
+        at: str | None = None,
+        zero: str | Sequence[float] | None = None,
+        machine_position: tuple[float, float] | None = None,
+        thickness: float | None = None,
+        peg_length: float | None = None,
+        peg_height: float | None = None,
+        plate_thickness: float | None = None,
+        seating: bool | None = None,
+        supports: Supports | None = None,
         best: int = 1,
+        support_height: float | None = None,
+        clearance: float | None = None,
         part: str | Path | None = None,
+        result_file: str | Path | None = None,
         overwrite: bool = False,
-        **asked: Any,
     ) -> None:
         """Writes the setup sheet (.pdf, .svg, .png), the set-up for CAM (.dxf, .step) or the pins (.csv).
 
         Parameters
         ----------
+        path : of the file, whose ending says which of these it is.
         unit : of the lengths on paper, "mm" or "inch".
-        clearance : how far the cutter is to keep off the pegs of a .dxf, in mm; 1 if None.
-        result_file : the file that the result was saved in; its hash then stands on the sheet.
+        paper : "a4" or "letter"; "" is letter for lengths in inches, else A4.
+        day : the date on the sheet; today if None.
+        part_name : written instead of the part's own name.
+        dowel : what the pegs are and how they fit their holes, in words; those of the tolerance if None.
+        jaw_force : in N, per clamp; that of the query if None.
+        jaw : what keeps the jaw where it is: "screw", "constant" for a constant force, or how many times as
+            stiff as one contact it is.
+        friction : Coulomb's coefficient, for what friction could add; None for none.
+        loads : in place of the result's.
+        at : name of the hole in which the lowest column and the lowest row stand, such as "D4"; None is the
+            middle of the plate.
+        zero : part zero: "corner", "centre", "hole 2", or x and y of the drawing in ``unit``; its origin if None.
+        machine_position : (x, y) of hole A1 in the machine's coordinates, in mm.
+        thickness, peg_length, peg_height, plate_thickness : of the part, the pegs, how far these stand out, and
+            of the plates, in mm; None leaves a line to write it on.
+        seating : whether the sheet shows where else the pegs can hold the part; None shows it where it is
+            known.
         supports : of what :meth:`supports` returns, also the pads under the part and the clamp on top, on a
             sheet and in a .step.
         best : which of its sets of three, from 1.
+        support_height : of the supports in mm; the toolkit's own if None.
+        clearance : how far the cutter is to keep off the pegs of a .dxf, in mm; 1 if None.
         part : the STEP file of the part, for its own shape in a .step.
+        result_file : the file that the result was saved in; its hash then stands on the sheet.
         overwrite : whether a file that workhold has not written may be replaced.
-        asked : what else stands on the sheet. Words are ``paper`` ("a4" or "letter"), ``day``, ``part_name``
-            and ``dowel``. Forces are ``jaw_force`` in N, ``jaw`` ("screw", "constant" or a stiffness),
-            ``friction``, and ``loads`` instead of the result's. ``at`` is the hole of the lowest
-            column and row, such as "D4". Places are ``zero`` ("corner", "centre",
-            "hole 2" or x and y of the drawing) and ``machine_position`` (x, y) of hole A1. Lengths in mm are
-            ``thickness``, ``peg_length`` and ``peg_height``.
 
         Raises
         ------
@@ -314,16 +466,43 @@ class Fixture:
             For a fixture that is not one of a result, supports and files of another, values that cannot be,
             and when the file cannot be written or replaced.
         """
-        asked |= {"supports": supports, "best": best, "part": part, "result_file": result_file}
-        asked["overwrite"] = overwrite
-        delegate("save_sheet")(self, path, unit=unit, clearance=clearance, **asked)
+        from workhold.presenting.papers import save_sheet
+
+        save_sheet(
+            self,
+            path,
+            unit=unit,
+            clearance=clearance,
+            result_file=result_file,
+            supports=supports,
+            best=best,
+            part=part,
+            overwrite=overwrite,
+            paper=paper,
+            day=day,
+            part_name=part_name,
+            dowel=dowel,
+            jaw_force=jaw_force,
+            jaw=jaw,
+            friction=friction,
+            loads=loads,
+            at=at,
+            zero=zero,
+            machine_position=machine_position,
+            thickness=thickness,
+            peg_length=peg_length,
+            peg_height=peg_height,
+            plate_thickness=plate_thickness,
+            seating=seating,
+            support_height=support_height,
+        )
 
     def save_glb(
         self,
         path: str | Path,
         *,
         thickness: float | None = None,
-        supports: Any = None,
+        supports: Supports | None = None,
         best: int = 1,
         part: str | Path | None = None,
         overwrite: bool = False,
@@ -332,6 +511,7 @@ class Fixture:
 
         Parameters
         ----------
+        path : of the file, whose name ends in .glb.
         thickness : of the part in mm; that of its solid, or 10, if None.
         supports : also the pads under the part and the clamp on top, of what :meth:`supports` returns.
         best : which of its sets of three, from 1.
@@ -345,13 +525,20 @@ class Fixture:
             file of another part. Also for a name of another kind of file, and when the file cannot be written
             or replaced.
         """
-        asked = {"thickness": thickness, "supports": supports, "best": best, "part": part}
-        asked["overwrite"] = overwrite
-        delegate("save_glb")(self, path, **asked)
+        from workhold.presenting.assembly import save_glb
+
+        save_glb(
+            self, path, thickness=thickness, supports=supports, best=best, part=part, overwrite=overwrite
+        )
 
     def to_build123d(
-        self, around: Any = None, *, thickness: float | None = None, supports: Any = None, best: int = 1
-    ) -> Any:
+        self,
+        around: Any = None,
+        *,
+        thickness: float | None = None,
+        supports: Supports | None = None,
+        best: int = 1,
+    ) -> build123d.Compound:
         """Makes a compound of build123d: part, pegs, clamps and plates, each with its name and colour.
 
         Parameters
@@ -368,11 +555,18 @@ class Fixture:
             For a fixture that is not one of a result, a set that is not there, and a solid of another part.
             Also when build123d or the extra ``step`` is not installed.
         """
-        return delegate("to_build123d")(self, around, thickness=thickness, supports=supports, best=best)
+        from workhold.presenting.assembly import to_build123d
+
+        return to_build123d(self, around, thickness=thickness, supports=supports, best=best)
 
     def to_cadquery(
-        self, around: Any = None, *, thickness: float | None = None, supports: Any = None, best: int = 1
-    ) -> Any:
+        self,
+        around: Any = None,
+        *,
+        thickness: float | None = None,
+        supports: Supports | None = None,
+        best: int = 1,
+    ) -> cadquery.Assembly:
         """Makes an assembly of CadQuery with the bodies of :meth:`to_build123d`, which names the parameters.
 
         Raises
@@ -380,17 +574,31 @@ class Fixture:
         InputError
             As :meth:`to_build123d`, of CadQuery.
         """
-        return delegate("to_cadquery")(self, around, thickness=thickness, supports=supports, best=best)
+        from workhold.presenting.assembly import to_cadquery
+
+        return to_cadquery(self, around, thickness=thickness, supports=supports, best=best)
 
     def supports(
         self,
         thickness: float | None = None,
         *,
         best: int | None = 3,
-        loads: Any = None,
+        loads: Sequence[Load | SpatialLoad] | None = None,
         jaw_force: float | None = None,
-        **asked: Any,
-    ) -> Any:
+        pad_radius: float | None = None,
+        tip_radius: float | None = None,
+        pad_margin: float | None = None,
+        tip_margin: float | None = None,
+        head_radius: float | None = None,
+        inside: float | None = None,
+        band: tuple[float, float] | None = None,
+        bottom: Faces | None = None,
+        top: Faces | None = None,
+        bottom_zones: Sequence[Zone] | None = None,
+        top_zones: Sequence[Zone] | None = None,
+        reach: Sequence[tuple[float, float, float, float]] | None = None,
+        point: tuple[float, float] | None = None,
+    ) -> Supports:
         """Where three supports hold the part up, and a clamp presses it down: the best sets of three.
 
         Parameters
@@ -399,8 +607,17 @@ class Fixture:
         best : how many sets; None for all.
         loads : planar ones, which act at the top of the part, or ``SpatialLoad``; those of the query if None.
         jaw_force : in N; by default the one that keeps all pegs in contact.
-        asked : more of a ``SupportRequest``, such as ``pad_radius``, ``tip_radius``, ``band`` and
-            ``top_zones``.
+        pad_radius, tip_radius : of the supports' pads and of the clamp's tip, in mm; the toolkit's own, or the
+            usual ones, if None, as all that follows.
+        pad_margin, tip_margin : smallest distances in mm from a pad and from the tip to the border of its face.
+        head_radius : within which what rises above the clamped face is not, in mm.
+        inside : smallest distance in mm from the clamp to each side of the supports' triangle.
+        band : least and greatest height in mm at which pegs may press.
+        bottom, top : faces that supports and the clamp may touch, as loops of (x, y, bulge) in mm, the outer one
+            first; "outline" is the whole outline, and None what a solid says.
+        bottom_zones, top_zones : where no pad and where no tip may stand, as of ``Restrictions``.
+        reach : rings (x, y, least, most) in mm in which the clamp can stand.
+        point : (x, y) in mm in the part's coordinates where the clamp stands.
 
         Returns
         -------
@@ -421,8 +638,27 @@ class Fixture:
         >>> len(found.triples), found.triples[0].arm > 10
         (2, True)
         """
-        return delegate("fixture_supports")(
-            self, thickness, best=best, loads=loads, jaw_force=jaw_force, **asked
+        from workhold.supports.asking import fixture_supports
+
+        return fixture_supports(
+            self,
+            thickness,
+            best=best,
+            loads=loads,
+            jaw_force=jaw_force,
+            pad_radius=pad_radius,
+            tip_radius=tip_radius,
+            pad_margin=pad_margin,
+            tip_margin=tip_margin,
+            head_radius=head_radius,
+            inside=inside,
+            band=band,
+            bottom=bottom,
+            top=top,
+            bottom_zones=bottom_zones,
+            top_zones=top_zones,
+            reach=reach,
+            point=point,
         )
 
 

@@ -242,7 +242,7 @@ def fixtures_of(
             type=arrangement.name,
             pegs=tuple(pegs),
             pose=Pose(whole_turn_degrees(theta[n]), *table.position[n].tolist()),
-            jaw_separation=travels[n][0],
+            travel=travels[n][0],
             quality=known_figures_of(table.quality[n].tolist()),
             direction=arrangement.direction,
             pair=pairs[n],

@@ -77,7 +77,7 @@ def counted_on(
     ends = ahead or [0.0]
     pair = fixture.pair and evolve(fixture.pair, travels=(before[0] + ends[0], before[-1] + ends[-1]))
     own = travel + (ahead[0] if ahead else 0.0)
-    return evolve(fixture, pegs=tuple(map(further, fixture.pegs)), pose=pose, jaw_separation=own, pair=pair)
+    return evolve(fixture, pegs=tuple(map(further, fixture.pegs)), pose=pose, travel=own, pair=pair)
 
 
 def used_holes(fixture: Fixture, toolkit: Toolkit) -> tuple[list[int], list[int]]:
@@ -194,7 +194,7 @@ def moved_on(fixture: Fixture, toolkit: Toolkit, move: Hole) -> Fixture:
         return fixture
     pitch = toolkit.plates[0].pitch
     by, shifts = (move[0] * pitch[0], move[1] * pitch[1]), {plate.name: move for plate in toolkit.plates}
-    return counted_on(fixture, toolkit, by, shifts, fixture.jaw_separation)
+    return counted_on(fixture, toolkit, by, shifts, fixture.travel)
 
 
 @frozen
@@ -257,7 +257,7 @@ def plates_box(fixture: Fixture, toolkit: Toolkit) -> Box:
     """The box of all plates, half a pitch beyond their holes; infinite where one has no end."""
     boxes = []
     for plate in toolkit.plates:
-        travelled = 0.0 if plate.travel is None else fixture.jaw_separation
+        travelled = 0.0 if plate.travel is None else fixture.travel
         (x0, y0), half_x, half_y = plate.place(0, 0, travelled), plate.pitch[0] / 2, plate.pitch[1] / 2
         right = inf if plate.columns is None else x0 + (2 * plate.columns - 1) * half_x
         upper = inf if plate.rows is None else y0 + (2 * plate.rows - 1) * half_y

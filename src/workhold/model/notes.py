@@ -20,6 +20,7 @@ __all__ = [
     "STAGES",
     "AskedFor",
     "BestOnly",
+    "Chosen",
     "PushedByHand",
     "Cut",
     "FittedOutline",
@@ -236,6 +237,16 @@ class KeptBest(Note):
 
 
 @frozen
+class Chosen(Note):
+    """That somebody kept some of the fixtures found."""
+
+    kind = "chosen"
+    sentence = "Of {found:,} fixtures found, {chosen:,} were chosen to be listed."
+    found: int
+    chosen: int
+
+
+@frozen
 class Stopped(Note):
     """That a server ended a search after its time limit."""
 
@@ -369,6 +380,7 @@ KINDS: Mapping[str, type[Note]] = {
     for one in (
         AskedFor,
         BestOnly,
+        Chosen,
         PushedByHand,
         Cut,
         FittedOutline,

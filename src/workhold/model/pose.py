@@ -1,4 +1,4 @@
-"""Where a workpiece lies in the vise frame: its pose, and flush against a wall.
+"""Where a workpiece lies in the toolkit's frame: its pose, and flush against a wall.
 
 The wall runs along x at y = 0 and the part lies above it, so the orientation determines the hull edge
 that lies on the wall. The part touches the wall at the ends of that edge.
@@ -8,15 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import radians, tau
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
-from attrs import frozen
-from numpy.typing import NDArray
+from attrs import field, frozen
+from numpy.typing import ArrayLike, NDArray
 
+from workhold.errors import InputError, quoted
 from workhold.geometry.hull import HullEdge, HullEnd
 from workhold.geometry.segment import Arc, Line, Segment
 from workhold.geometry.symmetry import rotated
+from workhold.limits import real, real_array, with_names
 
 __all__ = ["ENDS", "Flush", "Pose"]
 
@@ -26,23 +28,38 @@ Array = NDArray[np.float64]
 ENDS = ("left", "right")
 
 
-@frozen
+@frozen(field_transformer=with_names)
 class Pose:
-    """The map of a workpiece point q to R(theta) q + (x, y) in the vise frame; theta in degrees, x and y in
-    mm.
+    """Where a part lies: the map of its point q to R(theta) q + (x, y).
 
-    Points and directions are given by their coordinates, numbers or arrays of them.
+    Points q are in the part's frame, that of its drawing, in mm. They go to the toolkit's frame: the origin is
+    its first hole, column A and row 1 (of a vise that of the left jaw), x runs along its columns from A to B and
+    y along its rows from 1 to 2. Beside a wall y is 0 at the wall.
+
+    Parameters
+    ----------
+    theta_deg : by how much the part is turned, in degrees, counter-clockwise; 0 as it is drawn.
+    x, y : where the part's origin lies in the toolkit's frame, in mm.
+
+    Raises
+    ------
+    InputError
+        For what are no numbers.
 
     Examples
     --------
     >>> pose = Pose(90.0, 40.0, 5.0)
-    >>> [round(float(v), 12) for v in (*pose.apply(3.0, 1.0), *pose.inverse.apply(39.0, 8.0))]
-    [39.0, 8.0, 3.0, 1.0]
+    >>> pose.apply([(3.0, 1.0), (0.0, 0.0)]).round(12).tolist()
+    [[39.0, 8.0], [40.0, 5.0]]
+    >>> pose.inverse.apply([(39.0, 8.0)]).round(12).tolist()
+    [[3.0, 1.0]]
+    >>> (pose.matrix @ (3.0, 1.0, 1.0)).round(12).tolist()
+    [39.0, 8.0, 1.0]
     """
 
-    theta_deg: float
-    x: float
-    y: float
+    theta_deg: float = field(converter=real)
+    x: float = field(converter=real)
+    y: float = field(converter=real)
 
     @property
     def written_deg(self) -> float:
@@ -55,21 +72,56 @@ class Pose:
 
     @property
     def inverse(self) -> Pose:
-        """The way back, from the vise frame to the workpiece's."""
+        """The way back, from the toolkit's frame to the part's."""
         x, y = rotated(-self.x, -self.y, -radians(self.theta_deg))
         return Pose(-self.theta_deg, float(x), float(y))
 
-    def turn(self, x: Any, y: Any) -> tuple[Any, Any]:
-        """Directions of the workpiece as they point in the vise frame."""
+    @property
+    def matrix(self) -> Array:
+        """The map as a (3, 3) array: ``matrix @ (x, y, 1)`` is a point of the part in the toolkit's frame, in mm."""
+        (a, b), (c, d) = self.turn(1.0, 0.0), self.turn(0.0, 1.0)
+        return np.array([[a, c, self.x], [b, d, self.y], [0.0, 0.0, 1.0]])
+
+    @overload
+    def turn(self, x: ArrayLike, y: None = None) -> Array: ...
+
+    @overload
+    def turn(self, x: Any, y: Any) -> tuple[Any, Any]: ...
+
+    def turn(self, x: Any, y: Any = None) -> Array | tuple[Any, Any]:
+        """Directions of the part as they point in the toolkit's frame.
+
+        Parameters
+        ----------
+        x, y : (..., 2) vectors alone, of which an array comes back; or their x and y, of which two come back.
+        """
+        if y is None:
+            if isinstance(x, str):
+                raise InputError(f"points cannot be {quoted(x)}: give numbers (N, 2).")
+            vectors = real_array(x, "a coordinate")
+            return np.stack(self.turn(vectors[..., 0], vectors[..., 1]), axis=-1)
         return rotated(x, y, radians(self.theta_deg))
 
-    def apply(self, x: Any, y: Any) -> tuple[Any, Any]:
-        """Points of the workpiece, in mm, in the vise frame."""
+    @overload
+    def apply(self, x: ArrayLike, y: None = None) -> Array: ...
+
+    @overload
+    def apply(self, x: Any, y: Any) -> tuple[Any, Any]: ...
+
+    def apply(self, x: Any, y: Any = None) -> Array | tuple[Any, Any]:
+        """Points of the part in the toolkit's frame, in mm.
+
+        Parameters
+        ----------
+        x, y : (..., 2) points alone, of which an array comes back; or their x and y, of which two come back.
+        """
+        if y is None:
+            return np.asarray(self.turn(x) + np.array([self.x, self.y]))
         turned_x, turned_y = self.turn(x, y)
         return turned_x + self.x, turned_y + self.y
 
     def carry(self, segment: Segment) -> Segment:
-        """A segment of the workpiece in the vise frame."""
+        """A segment of the part in the toolkit's frame."""
         if isinstance(segment, Line):
             return Line(self.apply(*segment.start), self.apply(*segment.end))
         middle = segment.mid_angle + radians(self.theta_deg)

@@ -19,9 +19,8 @@ import numpy as np
 from attrs import evolve, field, frozen
 from numpy.typing import NDArray
 
-from workhold.delegates import delegate
 from workhold.errors import InputError
-from workhold.limits import real, refuse_long
+from workhold.limits import real, refuse_long, with_names
 from workhold.model.cutting_forces import CuttingForces
 from workhold.model.cutting_tool import CuttingData, Cylinder, Tool
 from workhold.model.moves import (
@@ -85,7 +84,7 @@ class SweptArrays(NamedTuple):
     box: NDArray[np.bool_]
 
 
-@frozen(repr=False)
+@frozen(repr=False, field_transformer=with_names)
 class Program:
     """A program as it was understood, in the part's coordinates and mm; z is 0 where the part lies.
 
@@ -166,6 +165,7 @@ class Program:
 
         Parameters
         ----------
+        path : of the program.
         tools : file of a tool table, or a diameter or a :class:`Tool` for each number; what the program
             itself says of its tools if None.
         zero : where the program's X0 Y0 is on the part, in mm.
@@ -189,7 +189,9 @@ class Program:
             With the line of what cannot be read, and with tools that are called and not known. With what is
             lacking for forces that are asked for, too.
         """
-        read: Program = delegate("read_program")(
+        from workhold.files.program.reader import read_program
+
+        return read_program(
             path,
             tools,
             zero=zero,
@@ -203,7 +205,6 @@ class Program:
             whole_numbers=whole_numbers,
             stock=stock,
         )
-        return read
 
     @property
     def pieces(self) -> tuple[SweptPiece, ...]:

@@ -47,8 +47,8 @@ def tolerance_given(value: Tolerance | None) -> Tolerance:
     return cast(Tolerance, value)
 
 
-def loads_of(loads: Iterable[Load]) -> tuple[Load, ...]:
-    return listed("loads", loads)
+def loads_of(loads: Load | Iterable[Load]) -> tuple[Load, ...]:
+    return (loads,) if isinstance(loads, Load) else listed("loads", loads)
 
 
 # What parts of a query must be, and how to get one.
@@ -79,11 +79,11 @@ class Query(SearchQuestion):
     Parameters
     ----------
     workpiece, toolkit : what to hold and what to hold it in.
-    arrangements : names of the toolkit's arrangements to seek, such as "I" or ("I", "II"); None is all.
+    types : names of the toolkit's arrangements to seek, such as "I" or ("I", "II"); None is all.
     contact_margin : smallest distance in mm between a contact and the end of its feature.
     restrictions : faces not to touch, places where no peg may stand, angles of the part; None is no
         restriction.
-    ranking : figures of quality, the first counting most, named as in ``model.quality``. None is the usual
+    rank_by : figures of quality, the first counting most, named as in ``model.quality``. None is the usual
         order, see :mod:`workhold.model.first_choice`.
     tolerance : how far pegs and faces may be off, for the location error; None is the toolkit's own where it
         has one, as presets have, or else the usual one. The workpiece's departure is added to that of the
@@ -104,6 +104,7 @@ class Query(SearchQuestion):
         forces; None where it is not known.
     peg_height : of pegs, clamps and walls over the plane on which the part lies, in mm; None where nobody says.
         With a program it is needed; where the part is read from a solid it is the solid's.
+    max_location_error : list only fixtures whose location error is at most this, in mm; None for any.
     thickness : of the part in mm, for how far pegs bend; None where it is not known, and of a solid, which says
         it itself.
 
@@ -116,9 +117,9 @@ class Query(SearchQuestion):
 
     workpiece: Workpiece
     toolkit: Toolkit
-    arrangements: tuple[str, ...] = field(default=None, converter=words)
+    types: tuple[str, ...] = field(default=None, converter=words)
     restrictions: Restrictions = field(default=None, converter=restrictions_of)
-    ranking: tuple[str, ...] = field(default=None, converter=words)
+    rank_by: tuple[str, ...] = field(default=None, converter=words)
     tolerance: Tolerance = field(default=None, converter=tolerance_given)
     loads: tuple[Load, ...] = field(default=(), converter=loads_of)
     program: Program | None = None
@@ -131,11 +132,11 @@ class Query(SearchQuestion):
         object.__setattr__(self, "workpiece", met_by(self.workpiece, self.toolkit))
         object.__setattr__(self, "tolerance", self.tolerance.with_departure(self.workpiece.departure))
         known = self.toolkit.types
-        object.__setattr__(self, "arrangements", chosen_arrangements(self.arrangements, known))
+        object.__setattr__(self, "types", chosen_arrangements(self.types, known))
         pairs = self.toolkit.travels > 1
         asked = self.is_loaded, pairs, self.seating is not None, self.toolkit.reaching is not None
-        object.__setattr__(self, "ranking", chosen_ranking(self.ranking, *asked))
-        if PROGRAM_FIGURE.key in self.ranking and self.program is None:
+        object.__setattr__(self, "rank_by", chosen_ranking(self.rank_by, *asked))
+        if PROGRAM_FIGURE.key in self.rank_by and self.program is None:
             raise InputError(f"there is no program to rank by the {PROGRAM_FIGURE.words}: give one.")
         if self.program is not None:
             object.__setattr__(self, "program", self.program.pressing_on(self.workpiece.outer_loops))
@@ -145,7 +146,7 @@ class Query(SearchQuestion):
             object.__setattr__(self, "thickness", None)
             if self.program is None:
                 object.__setattr__(self, "peg_height", None)
-        if not self.knows_heights and not set(PIN_KEYS).isdisjoint(self.ranking):
+        if not self.knows_heights and not set(PIN_KEYS).isdisjoint(self.rank_by):
             raise InputError(
                 "how far pegs bend is known where it is known how high they touch the part: give its thickness, "
                 "or how high the pegs are."
@@ -156,11 +157,38 @@ class Query(SearchQuestion):
             )
         if pairs and self.listing is None:
             object.__setattr__(self, "listing", "best")
+        self.refuse_untouchable()
         if self.has_seating_rules and self.seating is None:
             raise InputError(
                 "which fixtures catch the part at an opening, or are foolproof, their seating states, and "
                 "that is worked out for the first ones only: give of how many, such as seating 100."
             )
+
+    def refuse_untouchable(self) -> None:
+        """Refuses faces to touch that there are not, or more than a fixture can touch."""
+        faces, toolkit = self.restrictions.touch, self.toolkit
+        if not faces:
+            return
+        if toolkit.travels > 1:
+            raise InputError(
+                "which faces are to be touched is not asked of two clamps: take one clamp, or list all and choose "
+                "among them."
+            )
+        if len(faces) > toolkit.peg_count:
+            raise InputError(
+                f"{len(faces)} faces are to be touched, and a fixture has {toolkit.peg_count} contacts: name fewer."
+            )
+        unknown = [face for face in faces if not 0 <= face < len(self.workpiece.numbered.segments)]
+        if unknown:
+            known = ", ".join(str(face.number) for face in self.workpiece.faces)
+            raise InputError(
+                f"face {unknown[0]} of {self.workpiece.name} does not exist: its faces are {known}."
+            )
+
+    @property
+    def is_sifted(self) -> bool:
+        """Whether not all that holds the part is listed, by rules that ask each fixture by itself."""
+        return bool(self.restrictions.touch) or self.max_location_error is not None
 
     @property
     def has_seating_rules(self) -> bool:
@@ -204,7 +232,9 @@ class Query(SearchQuestion):
             "tools of the program": self.program is not None,
             "angles of the part": bool(self.restrictions.angles),
             "contact margin": self.contact_margin > 0.0,
-            "types sought": len(self.arrangements) < len(self.toolkit.types),
+            "faces to touch": bool(self.restrictions.touch),
+            "largest location error": self.max_location_error is not None,
+            "types sought": len(self.types) < len(self.toolkit.types),
         }
         return tuple(name for name, is_asked in rules.items() if is_asked)
 
@@ -219,9 +249,9 @@ class Query(SearchQuestion):
     def without_program(self) -> Query:
         """The query of fixtures that no program has to pass."""
         of_program = {PROGRAM_FIGURE.key} if self.loads else {PROGRAM_FIGURE.key, *LOAD_KEYS}
-        ranking = [key for key in self.ranking if key not in of_program]
+        ranking = [key for key in self.rank_by if key not in of_program]
         known = figures_ranked_by(ranking)
-        return evolve(self, program=None, ranking=ranking if known else None)
+        return evolve(self, program=None, rank_by=ranking if known else None)
 
     @property
     def without_seating(self) -> Query:
@@ -233,11 +263,11 @@ class Query(SearchQuestion):
             return self
         if not self.toolkit.closes_at_once:
             return evolve(self, seating=None)
-        known = [key for key in self.ranking if key not in SEATING_KEYS]
-        needed = len(known) < len(self.ranking)
+        known = [key for key in self.rank_by if key not in SEATING_KEYS]
+        needed = len(known) < len(self.rank_by)
         return evolve(
             self,
-            ranking=[*dict.fromkeys((*known, *for_loads(FIGURE_RANKING, self.is_loaded)))]
+            rank_by=[*dict.fromkeys((*known, *for_loads(FIGURE_RANKING, self.is_loaded)))]
             if needed
             else known,
             best=None if self.best is None else max(self.best, self.seating),
@@ -249,12 +279,12 @@ class Query(SearchQuestion):
     @property
     def has_house_order(self) -> bool:
         """Whether fixtures stand in the usual order, so that one's place depends on the best of all."""
-        return has_house_order(self.ranking)
+        return has_house_order(self.rank_by)
 
     @property
     def by_margin_alone(self) -> bool:
         """Whether fixtures are ranked by the closure margin and nothing else, which a search can bound."""
-        return self.ranking == (FIGURES[CLOSURE_MARGIN].key,)
+        return self.rank_by == (FIGURES[CLOSURE_MARGIN].key,)
 
 
 def height_of_pegs(given: float | None, workpiece: Workpiece) -> float:

@@ -7,17 +7,16 @@ faces may be off.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from math import hypot, isfinite
 from typing import Any
 
 import numpy as np
 from attrs import evolve, field, frozen
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from workhold.asking.search import RuledOut
-from workhold.delegates import delegate
-from workhold.errors import InputError
+from workhold.errors import InputError, quoted
 from workhold.geometry.loop import (
     LoopShape,
     checked_vertices,
@@ -27,7 +26,7 @@ from workhold.geometry.loop import (
     signed_area,
 )
 from workhold.geometry.segment import Box, Segment
-from workhold.limits import real, refuse_long, refuse_strong
+from workhold.limits import real, refuse_long, refuse_strong, with_names
 from workhold.model.dowels import Fit
 
 __all__ = [
@@ -44,14 +43,42 @@ __all__ = [
 ANY_DIRECTION = (0.0, 360.0)
 
 
-def point_pairs(points: Iterable[Iterable[float]]) -> tuple[tuple[float, float], ...]:
-    return tuple((real(x), real(y)) for x, y in points)
+def number_pairs(values: Any, name: str, remedy: str) -> tuple[tuple[float, float], ...]:
+    """Pairs of numbers from several pairs, an array (N, 2), or one pair by itself; refuses anything else.
+
+    ``name`` is of one pair, and ``remedy`` says what to give.
+    """
+    given = list(values) if isinstance(values, Iterable) and not isinstance(values, str | bytes) else None
+    if given is not None and len(given) == 2 and not any(isinstance(one, Iterable) for one in given):
+        given = [given]
+    if given is None:
+        raise InputError(f"{name} cannot be {quoted(values)}: {remedy}.")
+    pairs = []
+    for one in given:
+        numbers = tuple(one) if isinstance(one, Iterable) and not isinstance(one, str | bytes) else ()
+        if len(numbers) != 2:
+            raise InputError(f"{name} cannot be {quoted(one)}: {remedy}.")
+        pairs.append((real(numbers[0], f"a number of {name}"), real(numbers[1], f"a number of {name}")))
+    return tuple(pairs)
 
 
-def direction_range(directions: Iterable[float]) -> tuple[float, float]:
+def point_pairs(points: Any) -> tuple[tuple[float, float], ...]:
+    return number_pairs(
+        points, "a point of a load", "give x and y in mm, such as (30, 20), or several such points"
+    )
+
+
+def direction_range(directions: Any) -> tuple[float, float]:
     """A range of directions in degrees, from ``low`` counter-clockwise to ``high``, with low in [0, 360) and
-    low <= high <= low + 360."""
-    low, high = (real(value) for value in directions)
+    low <= high <= low + 360; one number is that direction alone."""
+    if isinstance(directions, str | bytes) or not isinstance(directions, Iterable):
+        directions = (real(directions, "a direction"),) * 2
+    values = tuple(real(value, "a direction") for value in directions)
+    if len(values) != 2:
+        raise InputError(
+            f"directions cannot be {quoted(directions)}: give one in degrees, or the two ends of a range."
+        )
+    low, high = values
     if 0.0 <= low < 360.0 and low <= high <= low + 360.0:
         return ANY_DIRECTION if high - low == 360.0 else (low, high)
     if not (isfinite(low) and isfinite(high) and abs(high - low) <= 360.0):
@@ -66,7 +93,7 @@ def direction_range(directions: Iterable[float]) -> tuple[float, float]:
     return start, start + (high - low) % 360.0
 
 
-@frozen
+@frozen(field_transformer=with_names)
 class Load:
     """A force and a moment that act ON the workpiece; pegs must push back.
 
@@ -76,11 +103,11 @@ class Load:
 
     Parameters
     ----------
-    points : where the force may act, (x, y) in mm in the part's coordinates; may be empty when there is no
-        force.
+    points : where the force may act, (x, y) in mm in the part's coordinates, an array (N, 2), or one such
+        point; may be empty when there is no force.
     force : its size in N, 0 or more.
-    directions : (low, high) in degrees in the part's frame, counter-clockwise from the part's x axis and from
-        low to high; (0, 360) is any direction.
+    directions : in which the force points: one in degrees, or (low, high), in the part's frame,
+        counter-clockwise from the part's x axis and from low to high; (0, 360) is any direction.
     moment : in N mm, positive counter-clockwise.
     name : what the user calls it.
 
@@ -182,14 +209,19 @@ class Zone:
 
 
 def circle_zone(x: float, y: float, radius: float) -> Zone:
-    """A round zone; lengths in mm.
+    """A round zone.
+
+    Parameters
+    ----------
+    x, y : of its centre, in the part's frame, in mm.
+    radius : in mm.
 
     Raises
     ------
     InputError
         When it has no size.
     """
-    x, y, radius = real(x), real(y), real(radius)
+    x, y, radius = (real(value, "a number of a keep-out circle") for value in (x, y, radius))
     if not (isfinite(x) and isfinite(y) and isfinite(radius) and radius > 0):
         raise InputError(
             f"a keep-out circle of radius {radius:g} at ({x:g}, {y:g}) is no circle: give a positive radius."
@@ -197,17 +229,18 @@ def circle_zone(x: float, y: float, radius: float) -> Zone:
     return zone_of([[x - radius, y, 1.0], [x + radius, y, 1.0]])
 
 
-def polygon_zone(points: Sequence[Sequence[float]]) -> Zone:
-    """A zone with straight sides; points (x, y) in mm, either way round.
+def polygon_zone(points: ArrayLike) -> Zone:
+    """A zone with straight sides; points (x, y) in mm, an array (N, 2) or a list, either way round.
 
     Raises
     ------
     InputError
         For fewer than three points and for a boundary that crosses itself.
     """
-    if len(points) < 3:
-        raise InputError(f"a keep-out polygon has {len(points)} corners: give three or more.")
-    return zone_of([[x, y, 0.0] for x, y in points])
+    corners = number_pairs(points, "a corner of a keep-out zone", "give x and y in mm for every corner")
+    if len(corners) < 3:
+        raise InputError(f"a keep-out polygon has {len(corners)} corners: give three or more.")
+    return zone_of([[x, y, 0.0] for x, y in corners])
 
 
 def zone_of(vertices: Sequence[Sequence[float]]) -> Zone:
@@ -230,41 +263,94 @@ def zone_of(vertices: Sequence[Sequence[float]]) -> Zone:
     return Zone(checked)
 
 
-def all_zones(zones: Iterable[Zone]) -> tuple[Zone, ...]:
-    return tuple(zones)
+def angle_pairs(ranges: Any) -> tuple[Angles, ...]:
+    return number_pairs(ranges, "a range of angles", "give its two ends in degrees, such as (-10, 10)")
+
+
+def all_zones(zones: Any) -> tuple[Zone, ...]:
+    """Zones, also of polygons of shapely; one may stand by itself."""
+    several = isinstance(zones, Iterable) and not isinstance(zones, str | bytes)
+    return tuple(zone for one in (zones if several else [zones]) for zone in zones_of(one))
+
+
+def zones_of(zone: Any) -> Iterator[Zone]:
+    """The zones that one object is: itself, or those of a polygon of shapely; refuses anything else."""
+    if isinstance(zone, Zone):
+        yield zone
+    elif hasattr(zone, "geoms"):
+        for one in zone.geoms:
+            yield from zones_of(one)
+    elif hasattr(zone, "exterior"):
+        if len(zone.interiors):
+            raise InputError(
+                "a keep-out zone has no holes, and this polygon has some: give its parts without."
+            )
+        yield polygon_zone(list(zone.exterior.coords)[:-1])
+    else:
+        raise InputError(
+            f"a keep-out zone cannot be {quoted(zone)}: give a circle_zone, a polygon_zone or a polygon of "
+            "shapely."
+        )
+
+
+def face_numbers(numbers: Any) -> tuple[int, ...]:
+    """Numbers of faces in order, each once; one may stand by itself. Refuses anything else."""
+    several = isinstance(numbers, Iterable) and not isinstance(numbers, str | bytes)
+    given = list(numbers) if several else [numbers]
+    for one in given:
+        number = real(one, "the number of a face")
+        if not number.is_integer():
+            raise InputError(f"the number of a face cannot be {quoted(one)}: give a whole number.")
+    return tuple(sorted({int(one) for one in given}))
 
 
 @frozen
 class Restrictions(RuledOut):
-    """What fixtures must keep clear of.
+    """What fixtures must keep clear of, and what they must touch.
 
     Parameters
     ----------
-    avoid : numbers of faces that no peg may touch.
-    zones : places in the part's frame where no peg may stand.
-    angles : ranges (from, to) of the part's angle in the vise, in degrees, ends included; empty for any
-        angle.
+    avoid : numbers of faces that no peg may touch, or one number.
+    zones : places in the part's frame where no peg may stand: :func:`circle_zone`, :func:`polygon_zone`, or
+        polygons of shapely in mm.
+    angles : ranges (from, to) of the part's angle in the vise, as ``Pose.theta_deg``, in degrees, ends
+        included, or one such range; empty for any angle.
+    touch : numbers of faces, or one number, each of which a peg, a clamp or a wall must touch.
 
     Raises
     ------
     InputError
-        For a range of angles that is not one.
+        For a range of angles that is not one, and a face that is to be touched and avoided.
+
+    Examples
+    --------
+    >>> Restrictions(avoid=3, angles=(-10, 10)).angles
+    ((-10.0, 10.0),)
     """
 
     def __attrs_post_init__(self) -> None:
-        for low, high in ((real(low), real(high)) for low, high in self.angles):
+        for name, converted in (
+            ("avoid", face_numbers(self.avoid)),
+            ("zones", all_zones(self.zones)),
+            ("angles", angle_pairs(self.angles)),
+            ("touch", face_numbers(self.touch)),
+        ):
+            object.__setattr__(self, name, converted)
+        for low, high in self.angles:
             if not (isfinite(low) and isfinite(high) and low <= high):
                 raise InputError(
                     f"angles {low:g} to {high:g} are not a range in degrees: give the smaller first, such as "
                     "-10..10."
                 )
+        if both := sorted(set(self.avoid) & set(self.touch)):
+            raise InputError(f"face {both[0]} is to be touched and to be avoided: leave one of these out.")
 
     def __bool__(self) -> bool:
-        """Whether anything is ruled out."""
-        return bool(self.avoid or self.zones or self.angles)
+        """Whether anything is asked."""
+        return bool(self.avoid or self.zones or self.angles or self.touch)
 
 
-@frozen
+@frozen(field_transformer=with_names)
 class Tolerance:
     """Largest errors along the normal of a contact, either way.
 
@@ -312,8 +398,9 @@ class Tolerance:
         >>> round(Tolerance.preset("plate-20mm").peg, 6)
         0.0145
         """
-        tolerance: Tolerance = delegate("preset_tolerance")(name)
-        return tolerance
+        from workhold.files.toolkit_file import preset_tolerance
+
+        return preset_tolerance(name)
 
     def with_departure(self, departure: float) -> Tolerance:
         """The tolerance for an outline that departs by up to ``departure`` mm from the drawn one.

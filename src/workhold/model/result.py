@@ -2,24 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, overload
+from typing import TYPE_CHECKING, Any, overload
 
+import numpy as np
 from attrs import define, evolve, field
+from numpy.typing import ArrayLike, NDArray
 
-from workhold.delegates import delegate
-from workhold.errors import refuse_kind
+from workhold.errors import InputError, quoted, refuse_kind
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture, Listed
 from workhold.model.fixture_table import BLOCK, FixtureTable, fixture_at, fixtures_of
-from workhold.model.notes import AskedFor, Cut, FittedOutline, Note, as_notes
+from workhold.model.notes import AskedFor, Chosen, Cut, FittedOutline, KeptBest, Note, as_notes
 from workhold.model.query import Query
 from workhold.model.search_report import Proof
 from workhold.model.seating import Seating
 from workhold.model.workpiece import Workpiece
 
+if TYPE_CHECKING:
+    import pyarrow
+    from pandas import DataFrame
+
+    from workhold.model.requirements import Load, Zone
+    from workhold.model.support_request import Faces, SpatialLoad
+    from workhold.model.support_triples import Supports
+    from workhold.presenting.notebook import StillPicture, WhyNone
+    from workhold.presenting.papers import Picture
+    from workhold.presenting.widget import FixtureWidget
+
 __all__ = ["Result"]
+
+
+# What an editor need not offer: other rooms use it.
+INTERNAL = frozenset({"cut_short", "listed", "part", "reasons", "seated", "words"})
 
 
 @define(frozen=True, repr=False)
@@ -28,6 +44,8 @@ class Result:
 
     A result is a sequence: ``len(result)``, ``result[0]``, ``for fixture in result``. ``Fixture`` objects are
     made when asked for; the arrays behind them are in ``table``. Results that say the same are equal.
+    Some of the fixtures are a result again, see :meth:`choose`: ``result[:3]``, ``result[[4, 7]]``,
+    ``result[mask]``, ``result.where(...)``.
 
     Parameters
     ----------
@@ -109,20 +127,97 @@ class Result:
     def __getitem__(self, index: int) -> Fixture: ...
 
     @overload
-    def __getitem__(self, index: slice) -> list[Fixture]: ...
+    def __getitem__(self, index: slice | Sequence[int] | NDArray[Any]) -> Result: ...
 
-    def __getitem__(self, index: int | slice) -> Fixture | list[Fixture]:
+    def __getitem__(self, index: int | slice | Sequence[int] | NDArray[Any]) -> Fixture | Result:
         if isinstance(index, slice):
-            return [self[k] for k in range(*index.indices(len(self)))]
+            return self.choose(range(len(self))[index])
+        if not isinstance(index, int | np.integer):
+            return self.choose(index)
         if not -len(self) <= index < len(self):
             raise IndexError(f"fixture {index} of {len(self)}")
         index %= len(self)
+        index = int(index)
         made = fixture_at(self.table, self.toolkit, index, self.workpiece, self.listed(index))
         return self.seated(made, index)
 
     def seated(self, made: Fixture, index: int) -> Fixture:
         """The fixture of an index with its seating, where that is known."""
         return evolve(made, seating=self.seating[index]) if index < len(self.seating) else made
+
+    def choose(self, rows: ArrayLike) -> Result:
+        """The result with some of the fixtures, in their order here, each once; it saves as any other.
+
+        What was found stays as it is, and a note says that only some are listed.
+
+        Parameters
+        ----------
+        rows : a mask (N,) of booleans, one for each fixture, or numbers from 0, where those below 0 count from
+            the end.
+
+        Raises
+        ------
+        InputError
+            For a mask of another length, and for what are no numbers.
+        IndexError
+            For a number that there is no fixture of.
+
+        Examples
+        --------
+        >>> import workhold
+        >>> wedge = workhold.Workpiece.from_loops("wedge", [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]])
+        >>> result = workhold.design(wedge, workhold.Vise(pitch=15, columns=1, peg_radius=2))
+        >>> len(result[:3]), len(result[[4, 7]]), result[[4, 7]][0].pegs == result[4].pegs
+        (3, 2, True)
+        """
+        given = np.asarray(rows)
+        if given.dtype == np.bool_:
+            if given.shape != (len(self),):
+                raise InputError(
+                    f"a mask has one truth for each of the {len(self)} fixtures, not the form {given.shape}."
+                )
+            chosen = np.flatnonzero(given)
+        elif given.ndim != 1 or not (np.issubdtype(given.dtype, np.integer) or not given.size):
+            raise InputError(
+                f"fixtures cannot be chosen by {quoted(rows)}: give their numbers from 0, or a mask of booleans."
+            )
+        else:
+            away = (given < -len(self)) | (given >= len(self))
+            if away.any():
+                raise IndexError(f"fixture {given[away][0]} of {len(self)}")
+            chosen = np.unique(given.astype(np.int64) % max(len(self), 1))
+        if len(chosen) == len(self):
+            return self
+        found = sum(self.found.values())
+        gone = [told(found, len(self)) for told in (Chosen, KeptBest, Cut)]
+        kept = (note for note in self.reasons if note not in gone)
+        return evolve(
+            self,
+            table=self.table.take(chosen),
+            seating=tuple(self.seating[row] for row in chosen if row < len(self.seating)),
+            notes=(*kept, Chosen(found, len(chosen))),
+        )
+
+    def where(self, condition: Callable[[Fixture], bool] | ArrayLike) -> Result:
+        """The result with the fixtures for which something holds, see :meth:`choose`.
+
+        Parameters
+        ----------
+        condition : asked of each fixture; or a mask (N,) of booleans, such as a column of :meth:`to_pandas`
+            compared with a number.
+
+        Examples
+        --------
+        >>> import workhold
+        >>> wedge = workhold.Workpiece.from_loops("wedge", [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]])
+        >>> result = workhold.design(wedge, workhold.Vise(pitch=15, columns=1, peg_radius=2))
+        >>> three_left = result.where(lambda fixture: fixture.type == "II")
+        >>> len(three_left) == result.counts["II"], three_left.counts["I"]
+        (True, 0)
+        """
+        if callable(condition):
+            return self.choose(np.array([bool(condition(fixture)) for fixture in self], np.bool_))
+        return self.choose(condition)
 
     def part(self, rows: slice) -> Result:
         """The result with the fixtures of a slice only."""
@@ -151,14 +246,18 @@ class Result:
         seated = f", with the seating of the first {len(self.seating):,}" if self.seating else ""
         return f"{count} of {self.workpiece.name} {where} ({kinds}){seated}{whole}"
 
+    def __dir__(self) -> list[str]:
+        return sorted(set(object.__dir__(self)) - INTERNAL)
+
     def __repr__(self) -> str:
         return f"<Result: {self.words}>"
 
     def _repr_html_(self) -> str:
-        shown: str = delegate("result_html")(self)
-        return shown
+        from workhold.presenting.notebook import result_html
 
-    def draw(self, path: str | Path | None = None, *, unit: str = "mm", overwrite: bool = False) -> str:
+        return result_html(self)
+
+    def draw(self, path: str | Path | None = None, *, unit: str = "mm", overwrite: bool = False) -> Picture:
         """The best twelve at a glance, near duplicates once: SVG text, which a notebook shows as a picture.
 
         Parameters
@@ -172,8 +271,9 @@ class Result:
         InputError
             For a result without a fixture, and when the file cannot be written or replaced.
         """
-        picture: str = delegate("result_picture")(self, path, unit=unit, overwrite=overwrite)
-        return picture
+        from workhold.presenting.papers import result_picture
+
+        return result_picture(self, path, unit=unit, overwrite=overwrite)
 
     def widget(
         self,
@@ -183,7 +283,7 @@ class Result:
         jaw_force: float | None = None,
         jaw: str | float = "screw",
         supports: Mapping[str, Any] | None = None,
-    ) -> Any:
+    ) -> FixtureWidget | StillPicture:
         """A widget for notebooks that steps through the fixtures, lets a force push the part, and closes.
 
         Without the extra ``widget`` it is a picture of the fixture.
@@ -202,10 +302,11 @@ class Result:
         InputError
             For a result without a fixture, and values that cannot be.
         """
-        asked = {"usual": usual, "jaw_force": jaw_force, "jaw": jaw, "supports": supports}
-        return delegate("result_widget")(self, rank, **asked)
+        from workhold.presenting.notebook import result_widget
 
-    def why_none(self) -> Any:
+        return result_widget(self, rank, usual=usual, jaw_force=jaw_force, jaw=jaw, supports=supports)
+
+    def why_none(self) -> WhyNone:
         """Why there is no fixture: what each rule takes away, the nearest miss, and what would help.
 
         A notebook shows it as tables; it takes longer than the search did.
@@ -215,9 +316,11 @@ class Result:
         InputError
             For a result that has fixtures, or whose search was stopped.
         """
-        return delegate("why_none")(self)
+        from workhold.presenting.notebook import why_none
 
-    def to_pandas(self) -> Any:
+        return why_none(self)
+
+    def to_pandas(self) -> DataFrame:
         """All fixtures as a DataFrame, best first, with the columns of the CSV form, in mm and degrees.
 
         Raises
@@ -225,9 +328,11 @@ class Result:
         InputError
             Where pandas is not installed.
         """
-        return delegate("to_pandas")(self)
+        from workhold.presenting.data import to_pandas
 
-    def to_arrow(self) -> Any:
+        return to_pandas(self)
+
+    def to_arrow(self) -> pyarrow.Table:
         """All fixtures as a ``pyarrow.Table``, as :meth:`to_pandas` has them.
 
         Raises
@@ -235,9 +340,64 @@ class Result:
         InputError
             Where pyarrow is not installed.
         """
-        return delegate("to_arrow")(self)
+        from workhold.presenting.data import to_arrow
 
-    def supports(self, thickness: float | None = None, **asked: Any) -> tuple[Any, ...]:
-        """What holds the best fixtures up, see ``workhold.supports.asking.result_supports``."""
-        found: tuple[Any, ...] = delegate("result_supports")(self, thickness, **asked)
-        return found
+        return to_arrow(self)
+
+    def supports(
+        self,
+        thickness: float | None = None,
+        *,
+        best: int = 20,
+        each: int = 3,
+        loads: Sequence[Load | SpatialLoad] | None = None,
+        jaw_force: float | None = None,
+        pad_radius: float | None = None,
+        tip_radius: float | None = None,
+        pad_margin: float | None = None,
+        tip_margin: float | None = None,
+        head_radius: float | None = None,
+        inside: float | None = None,
+        band: tuple[float, float] | None = None,
+        bottom: Faces | None = None,
+        top: Faces | None = None,
+        bottom_zones: Sequence[Zone] | None = None,
+        top_zones: Sequence[Zone] | None = None,
+        reach: Sequence[tuple[float, float, float, float]] | None = None,
+        point: tuple[float, float] | None = None,
+    ) -> tuple[Supports, ...]:
+        """What holds the best fixtures up.
+
+        Parameters
+        ----------
+        best : how many fixtures.
+        each : how many sets of three for each of them; the rest as in :meth:`Fixture.supports`.
+
+        Raises
+        ------
+        InputError
+            As :meth:`Fixture.supports`.
+        """
+        from workhold.supports.asking import result_supports
+
+        return result_supports(
+            self,
+            thickness,
+            best=best,
+            each=each,
+            loads=loads,
+            jaw_force=jaw_force,
+            pad_radius=pad_radius,
+            tip_radius=tip_radius,
+            pad_margin=pad_margin,
+            tip_margin=tip_margin,
+            head_radius=head_radius,
+            inside=inside,
+            band=band,
+            bottom=bottom,
+            top=top,
+            bottom_zones=bottom_zones,
+            top_zones=top_zones,
+            reach=reach,
+            point=point,
+        )

@@ -8,7 +8,6 @@ from typing import Any
 
 from attrs import evolve, frozen
 
-from workhold.delegates import delegate
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.pose import Pose
 
@@ -230,8 +229,9 @@ class Seating:
         return f"<Seating: {self.words}>"
 
     def _repr_html_(self) -> str:
-        shown: str = delegate("seating_html")(self)
-        return shown
+        from workhold.presenting.notebook import seating_html
+
+        return seating_html(self)
 
     def in_toolkit(self, toolkit: Toolkit, opening: float | None = None) -> Seating:
         """A copy with what follows from a toolkit, and an opening up to which seats count."""

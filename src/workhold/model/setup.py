@@ -231,7 +231,7 @@ def settings_of(fixture: Fixture, toolkit: Toolkit) -> tuple[LengthSetting, ...]
             for tip, travelled in zip(clamps, fixture.travels, strict=True)
             if toolkit.carrier(tip.carrier).travel is not None
         )
-    travelled, name = fixture.jaw_separation, "opening S"
+    travelled, name = fixture.travel, "opening S"
     return tuple(
         LengthSetting(
             name=name,

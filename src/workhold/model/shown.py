@@ -75,7 +75,7 @@ def reach_of(held: Box, fixture: Fixture, carriers: Sequence[Carrier]) -> Box:
     for carrier in carriers:
         if carrier.travel is not None:
             along_x, along_y = carrier.travel.unit
-            for x, y in (carrier.place(0, 0), carrier.place(0, 0, fixture.jaw_separation)):
+            for x, y in (carrier.place(0, 0), carrier.place(0, 0, fixture.travel)):
                 x, y = x if along_x else reach.x0, y if along_y else reach.y0
                 reach = reach.union(Box(x, y, x, y))
     return reach
@@ -362,7 +362,7 @@ def shown_beside(part: Box, fixture: Fixture, toolkit: Toolkit) -> Shown:
 
     Refuses a part and pegs so far apart that too many holes would show.
     """
-    travelled = fixture.jaw_separation
+    travelled = fixture.travel
     carriers = toolkit.plates
     clamps = tuple(shown_clamps(fixture, toolkit))
     held = held_box(part, fixture, clamps)

@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 
 from workhold.asking.program import StockQuestion
 from workhold.errors import InputError
-from workhold.limits import real, refuse_long
+from workhold.limits import real, refuse_long, with_names
 from workhold.model.cutting_tool import Tool
 from workhold.model.moves import Moves, Stretches, along, shares_between
 
@@ -51,7 +51,7 @@ SAME_SHARE = 1e-11
 AT_ONCE = 1 << 19
 
 
-@frozen
+@frozen(field_transformer=with_names)
 class Stock(StockQuestion):
     """What the part is cut from.
 

@@ -12,20 +12,20 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from functools import partial
 from math import hypot, isfinite
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from attrs import Factory, evolve, field, frozen
 from attrs.converters import optional
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from workhold.errors import InputError
+from workhold.errors import InputError, quoted
 from workhold.fixels.support_hardware import SupportPads, TopClamp
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.loop import checked_vertices, loop_segments
 from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.distance import is_inside
-from workhold.limits import real, refuse_long, refuse_strong
+from workhold.limits import real, refuse_long, refuse_strong, with_names
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.numbered_outlines import NumberedOutlines
 from workhold.model.requirements import (
@@ -40,8 +40,10 @@ from workhold.model.solid import BESIDE_TOP, SolidOutline, reals_of
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
+    "OUTLINE",
     "PAD_RADIUS",
     "TIP_RADIUS",
+    "Faces",
     "Loops",
     "SpatialLoad",
     "SupportRequest",
@@ -57,6 +59,9 @@ PAD_RADIUS, TIP_RADIUS, LEAST_PAD_RADIUS = 4.0, 5.0, 1.0
 HEAD = 1.5
 
 Loops = tuple[NDArray[np.float64], ...]
+# Faces as users of Python give them, and the word for the whole outline.
+OUTLINE: Literal["outline"] = "outline"
+Faces = Sequence[ArrayLike] | Literal["outline"]
 Span = tuple[float, float]
 
 
@@ -67,13 +72,14 @@ def usual_head(tip_radius: float) -> float:
 
 def pair_of(values: Any) -> Span:
     """Two numbers in their order."""
-    one, other = values
-    return real(one), real(other)
+    if not isinstance(values, Iterable) or isinstance(values, str) or len(pair := tuple(values)) != 2:
+        raise InputError(f"two numbers cannot be {quoted(values)}: give two.")
+    return real(pair[0]), real(pair[1])
 
 
 def span_of(value: Any) -> Span:
     """A range of numbers from one number or two, the smaller first."""
-    if isinstance(value, Sequence) and len(value) == 2:
+    if isinstance(value, Sequence | np.ndarray) and not isinstance(value, str) and len(value) == 2:
         low, high = (real(one) for one in value)
         return (low, high) if low <= high else (high, low)
     number = real(value)
@@ -97,7 +103,7 @@ def rings_of(reach: Iterable[Iterable[float]]) -> tuple[tuple[float, float, floa
     return tuple((x, y, least, most) for x, y, least, most in rings)
 
 
-@frozen
+@frozen(field_transformer=with_names)
 class SpatialLoad:
     """A load as it acts in space; force, axial force and moments act together, their ranges by themselves.
 
@@ -171,7 +177,7 @@ class SpatialLoad:
         return self if self.heights is not None else evolve(self, heights=(thickness, thickness))
 
 
-@frozen
+@frozen(field_transformer=with_names)
 class SupportRequest:
     """What supports and the clamp are, and where they may touch; lengths in mm, the part's coordinates.
 

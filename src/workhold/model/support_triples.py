@@ -13,7 +13,6 @@ from collections.abc import Iterator
 from attrs import evolve, frozen
 
 from workhold.conventions import STEADY
-from workhold.delegates import delegate
 from workhold.errors import InputError
 from workhold.fixels.carrier import Carrier, hole_name, letter_of
 from workhold.fixels.toolkit import Toolkit
@@ -164,8 +163,9 @@ class Supports:
         return f"<Supports: {self.words}>"
 
     def _repr_html_(self) -> str:
-        shown: str = delegate("supports_html")(self)
-        return shown
+        from workhold.presenting.notebook import supports_html
+
+        return supports_html(self)
 
     @property
     def complete(self) -> bool:
@@ -195,8 +195,9 @@ class Supports:
         InputError
             For a coefficient that is none, without loads, and when there is no such set.
         """
-        found: float = delegate("clamp_with_friction")(self, self.ranked(rank), friction)
-        return found
+        from workhold.supports.friction import clamp_with_friction
+
+        return clamp_with_friction(self, self.ranked(rank), friction)
 
     def best(self, count: int) -> Supports:
         """A copy with the first triples only."""
@@ -237,10 +238,10 @@ def recounted(fixture: Fixture, toolkit: Toolkit, triple: Triple, start: Hole = 
         When there are no such holes, as of supports that do not fit the toolkit.
     """
     plates = [plate for plate in toolkit.carriers if plate.has_lattice]
-    travel = fixture.jaw_separation if triple.travel is None else triple.travel
+    travel = fixture.travel if triple.travel is None else triple.travel
     for columns, rows in moves(toolkit, start):
         shifts = {
-            plate.name: shift_of(plate, plates[0], (columns, rows), travel - fixture.jaw_separation)
+            plate.name: shift_of(plate, plates[0], (columns, rows), travel - fixture.travel)
             for plate in plates
         }
         if all(fits(plate, shifts[plate.name], fixture, toolkit, triple) for plate in plates):

@@ -7,14 +7,13 @@ from functools import cached_property, partial
 from itertools import accumulate
 from math import isfinite
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from attrs import define, evolve, field
 from numpy.typing import ArrayLike, NDArray
 
 from workhold.conventions import READING, SHORTEST
-from workhold.delegates import delegate
 from workhold.errors import InputError, encodable, refuse_kind
 from workhold.fixels.carrier import WALL
 from workhold.geometry.hull import HullEdge, hull_edges
@@ -33,10 +32,15 @@ from workhold.geometry.loop import (
 )
 from workhold.geometry.merged_runs import chorded_arcs, chords_remark, merged_chords, on_one_circle
 from workhold.geometry.segment import Point, Segment, bounding_box
-from workhold.limits import real
+from workhold.limits import real, real_array
 from workhold.model.numbered_outlines import NumberedOutlines, outer_count, refuse_misplaced_holes, unlike
 from workhold.model.pose import Flush, Pose
 from workhold.model.solid import SolidOutline
+
+if TYPE_CHECKING:
+    import shapely
+
+    from workhold.presenting.papers import Picture
 
 __all__ = ["Workpiece"]
 
@@ -50,6 +54,30 @@ def checked_name(name: Any) -> str:
     """The name of a part; refuses what is no text."""
     refuse_kind(name, str, "the name of a part", "give text")
     return encodable(name)
+
+
+# What an editor need not offer: other rooms use it.
+INTERNAL = frozenset(
+    {
+        "every_outline",
+        "flush",
+        "hole_segments",
+        "hull_edges",
+        "is_alike",
+        "loop_segments",
+        "numbered",
+        "outer_count",
+        "outer_face_counts",
+        "outer_faces",
+        "outer_loops",
+        "outline_of",
+        "outlines",
+        "pieces",
+        "placed",
+        "turned_over",
+        "untouchable",
+    }
+)
 
 
 @define(frozen=True, slots=False, repr=False)
@@ -206,7 +234,7 @@ class Workpiece:
         >>> len(plate.faces), round(plate.faces[-1].segment.radius, 6), plate.departure < 0.0004
         (5, 10.0, True)
         """
-        if fit is not None and not (isfinite(real(fit)) and fit > 0):
+        if fit is not None and not (isfinite(real(fit, "the fit")) and fit > 0):
             raise InputError(f"the fit {fit} is not usable: give a length above 0, in mm.")
         loops, away, chorded = [], 0.0, []
         for index, points in enumerate([outline, *holes]):
@@ -222,14 +250,22 @@ class Workpiece:
         """Whether another part is this one, whatever it is called."""
         return self is other or (isinstance(other, Workpiece) and evolve(other, name=self.name) == self)
 
+    def __dir__(self) -> list[str]:
+        return sorted(set(object.__dir__(self)) - INTERNAL)
+
     def __repr__(self) -> str:
         faces, holes, (x0, y0, x1, y1) = len(self.faces), len(self.loops) - self.pieces, self.bounds
         inside = f", {holes} hole{'s' * (holes != 1)}" if holes else ""
         size = f"{x1 - x0:.6g} x {y1 - y0:.6g} mm"
         return f"<Workpiece {self.name}: {faces} face{'s' * (faces != 1)}{inside}, {size}>"
 
+    def _repr_svg_(self) -> str:
+        return self.draw()
+
     def _repr_html_(self) -> str:
-        return str(delegate("workpiece_html")(self))
+        from workhold.presenting.notebook import workpiece_html
+
+        return workpiece_html(self)
 
     def draw(
         self,
@@ -238,7 +274,7 @@ class Workpiece:
         peg_radius: float | None = None,
         unit: str = "mm",
         overwrite: bool = False,
-    ) -> str:
+    ) -> Picture:
         """The part with its faces numbered: SVG text, which a notebook shows as a picture.
 
         Parameters
@@ -253,9 +289,25 @@ class Workpiece:
         InputError
             For a unit that is not known, and when the file cannot be written or replaced.
         """
-        asked = {"peg_radius": peg_radius, "unit": unit, "overwrite": overwrite}
-        picture: str = delegate("workpiece_picture")(self, path, **asked)
-        return picture
+        from workhold.presenting.papers import workpiece_picture
+
+        return workpiece_picture(self, path, peg_radius=peg_radius, unit=unit, overwrite=overwrite)
+
+    def to_shapely(self, tolerance: float = 0.01) -> shapely.Polygon | shapely.MultiPolygon:
+        """The part as a polygon of shapely in mm, in its own frame; of several pieces a multipolygon.
+
+        Parameters
+        ----------
+        tolerance : how far chords may be from the arcs that they stand for, in mm; their ends lie on these.
+
+        Raises
+        ------
+        InputError
+            For a tolerance that is no length, and where shapely is not installed.
+        """
+        from workhold.presenting.data import to_shapely
+
+        return to_shapely(self, tolerance)
 
     @cached_property
     def loop_segments(self) -> tuple[tuple[Segment, ...], ...]:
@@ -377,7 +429,9 @@ def corners_of(points: ArrayLike, loop: str) -> NDArray[np.float64]:
     none.
     """
     try:
-        array = np.array(points, dtype=np.float64)
+        array = real_array(points, f"{loop}: a coordinate")
+    except InputError:
+        raise
     except (TypeError, ValueError, OverflowError) as error:
         raise InputError(
             f"{loop} is not a list of corners [x, y]: give two numbers for every corner."
@@ -394,7 +448,7 @@ def departure_of(value: float) -> float:
     """The departure of an outline in mm, 0 where it is less than a drawing can mean; refuses what is no
     length.
     """
-    if not (isfinite(real(value)) and value >= 0):
+    if not (isfinite(real(value, "the departure of the outline")) and value >= 0):
         raise InputError(f"the departure {value} of the outline is not a length: give 0 or more, in mm.")
     return 0.0 if value < READING else float(value)
 

@@ -1,6 +1,6 @@
 """What a user of Python asks of a workpiece, a fixture or a result: pictures, papers and tables.
 
-Methods of the model's classes lead here, see ``delegates``; the command line writes its papers here too.
+Methods of the model's classes import from here; the command line writes its papers here too.
 
 - ``papers``: pictures, the setup sheet of a fixture, its set-up for a CAM system and its list of pins.
 - ``assembly``: the bodies of a set-up in files, and in build123d and CadQuery.

@@ -9,7 +9,7 @@ part where it lies in its own model.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -34,6 +34,7 @@ from workhold.presenting.data import library
 
 if TYPE_CHECKING:
     from workhold.files.step.part_shape import PartShape
+    from workhold.fixels.toolkit import Toolkit
     from workhold.model.fixture import Fixture
     from workhold.model.result import Result
     from workhold.model.support_triples import Supports
@@ -201,38 +202,90 @@ def save_glb(
     write_bytes(path, assembly.content(GLB_ENDINGS[0]))
 
 
-def from_build123d(part: Any, up: Any = "z", **choices: Any) -> Workpiece:
+def from_build123d(
+    part: Any,
+    up: Any = "z",
+    *,
+    name: str | None = None,
+    part_number: int | str | None = None,
+    fit: float | None = None,
+    section: float | None = None,
+    peg_height: float | None = None,
+    head_room: float | None = None,
+    least_band: float | None = None,
+    heights: Mapping[str, Sequence[float]] | None = None,
+    toolkit: Toolkit | None = None,
+) -> Workpiece:
     """Makes a workpiece of a part of build123d, as :func:`workhold.load` does of a file.
 
     Parameters
     ----------
     part : a solid, part, sketch, face or builder.
     up : what points up: an ``Axis``, a ``Plane`` or a vector along an axis, or a name such as "-z".
-    choices : more of :func:`workhold.load`, such as ``name`` and ``peg_height``.
+    name, part_number, fit, section, peg_height, head_room, least_band, heights, toolkit : as of
+        :func:`workhold.load`.
 
     Raises
     ------
     InputError
         For a direction along no axis, and as :func:`workhold.load`.
     """
-    return load(part, axis=axis_name(up), **choices)
+    return load(
+        part,
+        axis=axis_name(up),
+        name=name,
+        part_number=part_number,
+        fit=fit,
+        section=section,
+        peg_height=peg_height,
+        head_room=head_room,
+        least_band=least_band,
+        heights=heights,
+        toolkit=toolkit,
+    )
 
 
-def from_cadquery(part: Any, up: Any = "z", **choices: Any) -> Workpiece:
+def from_cadquery(
+    part: Any,
+    up: Any = "z",
+    *,
+    name: str | None = None,
+    part_number: int | str | None = None,
+    fit: float | None = None,
+    section: float | None = None,
+    peg_height: float | None = None,
+    head_room: float | None = None,
+    least_band: float | None = None,
+    heights: Mapping[str, Sequence[float]] | None = None,
+    toolkit: Toolkit | None = None,
+) -> Workpiece:
     """Makes a workpiece of a work plane or a shape of CadQuery, as :func:`from_build123d` does.
 
     Parameters
     ----------
     part : a work plane, solid or compound.
     up : what points up in the set-up: a vector or plane along an axis, or its name, such as "-z".
-    choices : more of :func:`workhold.load`.
+    name, part_number, fit, section, peg_height, head_room, least_band, heights, toolkit : as of
+        :func:`workhold.load`.
 
     Raises
     ------
     InputError
         As :func:`from_build123d`.
     """
-    return load(part, axis=axis_name(up), **choices)
+    return load(
+        part,
+        axis=axis_name(up),
+        name=name,
+        part_number=part_number,
+        fit=fit,
+        section=section,
+        peg_height=peg_height,
+        head_room=head_room,
+        least_band=least_band,
+        heights=heights,
+        toolkit=toolkit,
+    )
 
 
 def axis_name(up: Any) -> str:

@@ -64,7 +64,7 @@ def closed(picture: LivePicture, solver: Solver, seating: Seating) -> dict[str, 
             sign = toolkit.clamping
             every = -(-len(way.poses) // MOST_KEYFRAMES)
             keyframes = [
-                picture.keyframe(one, max(sign * (travelled - fixture.jaw_separation), 0.0))
+                picture.keyframe(one, max(sign * (travelled - fixture.travel), 0.0))
                 for one, travelled in zip(way.poses[::-1][::every], way.travels[::-1][::every], strict=True)
             ]
             return picture.closing(keyframes[::-1], sentences.ended(way.ending, way.seat, way.travels[-1]))

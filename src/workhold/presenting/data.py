@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from importlib import import_module
-from math import degrees, isfinite, pi
+from math import acos, ceil, cos, degrees, inf, isfinite, pi, sin
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,7 +24,8 @@ from workhold.fixels.carrier import Carrier
 from workhold.fixels.contacts import FLAT_PIN
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.loop import Face
-from workhold.geometry.segment import Arc
+from workhold.geometry.segment import Arc, Point, Segment
+from workhold.limits import real
 from workhold.model.clamps import order_words
 from workhold.model.fixture import Fixture
 from workhold.model.quality import SEATING_FIGURES
@@ -36,6 +37,9 @@ from workhold.seating.clamping import by_hand
 from workhold.statics.why_first import why_first
 
 if TYPE_CHECKING:
+    import pyarrow
+    from pandas import DataFrame
+
     from workhold.files.toolkit_file import LoadedToolkit
     from workhold.listing.identity import Entries
     from workhold.model.result import Result
@@ -55,6 +59,7 @@ __all__ = [
     "solid_data",
     "to_arrow",
     "to_pandas",
+    "to_shapely",
     "toolkit_data",
     "verification_data",
 ]
@@ -187,7 +192,7 @@ def result_data(result: Result, shown: Entries, count: int) -> dict[str, Any]:
         "complete": bool(result.complete),
         "notes": list(map(str, result.notes)),
         "proof": None if result.proof is None else proof_data(result.proof),
-        "ranking": list(result.query.ranking),
+        "ranking": list(result.query.rank_by),
         "least_effective_error": result.least_effective_error,
         "why_first": why_first(result) or None,
         "fixtures": [
@@ -293,17 +298,50 @@ REQUIREMENTS = {
     "build123d": "build123d>=0.10",
     "cadquery": "cadquery>=2.5",
     "anywidget": "anywidget>=0.9.13",
+    "shapely": "shapely>=2",
 }
 
 
-def to_pandas(result: Result) -> Any:
+def to_pandas(result: Result) -> DataFrame:
     """Makes a DataFrame, see :meth:`workhold.Result.to_pandas`."""
-    return library("pandas").DataFrame(columns_of(result))
+    frame: DataFrame = library("pandas").DataFrame(columns_of(result))
+    return frame
 
 
-def to_arrow(result: Result) -> Any:
+def to_arrow(result: Result) -> pyarrow.Table:
     """Makes a table of Arrow, see :meth:`workhold.Result.to_arrow`."""
     return library("pyarrow").table(columns_of(result))
+
+
+def to_shapely(workpiece: Workpiece, tolerance: float) -> Any:
+    """Makes a polygon of shapely, see :meth:`workhold.Workpiece.to_shapely`."""
+    if not 0 < real(tolerance, "the tolerance") < inf:
+        raise InputError(
+            f"the tolerance {tolerance:g} of an outline is not usable: give a length above 0, in mm."
+        )
+    polygons = library("shapely")
+    rings = [
+        [point for segment in loop for point in chord_starts(segment, tolerance)]
+        for loop in workpiece.loop_segments
+    ]
+    outer, holes = rings[: workpiece.pieces], rings[workpiece.pieces :]
+    pieces = []
+    for ring in outer:
+        shell = polygons.Polygon(ring)
+        own = [hole for hole in holes if shell.contains(polygons.Point(hole[0]))]
+        pieces.append(polygons.Polygon(ring, own))
+    return pieces[0] if len(pieces) == 1 else polygons.MultiPolygon(pieces)
+
+
+def chord_starts(segment: Segment, tolerance: float) -> list[Point]:
+    """The starts of the fewest equal chords of a segment that are no farther from it than a tolerance in mm."""
+    if not isinstance(segment, Arc):
+        return [segment.start]
+    widest = 2 * acos(max(1.0 - tolerance / segment.radius, 0.5))
+    count = max(ceil(2 * segment.half_sweep / widest), 1)
+    turns = [segment.sign * segment.half_sweep * (2 * k / count - 1) for k in range(count)]
+    (x, y), angles = segment.center, [segment.mid_angle + turn for turn in turns]
+    return [segment.start, *((x + segment.radius * cos(a), y + segment.radius * sin(a)) for a in angles[1:])]
 
 
 def library(name: str) -> Any:

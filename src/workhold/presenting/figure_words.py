@@ -56,7 +56,7 @@ def figures_shown(result: Result) -> tuple[list[Figure], list[Figure]]:
         SEATING_FIGURES,
     )
 
-    ranked = [figure for key in result.query.ranking for figure in RANKED if figure.key == key]
+    ranked = [figure for key in result.query.rank_by for figure in RANKED if figure.key == key]
     others = [] if FIGURES[LOCATION_ERROR] in ranked else [FIGURES[LOCATION_ERROR]]
     others += [] if PROGRAM_FIGURE in ranked else [PROGRAM_FIGURE]
     program, needed = result.query.program, FIGURES[JAW_FORCE_NEEDED]

@@ -162,7 +162,7 @@ def queries(workpiece: Workpiece, avoided: tuple[int, ...]) -> Iterator[Query]:
         for share in PITCHES:
             pitch = rounded(share * min(x1 - x0, y1 - y0))
             vise = Vise(pitch, columns, rounded(PEG * pitch))
-            yield Query(workpiece, vise, arrangements=("I",), restrictions=Restrictions(avoid=avoided))
+            yield Query(workpiece, vise, types=("I",), restrictions=Restrictions(avoid=avoided))
 
 
 def rounded(length: float) -> float:
@@ -246,7 +246,7 @@ def curve_fixture_data(one: CurveFixture) -> dict[str, Any]:
     return {
         "rank": one.rank,
         "pose": [radians(fixture.pose.theta_deg), fixture.pose.x, fixture.pose.y],
-        "opening": fixture.jaw_separation,
+        "opening": fixture.travel,
         "pegs": [[peg.column, peg.row, peg.x, peg.y, peg.face, peg.force] for peg in fixture.pegs],
         "chords": [
             [c.tail, c.head, int(c.swapped), c.shift, c.length, c.branch, c.low, c.high] for c in one.chords

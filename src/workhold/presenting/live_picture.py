@@ -45,6 +45,7 @@ from workhold.presenting.figure_words import (
     no_edge,
 )
 from workhold.statics.loads import jaw_words, load_cases
+from workhold.supports.asking import fixture_supports
 from workhold.supports.words import why_no_set
 from workhold.units import MILLIMETRE
 
@@ -138,7 +139,7 @@ class LivePicture:
         asked : of supports, as keywords of :meth:`workhold.Fixture.supports`; None for none.
         """
         fixture = result[index]
-        under = None if asked is None else fixture.supports(**{"best": 1, **asked})
+        under = None if asked is None else fixture_supports(fixture, **{"best": 1, **asked})
         if under is not None and under.triples:
             # With supports all may stand further on, so that each hole is there.
             stands = ChosenSupports.of(under).recounted.fixture

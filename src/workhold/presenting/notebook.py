@@ -7,6 +7,7 @@ nearest miss, and what would help.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from importlib.util import find_spec
 from math import isfinite, nan
 from typing import TYPE_CHECKING, Any
@@ -52,6 +53,7 @@ if TYPE_CHECKING:
     from workhold.model.seating import Seating
     from workhold.model.support_triples import Supports
     from workhold.model.workpiece import Workpiece
+    from workhold.presenting.widget import FixtureWidget
 
 __all__ = [
     "MOST_ROWS",
@@ -344,7 +346,15 @@ class StillPicture:
         return f"{fixture_html(self.result[self.rank - 1])}\n{paragraph(words)}"
 
 
-def result_widget(result: Result, rank: int = 1, **asked: Any) -> Any:
+def result_widget(
+    result: Result,
+    rank: int,
+    *,
+    usual: float,
+    jaw_force: float | None,
+    jaw: str | float,
+    supports: Mapping[str, Any] | None,
+) -> FixtureWidget | StillPicture:
     """Makes the widget of a result, see :meth:`workhold.Result.widget`."""
     if find_spec("anywidget") is None:
         if not 1 <= rank <= len(result):
@@ -352,4 +362,4 @@ def result_widget(result: Result, rank: int = 1, **asked: Any) -> Any:
         return StillPicture(result, rank)
     from workhold.presenting.widget import FixtureWidget
 
-    return FixtureWidget(result, rank, **asked)
+    return FixtureWidget(result, rank, usual, jaw_force, jaw, supports)

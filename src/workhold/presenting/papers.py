@@ -19,6 +19,7 @@ from workhold.drawing.sheet_facts import placing_of
 from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
 from workhold.files.replacing import refuse_output
+from workhold.limits import real
 from workhold.listing.identity import entries
 from workhold.model.moved_setup import moved_on
 from workhold.model.setup import part_zero
@@ -124,6 +125,7 @@ MODEL_ENDINGS = (".dxf", ".step", ".stp", ".csv")
 PNG_WIDTH = 2400
 # What of a sheet's wishes a set-up for a CAM system has too.
 SIZES = ("thickness", "peg_length", "peg_height")
+NUMBERS = (*SIZES, "plate_thickness", "support_height", "jaw_force", "friction")
 
 
 def save_sheet(
@@ -147,6 +149,9 @@ def save_sheet(
         raise InputError(
             "this fixture was changed since it was listed: take the sheet of the one in its result."
         )
+    for name in NUMBERS:
+        if asked.get(name) is not None:
+            real(asked[name], name.replace("_", " "))
     refuse_output(path, (result_file, part), overwrite)
     if result_file is not None:
         refuse_other_result(result_file, fixture)
@@ -189,8 +194,7 @@ def is_set_up_alike(one: Fixture, other: Fixture) -> bool:
     """Whether two fixtures are one, as far as a file rounds its numbers."""
     pegs = [[(peg.hole, peg.touched) for peg in fixture.pegs] for fixture in (one, other)]
     numbers = [
-        (fixture.pose.theta_deg, fixture.pose.x, fixture.pose.y, fixture.jaw_separation)
-        for fixture in (one, other)
+        (fixture.pose.theta_deg, fixture.pose.x, fixture.pose.y, fixture.travel) for fixture in (one, other)
     ]
     return (
         (one.type, one.direction) == (other.type, other.direction)

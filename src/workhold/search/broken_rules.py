@@ -20,15 +20,18 @@ from workhold.contact.problem import Frame, Problem
 from workhold.contact.swept import keeps_of
 from workhold.contact.trimming import most_in_the_way
 from workhold.conventions import END_SLACK, GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE
-from workhold.errors import InputError
+from workhold.errors import InputError, listed
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.symmetry import rotated
 from workhold.kernels.base.feature import HIGH_SLACK, LOW_SLACK
 from workhold.kernels.contact import record
 from workhold.limits import thread_count
+from workhold.listing.asked import are_precise, touch_all
 from workhold.listing.canonical_form import Candidates, candidates_of, canonical_form, listed_once
 from workhold.listing.placing import placeable, placed
-from workhold.model.fixture_table import fixture_at
+from workhold.listing.ranking import measured
+from workhold.model.fixture_table import FixtureTable, fixture_at
+from workhold.model.quality import LOCATION_ERROR
 from workhold.model.query import Query
 from workhold.model.requirements import Restrictions
 from workhold.model.search_report import NearestMiss, Removal
@@ -158,7 +161,7 @@ def all_contacts(problem: Problem, threads: int | None) -> ContactSets:
     """Every set of four simultaneous contacts of a problem, whatever the rules say of it."""
     workers = thread_count(threads)
     search = ToolkitSearch.of(problem, counting=True, most_listed=MOST_LISTED, threads=workers)
-    records, _ = run_blocks(search.blocks(problem.query.arrangements), workers, None, None)
+    records, _ = run_blocks(search.blocks(problem.query.types), workers, None, None)
     swapped = search.frame.swapped
     together = np.concatenate([np.zeros((0, record.RECORD_LENGTH)), *records])
     together = together[(together[:, record.STANDING] > 0.0) & np.isfinite(together).all(axis=1)]
@@ -257,7 +260,8 @@ def rules(problem: Problem, unit: Unit) -> list[Rule]:
         )
     out.append(("closure", lambda c: c.margin > LEAST_CLOSURE, open_contact))
     out.append(("clamping", lambda c: c.clamping > LEAST_CLAMPING, partial(unclamped, frame)))
-    return [*out, *placing_rules(problem), ("the exact test of what is left", no_contact, on_the_edge)]
+    out += [*placing_rules(problem), *rules_asked(problem, unit)]
+    return [*out, ("the exact test of what is left", no_contact, on_the_edge)]
 
 
 def placing_rules(problem: Problem) -> list[Rule]:
@@ -290,6 +294,38 @@ def placing_rules(problem: Problem) -> list[Rule]:
             rule(limit.rule, number + 1, ruled_out)
     if first == len(limits) and asked.angles:
         rule("angles of the part", first, asked)
+    return out
+
+
+def rules_asked(problem: Problem, unit: Unit) -> list[Rule]:
+    """The rules that are asked of each fixture by itself, as far as the user has any."""
+    query, out = problem.query, list[Rule]()
+
+    def table(c: ContactSets) -> FixtureTable:
+        return placed(c.candidates, problem)
+
+    def untouched(c: ContactSets) -> tuple[int, str]:
+        names = listed([str(face) for face in query.restrictions.touch])
+        return int(c.margin.argmax()), f"it would hold, but does not touch all that was asked: {names}."
+
+    def imprecise(c: ContactSets) -> tuple[int, str]:
+        errors = measured(table(c), problem).quality[:, LOCATION_ERROR]
+        index, most = int(np.nanargmin(errors)), query.max_location_error or 0.0
+        return index, (
+            f"it would hold with a location error of {unit.text(errors[index])}, and the largest that was asked "
+            f"for is {unit.figure(most)} {unit.abbreviation}."
+        )
+
+    if query.restrictions.touch:
+        out.append(("faces to touch", lambda c: touch_all(table(c), query), untouched))
+    if query.max_location_error is not None:
+        out.append(
+            (
+                "largest location error",
+                lambda c: are_precise(measured(table(c), problem), query),
+                imprecise,
+            )
+        )
     return out
 
 

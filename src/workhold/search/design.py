@@ -93,6 +93,7 @@ def design(
     loads: Sequence[Load] = (),
     best: int | None = None,
     jaw_force: float | None = None,
+    max_location_error: float | None = None,
     thickness: float | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
@@ -104,8 +105,9 @@ def design(
 
     Parameters
     ----------
-    workpiece, toolkit, contact_margin, restrictions, tolerance, loads, best, jaw_force, thickness : see
+    workpiece, toolkit, contact_margin, restrictions, tolerance, loads, best, jaw_force : see
         :class:`workhold.Query`.
+    max_location_error, thickness : the same.
     types : names of arrangements: of a vise "I" (two pegs on each jaw), "II" (three and one), or both; None
         is all.
     rank_by : the query's ranking.
@@ -147,6 +149,7 @@ def design(
         best=best,
         jaw_force=jaw_force,
         thickness=thickness,
+        max_location_error=max_location_error,
         **further,
     )
     return answer(query, threads=threads, progress=progress, cancel=cancel, preview=preview)
@@ -188,7 +191,7 @@ def answer(
     Examples
     --------
     >>> from workhold import Query, Vise, answer, load
-    >>> query = Query(load("widget"), Vise(pitch=8, columns=1, peg_radius=3), arrangements="II", best=3)
+    >>> query = Query(load("widget"), Vise(pitch=8, columns=1, peg_radius=3), types="II", best=3)
     >>> len(answer(query)), answer(query).query == query
     (3, True)
     """
@@ -222,7 +225,7 @@ def answer(
 
 def is_large(query: Query, threads: int, cancel: Event | None) -> bool:
     """Whether so much is to be searched that limits of the location error are worth their while."""
-    if any(one.pegs[0] < 3 for one in query.toolkit.arrangements if one.name in query.arrangements):
+    if any(one.pegs[0] < 3 for one in query.toolkit.arrangements if one.name in query.types):
         # Of two pegs that stand still nobody knows where they touch for a small error.
         return False
     problem = Problem.of(one_clamp(query, query.toolkit.ways[0]))
@@ -238,7 +241,7 @@ def is_large(query: Query, threads: int, cancel: Event | None) -> bool:
         return ways_in(map(blocks_of_search, searches_of(query, threads, cancel))) > OF_TWO * LIMITED_FROM
     ways = [Problem.of(evolve(query, toolkit=way)) for way in query.toolkit.ways]
     searches = [ToolkitSearch.of(way, threads=threads, cancel=cancel) for way in ways]
-    return ways_in(search.blocks(query.arrangements) for search in searches) > LIMITED_FROM
+    return ways_in(search.blocks(query.types) for search in searches) > LIMITED_FROM
 
 
 def best_answer(
@@ -335,7 +338,7 @@ def answer_of_a_way(
     if kept is not None:
         work = best_first(search, kept, threads, before, cancel, look)
         return deliver(with_reason(best_result(kept, work, is_part), search, threads, cancel), sink)
-    blocks = search.blocks(query.arrangements)
+    blocks = search.blocks(query.types)
     if sink is not None:
         with ThreadPoolExecutor(max_workers=threads) as pool:
             collector = ResultCollector(problem, pool, 2 * threads, cancel, sink.folder)

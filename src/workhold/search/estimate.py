@@ -51,9 +51,10 @@ BEGIN = 0.618
 def estimated_fixtures(query: Query, threads: int, cancel: Event | None = None) -> int | None:
     """How many fixtures a query has, about.
 
-    None where they are surely few, beside a wall, with rules for their seating, and once ``cancel`` is set.
+    None where they are surely few, beside a wall, with rules for their seating or for each by itself, and once
+    ``cancel`` is set.
     """
-    if WALL_END in query.toolkit.contacts or query.seating is not None:
+    if WALL_END in query.toolkit.contacts or query.seating is not None or query.is_sifted:
         return None
     query = evolve(query, best=None)
     if query.toolkit.travels > 1:
@@ -78,7 +79,7 @@ def estimated_of_a_way(query: Query, threads: int, cancel: Event | None) -> int 
     """How many fixtures there are about in a toolkit of which one carrier moves; None where they are few."""
     problem = Problem.of(query)
     search = ToolkitSearch.of(problem, threads=threads, cancel=cancel)
-    blocks = search.blocks(query.arrangements, MOST_CELLS)
+    blocks = search.blocks(query.types, MOST_CELLS)
     costs = np.array([block.cost for block in blocks])
     if costs.sum() < FEW:
         return None

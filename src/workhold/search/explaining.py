@@ -18,6 +18,8 @@ from workhold.contact.problem import Problem
 from workhold.errors import InputError, listed
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Change, Toolkit
+from workhold.listing.asked import are_as_asked
+from workhold.listing.ranking import measured
 from workhold.model.fixture_table import FixtureTable, fixture_at
 from workhold.model.notes import NoFixture, Note, Remark
 from workhold.model.quality import WARNINGS
@@ -74,14 +76,20 @@ def left_by_rules(query: Query, alone: bool) -> Iterator[tuple[str, int]]:
     free = toolkit.without(toolkit.limits)
     others = [limit for limit in toolkit.limits if limit.bounds != "holes"]
     holes = toolkit.without(others)
-    bare = evolve(query.without_program, toolkit=free, restrictions=Restrictions(), contact_margin=0.0)
+    bare = evolve(
+        query.without_program,
+        toolkit=free,
+        restrictions=Restrictions(),
+        contact_margin=0.0,
+        max_location_error=None,
+    )
     passed = {"program": query.program, "peg_height": query.peg_height}
     steps: list[tuple[bool, str, dict[str, Any]]] = [
         (True, "", {}),
         (bool(asked.avoid), "faces to avoid", {"restrictions": Restrictions(avoid=asked.avoid)}),
-        (bool(asked.zones), "keep-out zones", {"restrictions": evolve(asked, angles=())}),
+        (bool(asked.zones), "keep-out zones", {"restrictions": evolve(asked, angles=(), touch=())}),
         (query.program is not None, program_rule(query), passed),
-        (bool(asked.angles), "angles of the part", {"restrictions": asked}),
+        (bool(asked.angles), "angles of the part", {"restrictions": evolve(asked, touch=())}),
         (bool(holes.limits), toolkit.wording.holes, {"toolkit": holes}),
         (query.contact_margin > 0.0, "contact margin", {"contact_margin": query.contact_margin}),
     ]
@@ -98,6 +106,13 @@ def left_by_rules(query: Query, alone: bool) -> Iterator[tuple[str, int]]:
     for number, limit in enumerate(others, 1):
         held_in = toolkit.without(others[number:])
         yield stroke_rule(query, limit.rule), placed(evolve(bare, toolkit=held_in))
+    bare = evolve(bare, toolkit=toolkit)
+    if asked.touch:
+        bare = restricted(bare, touch=asked.touch)
+        yield "faces to touch", placed(bare)
+    if query.max_location_error is not None:
+        bare = evolve(bare, max_location_error=query.max_location_error)
+        yield "largest location error", placed(bare)
 
 
 def search_of(query: Query, explains: bool = False) -> FlushSearch | None:
@@ -125,11 +140,14 @@ def examined(query: Query) -> int:
 
 
 def placed(query: Query) -> int:
-    """How many pairs have a place."""
+    """How many pairs have a place and are as asked of each by itself."""
     search = search_of(query)
     if search is None:
         return 0
-    return sum(len(search.placed([part], edge)) for edge in search.edges for part in search.fixtures(edge))
+    tables = (search.placed([part], edge) for edge in search.edges for part in search.fixtures(edge))
+    if not query.is_sifted:
+        return sum(map(len, tables))
+    return sum(int(are_as_asked(measured(table, search.problem), query).sum()) for table in tables)
 
 
 def miss_of(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> NearestMiss:
@@ -160,7 +178,7 @@ def explain(query: Query, threads: int | None = None, unit: Unit = MILLIMETRE) -
     unit : of the lengths in its words.
     """
     # What is to come first makes no difference, and may be a figure that a changed toolkit has not.
-    query = evolve(query, ranking="warnings")
+    query = evolve(query, rank_by="warnings")
     toolkit, alone = query.toolkit, query.toolkit.travels == 1
     ways = [held_in(query, way) for way in toolkit.ways]
     if WALL_END in toolkit.contacts:
@@ -202,7 +220,7 @@ def answer_of(changed: Callable[[Query], Query], query: Query, threads: int | No
     timer = Timer(HELP_SECONDS, enough.set)
     timer.start()
     try:
-        asked = evolve(changed(query), ranking="warnings", best=None)
+        asked = evolve(changed(query), rank_by="warnings", best=None)
         return answer(asked, threads=threads, cancel=enough)
     except InputError:
         return None
@@ -305,8 +323,13 @@ def changes(query: Query, unit: Unit) -> Iterator[Lift]:
         yield lift("at any angle", partial(restricted, angles=()), ("angles of the part",))
     if query.contact_margin > 0:
         yield lift("without a contact margin", partial(evolve, contact_margin=0.0), ("contact margin",))
-    if len(query.arrangements) < len(toolkit.types):
-        yield lift("with all types", partial(evolve, arrangements=None), ("types sought",))
+    if asked.touch:
+        yield lift("without the faces to touch", partial(restricted, touch=()), ("faces to touch",))
+    if query.max_location_error is not None:
+        imprecise = partial(evolve, max_location_error=None)
+        yield lift("with any location error", imprecise, ("largest location error",))
+    if len(query.types) < len(toolkit.types):
+        yield lift("with all types", partial(evolve, types=None), ("types sought",))
     for limit in toolkit.limits:
         held, fields = partial(held_in_another, change=limit.lifted), limit.lifted.fields
         yield lift(limit.lifted.words, held, (limit.rule,), fields)
@@ -335,4 +358,4 @@ def held_in(query: Query, toolkit: Toolkit) -> Query:
     first has."""
     if toolkit.peg_count == query.toolkit.peg_count:
         return evolve(query, toolkit=toolkit)
-    return evolve(query, toolkit=toolkit, arrangements=None, ranking=None, listing=None)
+    return evolve(query, toolkit=toolkit, types=None, rank_by=None, listing=None)

@@ -134,7 +134,7 @@ def refuse_unasked(query: Query) -> None:
     if not is_put_in_by_hand(query):
         refuse_own_outlines(query.workpiece)
         refuse_unseated(query.toolkit)
-    elif query.has_seating_rules or not SEATING_KEYS.isdisjoint(query.ranking):
+    elif query.has_seating_rules or not SEATING_KEYS.isdisjoint(query.rank_by):
         raise InputError(
             "with two clamps the part is put against its locators by hand, so no opening, reading "
             "or other figure of seating can choose or rank fixtures: ask for the seating alone."

@@ -178,7 +178,7 @@ def answer_in_shares(
 
 def one_clamp(query: Query, way: Toolkit) -> Query:
     """A query with one clamp of those that are needed together, in one direction."""
-    return evolve(query, toolkit=way, arrangements=None, ranking=None, best=None, listing=None)
+    return evolve(query, toolkit=way, types=None, rank_by=None, best=None, listing=None)
 
 
 def has_body_to_pass(query: Query) -> bool:
@@ -206,7 +206,7 @@ def best_first(
     """Hands what may be among the best to those kept, see ``search.design.answer``."""
     query, problem = search.problem.query, search.problem
     # Smaller blocks learn earlier what margin is to be reached.
-    blocks_in = partial(search.blocks, query.arrangements, 4 * LEAST_BLOCKS)
+    blocks_in = partial(search.blocks, query.types, 4 * LEAST_BLOCKS)
     parts = [blocks_in()]
     total = cost_of(parts[0])
     bound = tilted_bound(query, problem, total)
@@ -244,7 +244,7 @@ def limited_work(
             precision=limit.precision,
             only=first if number == 0 else (),
         )
-        blocks = search.blocks(query.arrangements, 4 * LEAST_BLOCKS, first=first, rest=number > 0)
+        blocks = search.blocks(query.types, 4 * LEAST_BLOCKS, first=first, rest=number > 0)
         done = run_blocks(blocks, threads, share, cancel, kept.add, look, search.stop)[1]
         works.append(work_of(search, blocks, done))
     statistics = summed([work.statistics for work in works])

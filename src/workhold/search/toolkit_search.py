@@ -462,6 +462,7 @@ def count_contacts(workpiece: Workpiece, toolkit: Toolkit, *, threads: int | Non
 
     Parameters
     ----------
+    workpiece, toolkit : what is held, and in what.
     threads : how many threads share the work; None for one on each processor.
 
     Raises
@@ -476,5 +477,5 @@ def contacts_of(problem: Problem, threads: int | None, cancel: Event | None = No
     """Simultaneous contacts of a problem, see :func:`count_contacts`; fewer once ``cancel`` is set."""
     workers = thread_count(threads)
     search = ToolkitSearch.of(problem, counting=True, threads=workers, cancel=cancel)
-    run_blocks(search.blocks(problem.query.arrangements), workers, None, cancel, stop=search.stop)
+    run_blocks(search.blocks(problem.query.types), workers, None, cancel, stop=search.stop)
     return int(search.totals[CONTACTS])

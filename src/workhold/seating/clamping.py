@@ -116,7 +116,7 @@ class Gauge:
     @property
     def grows(self) -> bool:
         """Whether more is read as what moves is opened: a stroke gets less."""
-        return self.at(self.fixture.jaw_separation + self.toolkit.clamping) > self.setting.length
+        return self.at(self.fixture.travel + self.toolkit.clamping) > self.setting.length
 
     def pegs(self, travelled: float) -> tuple[Peg, ...]:
         """The pegs, with what moves elsewhere on its way.
@@ -127,7 +127,7 @@ class Gauge:
         """
         moving = self.carrier
         assert moving.travel is not None
-        (x, y), by = moving.travel.unit, travelled - self.fixture.jaw_separation
+        (x, y), by = moving.travel.unit, travelled - self.fixture.travel
         return tuple(
             evolve(peg, x=peg.x + by * x, y=peg.y + by * y) if peg.carrier == moving.name else peg
             for peg in self.fixture.pegs
@@ -145,7 +145,7 @@ class Gauge:
         >>> Gauge(fixture, Plate(pitch=20, peg_radius=3, travel=(10, 30))).at(-12.5)
         12.5
         """
-        moved = evolve(self.fixture, pegs=self.pegs(travelled), jaw_separation=travelled)
+        moved = evolve(self.fixture, pegs=self.pegs(travelled), travel=travelled)
         return settings_of(moved, self.toolkit)[0].length
 
 

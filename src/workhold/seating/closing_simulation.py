@@ -93,7 +93,7 @@ def simulate_closing(
     pattern = Pattern.of(fixture, solver.toolkit)
     closing = solver.closing(pattern, turned_over)
     center = Center(solver.workpiece.center, turned_over, pattern.frame)
-    start = center.config(pose, fixture.jaw_separation + solver.toolkit.clamping * opening)
+    start = center.config(pose, fixture.travel + solver.toolkit.clamping * opening)
     travel = solver.toolkit.moving.travel
     assert travel is not None
     if pattern.frame.sign > 0.0 and travel.most is not None and start[3] > travel.most + LEVEL:

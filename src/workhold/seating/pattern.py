@@ -202,7 +202,7 @@ class Pattern:
         common = CommonToPatterns.of(toolkit, tuple([peg.carrier for peg in fixture.pegs]))
         frame, right, gap = common.frame, common.right, toolkit.gap
         pegs = frame.turned(np.array([[fixture.pegs[k].x, fixture.pegs[k].y] for k in common.numbers], float))
-        separation = frame.sign * fixture.jaw_separation
+        separation = frame.sign * fixture.travel
         pegs[:, 0] -= right * separation
         pattern = cls(pegs, right, common.radii, -inf, inf, frame, common.numbers, common.half_plane, gap)
         stop, widest = pattern.free_of_locators(separation) if gap is None else pattern.gap_kept(gap)

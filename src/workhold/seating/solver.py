@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from functools import cached_property
-from itertools import product
+from itertools import islice, product
 from math import inf, isfinite, pi, radians, tau
 from threading import Event
 from typing import Any
@@ -221,9 +221,7 @@ class FixtureInPattern:
         """The configuration (4,) of the fixture."""
         pose = self.fixture.pose
         x, y = pose.apply(*self.solver.workpiece.center)
-        return self.pattern.frame.enter(
-            np.array([radians(pose.theta_deg), x, y, self.fixture.jaw_separation])
-        )
+        return self.pattern.frame.enter(np.array([radians(pose.theta_deg), x, y, self.fixture.travel]))
 
     @cached_property
     def place(self) -> int | None:
@@ -389,7 +387,7 @@ def seatings(result: Result, fixtures: Sequence[Fixture] | int = 1, *, with_cage
     (0.03, 0.083)
     """
     refuse_kind(result, Result, "the result", "give a Result, as workhold.design and workhold.open make")
-    chosen = result[:fixtures] if isinstance(fixtures, int) else fixtures
+    chosen = list(islice(result, fixtures)) if isinstance(fixtures, int) else fixtures
     if not result.toolkit.closes_at_once:
         for fixture in chosen:
             fixture.refuse_others(result.workpiece, result.toolkit)

@@ -152,6 +152,15 @@ def jaw_forces_needed(inverses: Array, closing: Array, length: float, loads: Arr
     return most
 
 
+def touched_points(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> tuple[Array, Array]:
+    """Where pegs touch the part and its outward unit normals there, (P, 2) each, in the part's frame, in mm."""
+    touched = Touched.of(workpiece, toolkit)
+    points, normals, *_ = contacts_on_part(
+        fixture, workpiece, toolkit, touched, touched.of_fixture(fixture, toolkit)
+    )
+    return points + touched.center, normals
+
+
 def contacts_on_part(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, touched: Touched, matrices: ContactMatrices
 ) -> tuple[Array, Array, Array, Array]:
@@ -166,7 +175,7 @@ def contacts_on_part(
     pegs = zip(fixture.pegs, (toolkit.carriers[number] for number in carriers), strict=True)
     radii = np.array([standoff(one.peg_radius, one.flat, faces[peg.face]) for peg, one in pegs])
     normals = matrices.normals[0]
-    against = -np.stack(fixture.pose.inverse.turn(*touched.directions[carriers].T), axis=1)
+    against = -fixture.pose.inverse.turn(touched.directions[carriers])
     return matrices.points[0] - radii[:, None] * normals, normals, touched.moving[carriers], against
 
 
@@ -272,7 +281,7 @@ def load_cases(
     fixture: Fixture,
     workpiece: Workpiece,
     toolkit: Toolkit,
-    loads: Sequence[Load],
+    loads: Load | Sequence[Load],
     jaw_force: float | None = None,
     friction: float | None = None,
     jaw: str | float = "screw",
@@ -294,8 +303,9 @@ def load_cases(
         and a jaw that is not known.
     """
     fixture.refuse_others(workpiece, toolkit)
+    loads = (loads,) if isinstance(loads, Load) else loads
     for name, value in (("jaw force", jaw_force), ("friction", friction)):
-        if value is not None and not (isfinite(real(value)) and value >= 0):
+        if value is not None and not (isfinite(real(value, name)) and value >= 0):
             raise InputError(f"{name} {real(value):g} cannot be used: give 0 or more.")
     refuse_strong("jaw force", jaw_force or 0.0)
     if friction is not None and friction > MOST_FRICTION:

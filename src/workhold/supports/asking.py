@@ -7,6 +7,7 @@ a clamp so far inside its triangle. Ends of dowels as thick as those that locate
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import islice
 from typing import Any
 
 from attrs import evolve, fields
@@ -19,7 +20,7 @@ from workhold.model.query import Query
 from workhold.model.requirements import Load
 from workhold.model.result import Result
 from workhold.model.solid import BESIDE_TOP
-from workhold.model.support_request import SpatialLoad, SupportRequest, usual_head
+from workhold.model.support_request import OUTLINE, SpatialLoad, SupportRequest, usual_head
 from workhold.model.support_triples import Supports
 from workhold.supports.choosing import Stop
 from workhold.supports.listing import supports_of, supports_one_by_one
@@ -150,6 +151,14 @@ def up_to_first(every: Iterable[Supports]) -> Iterator[Supports]:
             return
 
 
+def given(asked: Mapping[str, Any]) -> dict[str, Any]:
+    """What of keywords is not None; faces that are to be the outline are None for a request."""
+    named = {name: value for name, value in asked.items() if value is not None}
+    return {
+        name: None if isinstance(value, str) and value == OUTLINE else value for name, value in named.items()
+    }
+
+
 def fixture_supports(
     fixture: Fixture,
     thickness: float | None = None,
@@ -161,7 +170,7 @@ def fixture_supports(
 ) -> Supports:
     """The supports of a fixture, see :meth:`workhold.Fixture.supports`."""
     query = fixture.listing.result.query
-    request = asked_request(query, thickness, asked)
+    request = asked_request(query, thickness, given(asked))
     return supports_of(fixture, query, request, loads, jaw_force, counting_number("best", best))
 
 
@@ -183,5 +192,7 @@ def result_supports(
     each : how many sets of three for each of them; the rest as in :meth:`workhold.Fixture.supports`.
     """
     count, sets = counting_number("best", best), counting_number("each", each)
-    request, sets = asked_request(result.query, thickness, asked), 3 if sets is None else sets
-    return tuple(supports_one_by_one(result[:count], result.query, request, loads, jaw_force, sets))
+    request, sets = asked_request(result.query, thickness, given(asked)), 3 if sets is None else sets
+    return tuple(
+        supports_one_by_one(list(islice(result, count)), result.query, request, loads, jaw_force, sets)
+    )

@@ -64,11 +64,11 @@ def holes_under(
         columns, rows = (
             np.arange(np.floor((ends.min() - first) / pitch), np.ceil((ends.max() - first) / pitch) + 1)
             for ends, first, pitch in zip(
-                (x, y), carrier.place(0, 0, fixture.jaw_separation), carrier.pitch, strict=True
+                (x, y), carrier.place(0, 0, fixture.travel), carrier.pitch, strict=True
             )
         )
         column, row = (grid.ravel() for grid in np.meshgrid(columns, rows, indexing="ij"))
-        hole = carrier.place(column, row, fixture.jaw_separation)
+        hole = carrier.place(column, row, fixture.travel)
         points = np.stack(back.apply(*hole), axis=1)
         spare = face.room(points) - request.pad_radius - request.pad_margin
         apart = np.hypot(*np.moveaxis(points[:, None] - pegs[None], -1, 0))
@@ -207,7 +207,7 @@ class CarrierRoom:
         pitch, size = plate.pitch[axis], (plate.columns, plate.rows)[axis]
         first, last = spans[number][axis]
         room = np.full(len(first), UNBOUNDED) if size is None else size - 1 - (last - first)
-        at_rest = self.fixture.jaw_separation + first * pitch
+        at_rest = self.fixture.travel + first * pitch
         for other, standing in self.plates.items():
             if other == number:
                 continue

@@ -241,7 +241,7 @@ def checked_force(jaw_force: float | None) -> float | None:
     """A jaw force in N, or None; refuses one that is negative or no number."""
     if jaw_force is None:
         return None
-    if not (isfinite(real(jaw_force)) and real(jaw_force) >= 0):
+    if not (isfinite(real(jaw_force, "jaw force")) and real(jaw_force) >= 0):
         raise InputError(f"jaw force {real(jaw_force):g} cannot be used: give 0 or more.")
     refuse_strong("jaw force", real(jaw_force))
     return real(jaw_force)

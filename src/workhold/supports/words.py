@@ -174,7 +174,7 @@ def listing_notes(
     if found.loads and listed and found.jaw_force > 0:
         notes.append(f"All for a closing force of {unit.force_words(found.jaw_force)}, without friction.")
     moved = {one.travel for one in listed if one.travel is not None}
-    if any(abs(one - found.fixture.jaw_separation) > SAME_OPENING for one in moved):
+    if any(abs(one - found.fixture.travel) > SAME_OPENING for one in moved):
         notes.append(
             "With these supports the jaws stand elsewhere in their holes, opened to "
             f"{', '.join(unit.text(one) for one in sorted(moved))}; columns are counted as for the fixture."

@@ -42,6 +42,7 @@ from workhold.model.notes import (
     STAGES,
     AskedFor,
     BestOnly,
+    Chosen,
     Cut,
     FittedOutline,
     KeptBest,
@@ -105,7 +106,7 @@ def count_faults(listing: Listing, rotations: int) -> Iterator[str]:
             yield f"found says {found} fixtures of type {kind}, but {listed} are listed"
         if not (distinct <= found <= distinct * rotations):
             yield f"distinct says {distinct} fixtures of type {kind}, which {found} cannot form"
-        if found and kind not in listing.query.arrangements:
+        if found and kind not in listing.query.types:
             yield f"found says {found} fixtures of type {kind}, which is not asked for"
     listed, found, best = len(listing.fixtures), sum(listing.found.values()), listing.query.best
     if best is not None and listed > best:
@@ -113,7 +114,7 @@ def count_faults(listing: Listing, rotations: int) -> Iterator[str]:
     is_said = listing.query.has_seating_rules or any(
         note in (KeptBest(found, listed), Cut(found, listed)) for note in listing.notes
     )
-    if found > listed != best and not is_said:
+    if found > listed != best and not (is_said or listing.is_chosen):
         yield f"found says {found} fixtures, but {listed} are listed, and nothing says why"
 
 
@@ -125,7 +126,7 @@ def seating_faults(listing: Listing) -> Iterator[str]:
     stated = sum(fixture.seating is not None for fixture in first)
     if query.has_seating_rules and (stated < listed or listed > len(first)):
         yield f"{listed} fixtures are listed for their seating, but it is stated of {stated}"
-    elif listing.complete and stated < len(first):
+    elif listing.complete and stated < len(first) and not listing.is_chosen:
         yield f"the seating of {len(first)} fixtures is asked for, but it is stated of {stated}"
     if any(fixture.seating is not None for fixture in listing.fixtures[len(first) :]):
         yield f"the seating of more fixtures is stated than of the {len(first)} that it is asked of"
@@ -293,7 +294,7 @@ def may_be_said(note: Note, listing: Listing) -> bool:
             return query.has_seating_rules and is_as_seated(note, listing)
         case AskedFor(rules):
             return rules == query.restricted_by and not found
-        case KeptBest(every, kept):
+        case KeptBest(every, kept) | Chosen(every, kept):
             return (every, kept) == (found, listed) and found > listed
         case Cut(every, kept):
             return (every, kept) == (found, listed) and found > listed and not listing.complete
@@ -307,8 +308,8 @@ def is_as_seated(note: Seated, listing: Listing) -> bool:
     listed, found, query = len(listing.fixtures), sum(listing.found.values()), listing.query
     most = min(query.seating or 0, found)
     least = most if listing.complete else listed
-    # Of those that are as asked no more than the best are listed.
-    kept = note.looked_at if listed == query.best else listed
+    # Of those that are as asked no more than the best are listed, or those that somebody chose.
+    kept = note.looked_at if listed == query.best or listing.is_chosen else listed
     return least <= note.looked_at <= most and listed <= note.kept <= kept
 
 

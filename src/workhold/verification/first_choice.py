@@ -124,7 +124,7 @@ class EffectiveJudge:
         counts = [(plate.columns, plate.rows)[axis] for plate in plates]
         if None in counts:
             return False
-        pitch, travel = plates[0].pitch[axis], fixture.jaw_separation
+        pitch, travel = plates[0].pitch[axis], fixture.travel
         first = [plate.place(0, 0, travel)[axis] for plate in plates]
         low = min(first) - pitch / 2
         high = max(at + ((count or 0) - 0.5) * pitch for at, count in zip(first, counts, strict=True))

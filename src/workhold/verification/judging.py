@@ -222,14 +222,15 @@ def order_faults(
     hardware: ToolkitRules,
     least: float | None = None,
     is_whole: bool = False,
+    is_chosen: bool = False,
 ) -> Iterator[str]:
     """A fault for a fixture out of order, where the figures ranked by are written.
 
     ``least`` is the least effective error of all in mm, as written. ``is_whole`` says whether all that was
-    found is listed.
+    found is listed, and ``is_chosen`` whether the best may be among what is not.
     """
     usual = query.without_seating
-    if any(key not in fixture.quality for fixture in fixtures for key in figures_ranked_by(usual.ranking)):
+    if any(key not in fixture.quality for fixture in fixtures for key in figures_ranked_by(usual.rank_by)):
         return
     if query.has_house_order and not all(map(hardware.has_carriers, fixtures)):
         # What stands on something else is refuted, and no effective error of it is known.
@@ -243,7 +244,7 @@ def order_faults(
     def row_of(fixture: Fixture, figures: Mapping[str, float], asked: Query) -> list[Range]:
         """What a fixture is ordered by, with some figures."""
         first = judge.first(fixture, figures) if judge is not None and asked.has_house_order else []
-        return [unfit(fixture, off), *first, *ranges(figures, figures_ranked_by(asked.ranking))]
+        return [unfit(fixture, off), *first, *ranges(figures, figures_ranked_by(asked.rank_by))]
 
     rows = [row_of(fixture, fixture.quality, usual) for fixture in fixtures]
     stated = [figures_stated(fixture) for fixture in fixtures]
@@ -260,11 +261,11 @@ def order_faults(
     if whole and any(is_better(row, first) for first in rows[:count] for row in rows[count : count + 1]):
         contrast = "but without it is better than one before it that has"
         yield f"fixture {count + 1} has no seating stated, {contrast}"
-    ranking = query.ranking
+    ranking = query.rank_by
     for place in range(1, len(rows)):
         one, before = seated[place], seated[place - 1]
         if before is not None and one is None:
-            ranking = usual.ranking
+            ranking = usual.rank_by
             continue
         better = is_better(one or rows[place], before or rows[place - 1])
         if better:
@@ -277,7 +278,7 @@ def order_faults(
             )
             return
     # That which has the least error stands no step above it, so neither does the first.
-    is_bare = judge is not None and least is not None and count == 0 and bool(fixtures)
+    is_bare = judge is not None and least is not None and count == 0 and bool(fixtures) and not is_chosen
     if is_bare and judge is not None and judge.effective.steps(fixtures[0])[0] > 0:
         yield f"the least effective error is given as {least:.9f} mm, a step below that of the first fixture"
 

@@ -31,7 +31,7 @@ from workhold.fixels.table import SILENT
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.clamps import ratios
 from workhold.model.fixture import Fixture, Pair, Peg
-from workhold.model.notes import Note
+from workhold.model.notes import Chosen, Note
 from workhold.model.pose import Pose
 from workhold.model.quality import figures_in
 from workhold.model.query import Query
@@ -209,6 +209,11 @@ class Listing:
         return self.complete and dict(self.found) == dict(self.counts) and self.query.best is None
 
     @property
+    def is_chosen(self) -> bool:
+        """Whether somebody chose what is listed, which says nothing of the others."""
+        return Chosen(sum(self.found.values()), len(self.fixtures)) in self.notes
+
+    @property
     def hardware(self) -> ToolkitRules:
         return ToolkitRules.of(self.query)
 
@@ -313,6 +318,7 @@ def keys_missing(head: Head) -> list[str]:
     spared = {"toolkit" if head.toolkit is None else "vise", "proof", "tolerance.fit"}
     # Where nobody counted pairs and seats a note says so, for which the account looks.
     spared |= {"workpiece.departure", "tolerance.departure", "pairs", "seats", "thickness"}
+    spared |= {"restrictions.touch", "max_location_error"}
     # Where steps count, its absence is a fault of the order.
     spared |= {"least_effective_error"}
     # An older file has the sentences alone.

@@ -22,7 +22,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
-from math import radians
+from math import inf, radians
 
 from flint import arb, arb_mat, ctx
 
@@ -152,7 +152,29 @@ def broken_restriction(fixture: Fixture, query: Query, hardware: ToolkitRules) -
     )
     if restrictions.angles and not any(inside):
         return f"the part lies at {theta:g} degrees, which is outside the angles asked for"
-    return broken_at_wall(fixture, query, hardware, avoided | bare) or hardware.crowding(fixture)
+    broken = broken_at_wall(fixture, query, hardware, avoided | bare) or hardware.crowding(fixture)
+    return broken or untouched(fixture, query, hardware) or imprecise(fixture, query)
+
+
+def untouched(fixture: Fixture, query: Query, hardware: ToolkitRules) -> str:
+    """The first face that a fixture is to touch and does not, as :func:`broken_restriction` says it."""
+    if not query.restrictions.touch:
+        return ""
+    touched = {face for peg in fixture.pegs for face in (peg.face, peg.beside) if face is not None}
+    for contact in hardware.contacts(fixture, every_outline(query.workpiece)):
+        touched |= set(contact.faces) if isinstance(contact, WallContact) else set()
+    for face in query.workpiece.numbered.faces:
+        if not set(face.segments).isdisjoint(query.restrictions.touch) and face.number not in touched:
+            return f"nothing touches face {face.number}, which is to be touched"
+    return ""
+
+
+def imprecise(fixture: Fixture, query: Query) -> str:
+    """The location error of a fixture where it is larger than asked; the figure itself is derived elsewhere."""
+    most, error = query.max_location_error, fixture.quality.get("location_error", inf)
+    if most is None or error <= most + AGREEMENT:
+        return ""
+    return f"its location error is {error:g} mm, and at most {most:g} mm is asked for"
 
 
 def faces_without_band(workpiece: Workpiece) -> set[int]:

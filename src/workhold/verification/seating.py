@@ -402,7 +402,7 @@ class StatedSeating:
     def travel(self) -> float:
         """How far in mm what moves has gone, of a clamp by where its tip is."""
         if self.fixture.direction is None:
-            return self.fixture.jaw_separation
+            return self.fixture.travel
         tip = self.fixture.pegs[self.moving.index(True)]
         return travelled(tip, self.judge.hardware.carriers[tip.carrier])
 

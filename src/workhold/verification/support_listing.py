@@ -78,7 +78,7 @@ class SupportPlaces:
     def point_of(self, hole: Hole) -> tuple[float, float]:
         """The place of a hole in the part's coordinates."""
         name, column, row = hole
-        place = self.toolkit.carrier(name).place(column, row, self.fixture.jaw_separation)
+        place = self.toolkit.carrier(name).place(column, row, self.fixture.travel)
         x, y = self.fixture.pose.inverse.apply(*place)
         return float(x), float(y)
 
@@ -168,7 +168,7 @@ class SupportPlaces:
             return fits, None
         axis = 0 if len(plates) > 1 else 1
         step, own = moving.pitch[axis], lines[moving.name][axis]
-        opened = self.fixture.jaw_separation + min(own) * step
+        opened = self.fixture.travel + min(own) * step
         count = (moving.columns, moving.rows)[axis]
         room = inf if count is None else count - 1 - max(own) + min(own)
         for plate in plates:
@@ -220,7 +220,7 @@ def holes_near(rules: SupportPlaces) -> Iterator[Hole]:
     (x0, y0), (x1, y1) = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
     corners = np.array([rules.fixture.pose.apply(x, y) for x, y in product((x0, x1), (y0, y1))])
     for plate in rules.query.toolkit.plates:
-        first = np.array(plate.place(0, 0, rules.fixture.jaw_separation))
+        first = np.array(plate.place(0, 0, rules.fixture.travel))
         low, high = (corners.min(axis=0) - first) / plate.pitch, (corners.max(axis=0) - first) / plate.pitch
         columns, rows = (range(floor(a) - 1, ceil(b) + 2) for a, b in zip(low, high, strict=True))
         yield from ((plate.name, column, row) for column, row in product(columns, rows))
@@ -364,7 +364,7 @@ def opened_clear_of_blocked(toolkit: Toolkit, fixture: Fixture, holes: list[Hole
     for moved in product(*shifts):
         by = dict(moved)
         steps = sum(-k if name == moving.name else k for name, k in moved)
-        opening = fixture.jaw_separation + steps * moving.pitch[0]
+        opening = fixture.travel + steps * moving.pitch[0]
         if opening < travel.least - AGREEMENT or opening > (travel.most or inf) + AGREEMENT:
             continue
         if widest is not None and opening <= widest:

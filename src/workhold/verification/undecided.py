@@ -116,7 +116,7 @@ def single_entries(entry: Undecided, query: Query) -> Iterator[tuple[Undecided, 
             columns, rows = [k - columns[0] for k in columns], [k - rows[0] for k in rows]
             (columns if direction.endswith("x") else rows)[LOCATORS] = 0
         name, way = alone[direction]
-        single = evolve(query, toolkit=way, arrangements=None, ranking=None, best=None, listing=None)
+        single = evolve(query, toolkit=way, types=None, rank_by=None, best=None, listing=None)
         holes = tuple(faces), tuple(columns), tuple(rows)
         yield Undecided(f"{name} {direction}", *holes, entry.theta_deg, entry.reason, entry.reach_deg), single
 
@@ -156,7 +156,7 @@ def groups_of(entry: Undecided, query: Query) -> list[list[int]]:
 
 def written_fault(entry: Undecided, query: Query, outline: BallOutline) -> str:
     """What is wrong with the whole numbers and the words of an entry; empty when nothing is."""
-    if entry.type not in [one.title for one in query.toolkit.arrangements if one.name in query.arrangements]:
+    if entry.type not in [one.title for one in query.toolkit.arrangements if one.name in query.types]:
         return f"is of type {entry.type}, which is not asked for"
     if entry.reason not in REASONS:
         return "is undecided for a reason that is none"

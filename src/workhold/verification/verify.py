@@ -360,7 +360,14 @@ def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verifi
     faults = [
         *listing.faults,
         *account_faults(listing, turning.order),
-        *order_faults(everything, query, judge.hardware, listing.least_effective_error, listing.is_whole),
+        *order_faults(
+            everything,
+            query,
+            judge.hardware,
+            listing.least_effective_error,
+            listing.is_whole,
+            listing.is_chosen,
+        ),
         *pattern_faults(everything, query),
         *seat_faults(listing, refuted),
         *stock_faults(query),

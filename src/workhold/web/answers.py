@@ -300,7 +300,7 @@ def fixture_answer(
         "theta_deg": fixture.pose.theta_deg,
         "x": fixture.pose.x,
         "y": fixture.pose.y,
-        "jaw_separation": fixture.jaw_separation,
+        "jaw_separation": fixture.travel,
         "pegs": [[peg.x, peg.y] for peg in fixture.pegs],
         "forces": [finite(peg.force) for peg in fixture.pegs],
         "carriers": moved_back(carriers_answer(shown(stands, toolkit, workpiece), stands), placed),

@@ -61,7 +61,7 @@ class FamilyForm(Form):
         ranking = asked_ranking(self.ranking, self.prefer, ()) or usual
         tolerance = None if self.tolerance is None else self.tolerance.tolerance()
         parts = [form.workpiece(most_segments) for form in self.workpieces]
-        asked = given_in(self, OF_FAMILY) | {"ranking": ranking, "tolerance": tolerance}
+        asked = given_in(self, OF_FAMILY) | {"rank_by": ranking, "tolerance": tolerance}
         return tuple((part.name, Query(part, toolkit, self.types, **asked)) for part in parts)
 
 

@@ -278,7 +278,7 @@ def seating_answer(held: Held, seating: Seating | ByHand, unit: str) -> dict[str
     assert travel is not None
     # Of what clamps by opening, pegs that meet are the end.
     end = travel.most if seating.clamping > 0 and travel.most is not None else inf
-    widest = min(Pattern.of(held[0], held[2]).widest, end) - seating.clamping * held[0].jaw_separation
+    widest = min(Pattern.of(held[0], held[2]).widest, end) - seating.clamping * held[0].travel
     return {
         **seating.as_fields(),
         "own": seats.index(words.own),
@@ -311,7 +311,7 @@ def close(payload: ClosingOrder, order: Order) -> dict[str, Any] | None:
     )
     if order.cancel.is_set():
         return None
-    opened = [seating.clamping * (travelled - fixture.jaw_separation) for travelled in closed.travels]
+    opened = [seating.clamping * (travelled - fixture.travel) for travelled in closed.travels]
     return {
         "way": [[one.theta_deg, one.x, one.y, more] for one, more in zip(closed.poses, opened, strict=True)],
         "ending": closed.ending,

@@ -132,6 +132,7 @@ class RestrictionsForm(Form, RestrictionsPart):
     avoid: list[Annotated[int, Field(ge=0, le=MOST_VERTICES)]] = Field(default=[], max_length=MOST_VERTICES)
     zones: list[LoopForm] = Field(default=[], max_length=MOST_RANGES)
     angles: list[Point] = Field(default=[], max_length=MOST_RANGES)
+    touch: list[Annotated[int, Field(ge=0, le=MOST_VERTICES)]] = Field(default=[], max_length=MOST_VERTICES)
 
 
 class ToleranceForm(Form, TolerancePart):
@@ -177,6 +178,7 @@ class SearchForm(Form):
     workpiece: WorkpieceForm
     types: list[Name] | None = Field(default=None, max_length=10)
     restrictions: RestrictionsForm = RestrictionsForm()
+    max_location_error: Annotated[float, Field(gt=0, le=LARGEST)] | None = None
     ranking: list[Name] | None = Field(default=None, max_length=10)
     prefer: Name | None = None
     tolerance: ToleranceForm | None = None
@@ -243,7 +245,7 @@ class ExploreForm(SearchForm):
                 evolve(
                     asked,
                     toolkit=toolkit,
-                    arrangements=self.types,
+                    types=self.types,
                     tolerance=asked.tolerance if self.tolerance else tolerance,
                 ),
             )

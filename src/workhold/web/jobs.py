@@ -146,7 +146,7 @@ class ServerJob:
             "best": 0 if over else self.best,
             "listed": 0 if result is None else len(result),
             "arrangements": [] if self.kind != "design" else arrangements_answer(self.queries[0][1].toolkit),
-            "ranking": None if result is None else list(result.query.ranking),
+            "ranking": None if result is None else list(result.query.rank_by),
             "complete": complete,
             "notes": list(map(str, self.notes)),
             "proof": None if listed is None or listed.proof is None else proof_answer(listed.proof),

@@ -111,7 +111,7 @@ def set_answer(found: Supports, triple: Triple) -> dict[str, Any]:
     """
     fixture, clamp, loaded = found.fixture, triple.clamp, bool(found.loads)
     corners = np.array([(pad.x, pad.y) for pad in triple.supports])
-    moves = triple.travel is not None and abs(triple.travel - fixture.jaw_separation) > 1e-6
+    moves = triple.travel is not None and abs(triple.travel - fixture.travel) > 1e-6
 
     def placed(x: float, y: float) -> list[float]:
         return [float(value) for value in fixture.pose.apply(x, y)]

@@ -153,7 +153,7 @@ def test_plates_that_nearly_meet_have_notches() -> None:
     """A jaw whose last column is nearer to the other jaw than its radius: notches in its side, of the exact area."""
     fixture, part, _ = held("vise")
     vise = Vise((10, 9), 3, 2.5)
-    near = evolve(fixture, jaw_separation=4.0)
+    near = evolve(fixture, travel=4.0)
     plates = [body for body in fixture_bodies(near, part, vise, SIZES) if body.kind == "plate"]
     away = 0.48 * 4.0
     lost = 2.5**2 * (pi - acos(away / 2.5)) + away * sqrt(2.5**2 - away**2)
@@ -172,7 +172,7 @@ def test_plates_that_nearly_meet_have_notches() -> None:
 def test_holes_that_would_touch_are_a_little_smaller(separation: float | None) -> None:
     """Holes half a pitch in radius, and holes that reach just to the side of their plate, leave a film all around."""
     fixture, part, toolkit = held("touching holes" if separation is None else "vise")
-    fixture = fixture if separation is None else evolve(fixture, jaw_separation=separation)
+    fixture = fixture if separation is None else evolve(fixture, travel=separation)
     for body in fixture_bodies(fixture, part, toolkit, SIZES):
         if body.kind != "plate":
             continue

@@ -23,7 +23,7 @@ def test_every_row_is_a_fixture(tmp_path: Path) -> None:
         assert row["type"] == fixture.type
         assert float(row["theta_deg"]) == pytest.approx(fixture.pose.theta_deg)
         assert (float(row["x"]), float(row["y"])) == pytest.approx((fixture.pose.x, fixture.pose.y))
-        assert float(row["jaw_separation"]) == pytest.approx(fixture.jaw_separation)
+        assert float(row["jaw_separation"]) == pytest.approx(fixture.travel)
         assert float(row["closure_margin"]) == pytest.approx(fixture.quality["closure_margin"])
         for k, peg in enumerate(fixture.pegs, 1):
             assert (row[f"peg{k}_hole"], row[f"peg{k}_jaw"]) == (peg.hole, peg.carrier)

@@ -43,7 +43,7 @@ def test_either_form_gives_the_bytes_of_the_other(kind: str, rapid: str, tmp_pat
     for form in ("json", "npz"):
         assert (tmp_path / f"a.{form}").read_bytes() == (tmp_path / f"b.{form}").read_bytes()
     asked, read = result.query, read_result(tmp_path / "a.json").query
-    assert (read.peg_height, read.ranking) == (asked.peg_height, asked.ranking)
+    assert (read.peg_height, read.rank_by) == (asked.peg_height, asked.rank_by)
     assert read.program is not None and asked.program is not None
     assert read.program.to_dict() == asked.program.to_dict()
 

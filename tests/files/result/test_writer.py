@@ -54,7 +54,7 @@ def test_writing_what_was_read_gives_the_same_bytes(tmp_path: Path, count: int) 
 def test_the_types_asked_for_survive_and_bound_what_is_listed(tmp_path: Path, types: tuple[str, ...]) -> None:
     """A file that says for which types it was asked says so when written again, and may list no other."""
     result = fake_result(6)
-    query, names = attrs.evolve(result.query, arrangements=types), [fixture.type for fixture in result]
+    query, names = attrs.evolve(result.query, types=types), [fixture.type for fixture in result]
     write_result(attrs.evolve(result, query=query), tmp_path / "a.json")
     assert json.loads((tmp_path / "a.json").read_text())["types"] == list(types)
     strange = [number for number, name in enumerate(names, 1) if name not in types]
@@ -86,7 +86,7 @@ def test_the_file_says_what_the_fixture_objects_say(tmp_path: Path) -> None:
     for fixture, entry in zip(result, listed, strict=True):
         assert entry["type"] == fixture.type
         assert entry["pose"] == pytest.approx(attrs.asdict(fixture.pose), abs=1e-9)
-        assert entry["jaw_separation"] == pytest.approx(fixture.jaw_separation, abs=1e-9)
+        assert entry["jaw_separation"] == pytest.approx(fixture.travel, abs=1e-9)
         assert entry["quality"] == pytest.approx(dict(fixture.quality))
         for peg, expected in zip(entry["pegs"], fixture.pegs, strict=True):
             assert list(peg) == ["jaw", "column", "row", "x", "y", "segment", "force"]
@@ -153,7 +153,7 @@ def test_the_keys_of_the_model_are_enough(tmp_path: Path, document: dict[str, An
     (tmp_path / "a.json").write_text(json.dumps(document))
     result = read_result(tmp_path / "a.json")
     assert result.complete
-    assert result.query.arrangements == ("I", "II")
+    assert result.query.types == ("I", "II")
     assert result.found == result.counts
     assert all(
         fixture.pegs[0].carrier == "left" and fixture.pegs[-1].carrier == "right" for fixture in result

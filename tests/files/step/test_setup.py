@@ -200,7 +200,7 @@ def test_a_plate_has_its_locators_and_its_clamp(way: str, bolted: bool) -> None:
     heights = [(round(solid.low[2], 6), round(solid.high[2], 6)) for solid in solids]
     assert sorted(heights) == [*[(-8, 0)] * (1 + bolted), *[(-8, 12)] * 3, (0, 12), (0, 12)]
     body, part = sorted((one for one in solids if round(one.low[2], 6) == 0), key=lambda solid: solid.volume)
-    length = abs(fixture.jaw_separation) if bolted else 0.0
+    length = abs(fixture.travel) if bolted else 0.0
     assert body.volume == pytest.approx(12 * (pi * 25 + 10 * length), rel=1e-9)
     assert distance(body.shape, part.shape) == pytest.approx(0, abs=1e-6)
     axis = BRepBuilderAPI_MakeEdge(gp_Pnt(tip.x, tip.y, 0), gp_Pnt(tip.x, tip.y, 12)).Edge()

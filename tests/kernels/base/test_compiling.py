@@ -49,7 +49,6 @@ def copied(folder: Path) -> Path:
         "conventions.py",
         "errors.py",
         "limits.py",
-        "delegates.py",
         *(f"kernels/{name}.py" for name in ("__init__", *(f"base/{base}" for base in BASE))),
     ):
         shutil.copy(source / name, package / name)

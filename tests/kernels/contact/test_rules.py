@@ -45,7 +45,7 @@ def test_no_record_is_of_three_parallel_lines(kit: Toolkit) -> None:
     """They are most of what a vise would hand on, and the last stage would leave them out one by one."""
     problem = Problem.of(Query(load("widget"), kit))
     search = ToolkitSearch.of(problem)
-    records = np.concatenate(run_blocks(search.blocks(problem.query.arrangements), 1, None, None)[0])
+    records = np.concatenate(run_blocks(search.blocks(problem.query.types), 1, None, None)[0])
     rows = problem.rows[records[:, FEATURES : FEATURES + 4].astype(np.int64)]
     straight, axis = rows[..., IS_ARC] == 0.0, rows[..., AXIS_X] + 1j * rows[..., AXIS_Y]
     for three in combinations(range(4), 3):

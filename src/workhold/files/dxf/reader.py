@@ -26,7 +26,7 @@ from workhold.files.dxf.walk import BlockNesting, DxfWalk
 from workhold.files.outline.chain import Drawing, Placement
 from workhold.files.outline.diagnostics import unit_asked
 from workhold.files.questions import DRAWING_UNIT
-from workhold.limits import real
+from workhold.limits import read_number
 from workhold.units import unit_named
 
 __all__ = ["code_said", "read_document", "read_dxf"]
@@ -197,7 +197,7 @@ def unit_code(document: Any, content: bytes) -> int | str:
 
 def code_said(value: Any) -> int | str:
     """An $INSUNITS as a whole number, or as it is written where it is none."""
-    number = real(value)
+    number = read_number(value)
     return int(number) if isfinite(number) and number == int(number) else str(value)
 
 

@@ -29,6 +29,7 @@ from workhold.files.outline.nesting import as_one, chosen_part
 from workhold.files.part.loaded import Loaded, built, refuse_large
 from workhold.files.questions import DRAWING_UNIT, FIT, by_height, refuse_axis, refuse_fit, refuse_layers
 from workhold.files.text import json_value
+from workhold.model.requirements import number_pairs
 from workhold.model.solid import SolidOutline
 from workhold.units import unit_named
 
@@ -107,8 +108,12 @@ def solid_of(content: Mapping[str, Any]) -> SolidOutline | None:
 
 
 WANTED = (
-    "give the path of a file, a built-in name, or a polygon of shapely, a document of ezdxf, or a sketch, "
-    "face or solid of build123d or CadQuery"
+    "give the path of a file, a built-in name, or a polygon of shapely, an array of corners, a document of "
+    "ezdxf, or a sketch, face or solid of build123d or CadQuery"
+)
+CORNERS = (
+    "give x and y for every corner of one outline, or make the part by Workpiece.from_loops, which takes holes "
+    "and bulges"
 )
 # What an object of a library that wraps Open CASCADE may hold its shape under, and what a builder may.
 HELD = ("_obj", "part", "sketch", "_faces")
@@ -147,11 +152,13 @@ def drawing_of_object(
     The arguments are those of :func:`workhold.load`; ``view`` is how a solid is looked at. A geometry of
     shapely has no unit and is in mm unless one is given. Refuses choices that do not apply to the object.
     """
-    if hasattr(part, "__geo_interface__") and hasattr(part, "geom_type"):
+    is_geometry = hasattr(part, "__geo_interface__") and hasattr(part, "geom_type")
+    if is_geometry or isinstance(part, np.ndarray | list | tuple):
         refuse_axis(view)
         refuse_layers(layers)
         scale = unit_named(unit or usual_unit or "mm").millimetres
-        return ObjectPart(Drawing(tuple(geometry_chains(part, scale))), "polygon", part_number)
+        chains = geometry_chains(part, scale) if is_geometry else (corner_chain(part, scale),)
+        return ObjectPart(Drawing(tuple(chains)), "polygon", part_number)
     if hasattr(part, "modelspace") and hasattr(part, "header"):
         from workhold.files.dxf.reader import code_said, read_document
 
@@ -199,10 +206,20 @@ def geometry_chains(geometry: Any, scale: float) -> Iterator[Chain]:
     elif kind in ("LinearRing", "LineString"):
         corners = [(scale * float(x), scale * float(y)) for x, y, *_ in geometry.coords]
         if len(corners) > 1:
-            labels = tuple(f"corner {k} of a {kind}" for k in range(len(corners) - 1))
-            yield Chain(tuple(corners), (0.0,) * (len(corners) - 1), labels)
+            yield chain_of(corners, kind)
     else:
         raise InputError(f"a {kind} has no outline: give a polygon.")
+
+
+def chain_of(corners: Sequence[tuple[float, float]], kind: str) -> Chain:
+    labels = tuple(f"corner {k} of a {kind}" for k in range(len(corners) - 1))
+    return Chain(tuple(corners), (0.0,) * (len(corners) - 1), labels)
+
+
+def corner_chain(points: Any, scale: float) -> Chain:
+    """The closed chain in mm of an array of corners; refuses arrays that are none."""
+    corners = [(scale * x, scale * y) for x, y in number_pairs(points, "a corner of an outline", CORNERS)]
+    return chain_of([*corners, *corners[:1]] if corners[:1] != corners[-1:] else corners, "polygon")
 
 
 def wrapped_shapes(part: Any) -> Iterator[Any]:

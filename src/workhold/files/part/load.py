@@ -28,12 +28,14 @@ from workhold.files.questions import (
     PEG_HEIGHT,
     UnitAskedError,
     by_height,
+    layers_given,
     number_or_name,
     refuse_axis,
     refuse_layers,
     worded,
 )
 from workhold.fixels.toolkit import Toolkit
+from workhold.limits import real
 from workhold.model.workpiece import Workpiece
 from workhold.units import drawing_unit
 
@@ -45,7 +47,7 @@ def load(
     *,
     name: str | None = None,
     unit: str | None = None,
-    layers: Sequence[str] | None = None,
+    layers: str | Sequence[str] | None = None,
     part_number: int | str | None = None,
     join_tolerance: float = 1e-3,
     fit: float | None = None,
@@ -62,12 +64,13 @@ def load(
     Parameters
     ----------
     part : path of a .json, .dxf, .svg or .step file, or a built-in name such as ``widget``; a file wins. Or a
-        geometry of shapely, a document of ezdxf, or a sketch, a face or a solid of build123d or CadQuery.
+        geometry of shapely, an array (N, 2) of the corners of an outline, a document of ezdxf, or a sketch, a
+        face or a solid of build123d or CadQuery.
     name : what to call the part; if None the file's name, before it that of the solid where there are more.
     unit : "mm", "cm", "m" or "inch"; needed for drawings that do not say, and overrides those that do. Of an
-        SVG drawing in pixels how many make an inch: "px72", "px90", "px96". A geometry of shapely is in mm if
-        None.
-    layers : the DXF layers to read, in any mixture of capitals; all visible ones when None.
+        SVG drawing in pixels how many make an inch: "px72", "px90", "px96". A geometry of shapely and an array
+        are in mm if None.
+    layers : the DXF layers to read, in any mixture of capitals, one or several; all visible ones when None.
     part_number : which part to take of a drawing with several, from 1 by decreasing area; the largest when
         None. Solids of a STEP file have numbers by decreasing volume, and may have names.
     join_tolerance : largest gap between loose ends to close, in mm.
@@ -127,7 +130,7 @@ def read_workpiece(
     *,
     unit: str | None = None,
     usual_unit: str | None = None,
-    layers: Sequence[str] | None = None,
+    layers: str | Sequence[str] | None = None,
     part_number: int | str | None = None,
     join_tolerance: float = 1e-3,
     fit: float | None = None,
@@ -155,10 +158,14 @@ def read_workpiece(
     InputError
         For a part that cannot be found, read or used, naming the place.
     """
-    if not (isfinite(join_tolerance) and join_tolerance >= 0):
+    if not (isfinite(real(join_tolerance, "the join tolerance")) and join_tolerance >= 0):
         raise InputError(
             f"The join tolerance {join_tolerance} is not usable: give a length in mm, 0 or more."
         )
+    lengths = {"fit": fit, "section": section, "peg height": peg_height, "head room": head_room}
+    for words, length in (lengths | {"least band": least_band}).items():
+        if length is not None:
+            real(length, words)
     checked_fit(fit)
     for name in (unit, usual_unit):
         if name is not None:
@@ -166,7 +173,7 @@ def read_workpiece(
     options: dict[str, Any] = {
         "unit": unit,
         "usual_unit": usual_unit,
-        "layers": layers,
+        "layers": layers_given(layers),
         "part_number": number_or_name(part_number),
         "fit": fit,
         "axis": axis,

@@ -97,7 +97,8 @@ def read_program_with_calls(
         Naming the file and the line of what cannot be read.
     """
     path = Path(path)
-    height = height_of(z_zero, thickness)
+    height, origin = height_of(z_zero, thickness), (real(zero[0], "zero"), real(zero[1], "zero"))
+    real(clearance, "clearance")
     if unit is not None and unit not in ("mm", "inch"):
         raise InputError(f"the unit '{unit[:20]}' is not one of a program: give mm or inch.")
     if whole_numbers not in ("units", "thousandths"):
@@ -106,7 +107,7 @@ def read_program_with_calls(
             "one of them."
         )
     begin = None if start is None else place_of(start)
-    cut_from = Stock.of(stock, None if thickness is None else real(thickness))
+    cut_from = Stock.of(stock, None if thickness is None else real(thickness, "thickness"))
     try:
         content = read_limited(path, LIMITS["program"])
         listing = with_calls(program_text(decoded(content)))
@@ -126,7 +127,7 @@ def read_program_with_calls(
         name=path.name,
         sha256=sha256(content).hexdigest(),
         unit="inch" if first is UNITS["20"] else "mm",
-        zero=(real(zero[0]), real(zero[1])),
+        zero=origin,
         z_zero=height,
         clearance=clearance,
         rapid=rapid,
@@ -155,21 +156,21 @@ def height_of(z_zero: ZZero, thickness: float | None) -> float:
     if z_zero == "bottom":
         return 0.0
     if z_zero == "top":
-        if thickness is None or not (isfinite(real(thickness)) and thickness > 0):
+        if thickness is None or not (isfinite(real(thickness, "thickness")) and thickness > 0):
             raise InputError(
                 "the program's Z0 is the top of the part, and how thick the part is, is not known: give its "
                 "thickness, or z_zero as a height."
             )
         return real(thickness)
-    height = real(z_zero)
-    if not isfinite(height):
+    other: object = z_zero
+    if isinstance(other, str) or not isfinite(height := real(other, "z_zero")):
         raise InputError("z_zero is not a height: give top, bottom, or a length above the part's lower side.")
     return height
 
 
 def place_of(start: Sequence[float]) -> Place:
     """The place of the tip at the start in mm; refuses one that is none."""
-    values = tuple(real(value) for value in start)
+    values = tuple(real(value, "the start of the program") for value in start)
     if len(values) != 3 or not all(isfinite(value) for value in values):
         raise InputError("the start of the program is no place: give X, Y and Z in mm, from its own zero.")
     for value in values:

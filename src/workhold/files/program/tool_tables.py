@@ -29,7 +29,7 @@ from workhold.errors import InputError
 from workhold.files.budget import LIMITS, Budget
 from workhold.files.tables import SAVED, table_of
 from workhold.files.text import read_text, toml_table
-from workhold.limits import real
+from workhold.limits import read_number
 from workhold.model.cutting_tool import CuttingData, Cylinder, Tool
 from workhold.units import Unit, unit_named
 
@@ -100,7 +100,7 @@ def tool_of_fields(number: int, fields: Mapping[str, Any], place: str, unit: Uni
     lengths = {}
     for key in LENGTHS:
         if fields.get(key) is not None:
-            value = real(fields[key])
+            value = read_number(fields[key])
             if isinstance(fields[key], bool) or not (isfinite(value) and value > 0):
                 raise InputError(f"{place}: {key} is not a length above 0: give a number.")
             lengths[key] = unit.length(value)
@@ -127,7 +127,7 @@ def cutting_of(fields: Mapping[str, Any], unit: Unit) -> CuttingData:
         given.setdefault("teeth", fields["flutes"])
     for key in ("cut_depth", "cut_width"):
         if key in given:
-            given[key] = unit.length(real(given[key]))
+            given[key] = unit.length(read_number(given[key]))
     if not given.keys() & {"cutting_force", "power", "material"}:
         given = {key: value for key, value in given.items() if key not in UNSURE or is_usable(key, value)}
     return CuttingData(**given)

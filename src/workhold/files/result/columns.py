@@ -9,8 +9,9 @@ the types; fixtures are read, and checked, when they are looked at.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
+from threading import Event
 from typing import Any
 
 import numpy as np
@@ -88,7 +89,16 @@ def write_columns(result: Result, path: str | Path) -> None:
     ColumnsSink(Path(path)).receive(result, len(result), [result.table])
 
 
-def answer_to_file(query: Query, path: str | Path, *, overwrite: bool = False, **watching: Any) -> Result:
+def answer_to_file(
+    query: Query,
+    path: str | Path,
+    *,
+    overwrite: bool = False,
+    threads: int | None = None,
+    progress: Callable[[float, int], None] | None = None,
+    cancel: Event | None = None,
+    preview: Callable[[Result], None] | None = None,
+) -> Result:
     """Finds every fixture that a query asks for, however many, and writes them in columns.
 
     No more than some 100 MB of fixtures are in memory at a time. What is being sorted is kept beside the
@@ -96,8 +106,10 @@ def answer_to_file(query: Query, path: str | Path, *, overwrite: bool = False, *
 
     Parameters
     ----------
+    query : what is asked.
+    path : of the file, whose name ends in .npz.
     overwrite : whether a file that workhold has not written may be replaced.
-    watching : threads, progress, cancel and preview as ``workhold.answer`` takes them.
+    threads, progress, cancel, preview : as :func:`workhold.answer` takes them.
 
     Returns
     -------
@@ -115,7 +127,14 @@ def answer_to_file(query: Query, path: str | Path, *, overwrite: bool = False, *
     refuse_other_ending(path, [".npz"], "a result file in columns")
     refuse_output(path, force=overwrite)
     with plain_errors(path):
-        answer(query, sink=ColumnsSink(path), **watching)
+        answer(
+            query,
+            sink=ColumnsSink(path),
+            threads=threads,
+            progress=progress,
+            cancel=cancel,
+            preview=preview,
+        )
     return read_columns(path)
 
 
@@ -163,7 +182,7 @@ def read_columns(path: Path) -> Result:
             f"{path}: the seating of {len(seatings)} fixtures is stated, but {len(result)} are listed."
         )
     # The pose decides which of the seats is the fixture's own.
-    poses = [fixture.pose for fixture in result[: len(seatings)]]
+    poses = [result[place].pose for place in range(len(seatings))]
     seating = [
         checked_seating(one, pose, path, k)
         for k, (one, pose) in enumerate(zip(seatings, poses, strict=True), 1)

@@ -158,9 +158,10 @@ class RestrictionsPart(FormPart):
     avoid: list[int] = []
     zones: list[list[list[float]]] = []
     angles: list[Pair] = []
+    touch: list[int] = []
 
     def restrictions(self) -> Restrictions:
-        return Restrictions(self.avoid, [*map(zone_of, self.zones)], self.angles)
+        return Restrictions(self.avoid, [*map(zone_of, self.zones)], self.angles, self.touch)
 
 
 class FitPart(FormPart):
@@ -304,7 +305,7 @@ class Head(FormPart):
             toolkit,
             self.types,
             restrictions=self.restrictions.restrictions(),
-            ranking=["closure_margin"] if self.ranking is None else self.ranking,
+            rank_by=["closure_margin"] if self.ranking is None else self.ranking,
             tolerance=None if self.tolerance is None else self.tolerance.tolerance(),
             loads=(part.load() for part in self.loads),
             program=self.asked_program(),

@@ -162,7 +162,7 @@ def refuse_faulty(table: FixtureTable, query: Query, path: Path, places: Sequenc
     if len(table) == 0:
         return
     toolkit, refuse = query.toolkit, partial(refuse_rows, path=path, places=places)
-    asked = [number for number, one in enumerate(toolkit.arrangements) if one.name in query.arrangements]
+    asked = [number for number, one in enumerate(toolkit.arrangements) if one.name in query.types]
     refuse(~np.isin(table.arrangement, asked), "is of a type that was not asked for")
     jaw = toolkit.peg_carriers(table.arrangement)
     for number, carrier in enumerate(toolkit.carriers):

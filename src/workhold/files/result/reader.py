@@ -77,7 +77,11 @@ class Columns:
 
 
 def read_result(path: str | Path) -> Result:
-    """Reads a result file.
+    """Reads a result file in JSON or in columns.
+
+    Parameters
+    ----------
+    path : of the file, which :func:`workhold.save` or the command has written.
 
     Raises
     ------

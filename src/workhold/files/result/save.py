@@ -17,8 +17,12 @@ FORMS = ("json", "csv", "npz")
 def save(result: Result, path: str | Path, form: str | None = None, *, overwrite: bool = False) -> None:
     """Writes a result file; an earlier one of that name is replaced only when all went well.
 
+    Angles are rounded to 1e-10 degrees and lengths to 1e-9 mm, so a result that is opened again differs from the
+    one saved in the last digits.
+
     Parameters
     ----------
+    path : of the file.
     form : "json" for exchange, "npz" for columns, "csv" for a spreadsheet; None lets the name's ending
         decide.
     overwrite : whether a file that workhold has not written may be replaced.

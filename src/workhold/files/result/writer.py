@@ -229,14 +229,15 @@ def asked_entry(query: Query, with_pieces: bool = True) -> dict[str, Any]:
     """What a query asks about a workpiece, as it is written; see :func:`head`."""
     asked = {
         **toolkit_entry(query.toolkit),
-        "types": list(query.arrangements),
+        "types": list(query.types),
         "contact_margin": float(query.contact_margin),
         "restrictions": {
             "avoid": [int(face) for face in query.restrictions.avoid],
             "zones": [(zone.loop + 0.0).tolist() for zone in query.restrictions.zones],
             "angles": [[float(low), float(high)] for low, high in query.restrictions.angles],
+            **({"touch": list(query.restrictions.touch)} if query.restrictions.touch else {}),
         },
-        "ranking": list(query.ranking),
+        "ranking": list(query.rank_by),
         "tolerance": asdict(query.tolerance),
         "loads": [load_entry(load) for load in query.loads],
     }

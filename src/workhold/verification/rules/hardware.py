@@ -201,9 +201,9 @@ class ToolkitRules:
     def travels(self, fixture: Fixture) -> dict[str, float]:
         """How far in mm what moves has travelled, by what each travel is called."""
         if not self.clamps:
-            return {"opening": fixture.jaw_separation}
+            return {"opening": fixture.travel}
         if self.clamps == 1:
-            return {f"place of {self.names[-1]}'s tip on its line": fixture.jaw_separation}
+            return {f"place of {self.names[-1]}'s tip on its line": fixture.travel}
         named = zip(self.names[-self.clamps :], fixture.travels, strict=True)
         return {f"place of the tip of {name} on its line": travel for name, travel in named}
 
@@ -238,7 +238,7 @@ class ToolkitRules:
             travelled(peg, self.carriers.get(peg.carrier, self.lattices[0])) for peg in fixture.pegs[-clamps:]
         ]
         pair = None if fixture.pair is None else evolve(fixture.pair, travels=(moved[0], moved[1]))
-        return evolve(fixture, jaw_separation=moved[0], pair=pair)
+        return evolve(fixture, travel=moved[0], pair=pair)
 
     def place(self, peg: Peg) -> Point:
         """Centre of a peg's hole without any travel, in mm."""

@@ -1,20 +1,17 @@
-"""Methods of the model that end in layers above it work whatever was imported first, and cost nothing before."""
+"""Methods of the model that end in rooms above it work whatever was imported first, and cost nothing before."""
 
 from __future__ import annotations
 
-import ast
 import subprocess
 import sys
+import textwrap
 from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 
 import workhold
-from workhold import delegates
 
-# Where methods end in delegates.
-ROOMS = [Path(delegates.__file__).parent / room for room in ("model", "fixels")]
 MAKING = """
 import workhold
 from workhold.files.result.reader import read_result
@@ -48,7 +45,7 @@ ORDERS = (
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with a result."""
-    made = tmp_path_factory.mktemp("delegates")
+    made = tmp_path_factory.mktemp("methods")
     wedge = workhold.Workpiece.from_loops("wedge", [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]])
     workhold.save(
         workhold.design(wedge, workhold.Vise(pitch=15, columns=1, peg_radius=2), best=2), made / "wedge.json"
@@ -72,26 +69,30 @@ def test_every_method_works_whatever_was_imported_first(first: str, folder: Path
 
 
 def test_the_package_alone_imports_next_to_nothing() -> None:
-    """Of its own modules only the version and the register of delegates, and no library."""
+    """Of its own modules only the version, and no library."""
     code = "import sys; before = set(sys.modules); import workhold; print(*sorted(set(sys.modules) - before))"
     loaded = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True
     ).stdout.split()
     own = [name for name in loaded if name.partition(".")[0] == "workhold"]
-    assert own == ["workhold", "workhold.delegates", "workhold.version"]
+    assert own == ["workhold", "workhold.version"]
     assert {name.partition(".")[0] for name in loaded} <= {"workhold", *sys.stdlib_module_names}
 
 
-def test_what_the_model_asks_for_is_what_is_handed_over() -> None:
-    """Each name that a method asks for is found, no other is handed over, and no module of the model imports by name."""
-    calls = [
-        node
-        for room in ROOMS
-        for path in room.glob("*.py")
-        for node in ast.walk(ast.parse(path.read_text()))
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)
-    ]
-    asked = {ast.literal_eval(call.args[0]) for call in calls if getattr(call.func, "id", "") == "delegate"}
-    assert asked == set(workhold.DELEGATES) == set(delegates.IMPORTERS)
-    assert all(callable(delegates.delegate(name)) for name in asked)
-    assert "import_module" not in {getattr(call.func, "id", "") for call in calls}
+@pytest.mark.thorough
+def test_methods_are_typed(tmp_path: Path) -> None:
+    """A checker knows what the methods return, and refuses an option that there is none of."""
+    code = """
+    import workhold
+    result = workhold.design(workhold.load("widget"), workhold.Vise(pitch=8, columns=1, peg_radius=3))
+    reveal_type(result[0].draw())
+    reveal_type(result[0].supports(12))
+    reveal_type(result.why_none())
+    result[0].save_sheet("a.pdf", papers="a4")
+    """
+    (tmp_path / "asked.py").write_text(textwrap.dedent(code))
+    checked = [sys.executable, "-m", "mypy", "--config-file", "", "--follow-imports=silent", "asked.py"]
+    told = subprocess.run(checked, capture_output=True, text=True, cwd=tmp_path, check=False).stdout
+    for kind in ("presenting.papers.Picture", "support_triples.Supports", "notebook.WhyNone"):
+        assert kind in told
+    assert 'Unexpected keyword argument "papers"' in told

@@ -1,0 +1,299 @@
+"""A set-up that somebody has already: every pose in which the part touches just these pegs and is held.
+
+The toolkit is made as small as the holes allow, all its fixtures are sought there, and those that stand in the
+holes are taken. So what is said of a set-up is as complete as any list.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from math import dist
+
+import numpy as np
+from attrs import evolve, frozen
+from numpy.typing import NDArray
+
+from workhold.contact.problem import Problem
+from workhold.conventions import LEAST_CLOSURE
+from workhold.errors import InputError, listed
+from workhold.fixels.carrier import Carrier, Holes, column_letters, holes_named, letter_of
+from workhold.fixels.contacts import WALL_END
+from workhold.fixels.toolkit import Toolkit
+from workhold.limits import counting_number, thread_count
+from workhold.listing.placing import placeable, placed
+from workhold.model.fixture_table import FixtureTable
+from workhold.model.own_outlines import outline_diameter
+from workhold.model.query import Query
+from workhold.model.requirements import Load, Restrictions, Tolerance
+from workhold.model.result import Result
+from workhold.model.workpiece import Workpiece
+from workhold.search.broken_rules import all_contacts
+from workhold.search.design import answer
+
+__all__ = ["Evaluation", "evaluate"]
+
+CLAMP = "clamp "
+
+
+@frozen(repr=False)
+class Evaluation:
+    """What pegs in some holes do with a part.
+
+    Parameters
+    ----------
+    holes : as they were given.
+    result : the fixtures, one for each pose in which the pegs hold the part, best first. Its toolkit has no more
+        holes than the set-up needs.
+    reason : why there is none, in a sentence; empty where there is one.
+    """
+
+    holes: tuple[str, ...]
+    result: Result
+    reason: str
+
+    @property
+    def holds(self) -> bool:
+        """Whether the pegs hold the part in some pose."""
+        return len(self.result) > 0
+
+    def __repr__(self) -> str:
+        count = len(self.result)
+        poses = f"held in {count} pose{'s' * (count != 1)}" if count else self.reason
+        return f"<Evaluation of {' '.join(self.holes)}: {poses}>"
+
+
+def evaluate(
+    workpiece: Workpiece,
+    toolkit: Toolkit,
+    holes: Sequence[str],
+    *,
+    contact_margin: float = 0.0,
+    restrictions: Restrictions | None = None,
+    tolerance: Tolerance | None = None,
+    loads: Sequence[Load] = (),
+    jaw_force: float | None = None,
+    threads: int | None = None,
+) -> Evaluation:
+    """Judges a set-up: all poses in which the part touches exactly the pegs in these holes and is held by them.
+
+    Parameters
+    ----------
+    workpiece, toolkit : what is held, and in what; lengths in mm.
+    holes : names of the holes of all pegs, as ``peg.hole`` has them, such as "L-A2" of a vise, "B3" of a plate.
+        Of a plate the hole of a clamp may be named as well, as "clamp E2"; else it may be bolted anywhere. Where
+        all pegs stand some holes farther on it is the same set-up.
+    contact_margin, restrictions, tolerance, loads, jaw_force : see :class:`workhold.Query`.
+    threads : how many share the work; None for one on each processor.
+
+    Raises
+    ------
+    InputError
+        For names of no holes, another number of them than the toolkit has pegs, and what a query refuses.
+
+    Examples
+    --------
+    >>> import workhold
+    >>> vise = workhold.Vise(pitch=8, columns=1, peg_radius=3)
+    >>> mine = workhold.evaluate(workhold.load("widget"), vise, ["L-A1", "L-A2", "R-A1", "R-A2"])
+    >>> mine.holds, {peg.hole for peg in mine.result[0].pegs} == set(mine.holes)
+    (True, True)
+    >>> workhold.evaluate(workhold.load("widget"), vise, ["L-A1", "L-A30", "R-A1", "R-A2"]).reason
+    'L-A1 and L-A30 are 232 mm apart, and the part is 61.59 mm across: no pose touches both.'
+    """
+    given = (holes,) if isinstance(holes, str) else tuple(holes)
+    setup = OwnSetUp.of(given, toolkit)
+    query = Query(
+        workpiece,
+        setup.smallest(),
+        contact_margin=contact_margin,
+        restrictions=restrictions,
+        tolerance=tolerance,
+        loads=loads,
+        jaw_force=jaw_force,
+        listing="all" if toolkit.travels > 1 else None,
+    )
+    far = setup.too_far(outline_diameter(query.workpiece))
+    if far:
+        return Evaluation(given, Result(query, FixtureTable.empty(query.toolkit), *no_counts(query)), far)
+    result = answer(query, threads=threads)
+    result = result.choose(setup.matches(result.table, query.toolkit))
+    workers = thread_count(counting_number("threads", threads))
+    return Evaluation(given, result, "" if len(result) else setup.reason(query, workers))
+
+
+def no_counts(query: Query) -> tuple[dict[str, int], dict[str, int]]:
+    counts = dict.fromkeys(query.toolkit.types, 0)
+    return counts, dict(counts)
+
+
+@frozen
+class OwnSetUp:
+    """Pegs and clamps in holes of a toolkit.
+
+    Parameters
+    ----------
+    toolkit : as it is.
+    pegs : on lattices, in the order of :attr:`order`.
+    clamps : where clamps are bolted; empty where that is left open.
+    """
+
+    toolkit: Toolkit
+    pegs: tuple[Holes, ...]
+    clamps: tuple[Holes, ...]
+
+    @classmethod
+    def of(cls, names: Sequence[str], toolkit: Toolkit) -> OwnSetUp:
+        lattices = [carrier for carrier in toolkit.carriers if carrier.has_lattice]
+        for name in names:
+            if not isinstance(name, str):
+                raise InputError(
+                    f"a hole cannot be {name!r}: give names, such as {lattices[0].place_name(1, 2)}."
+                )
+        bolted = [name for name in names if name.lower().startswith(CLAMP)]
+        pegs, clamps = (
+            tuple(hole_in(name.removeprefix(CLAMP), lattices) for name in some)
+            for some in ([name for name in names if name not in bolted], [name.lower() for name in bolted])
+        )
+        moving = toolkit.travels if any(carrier.on for carrier in toolkit.carriers) else 0
+        walls = sum(2 for carrier in toolkit.carriers if carrier.contact is WALL_END)
+        needed = toolkit.peg_count - moving - walls
+        if len(set(pegs)) != needed or len(pegs) != needed or len(clamps) not in (0, moving):
+            also = f", and of {moving} clamp{'s' * (moving > 1)} if wanted" if moving else ""
+            raise InputError(f"{listed(list(names) or ['nothing'])}: give the holes of {needed} pegs{also}.")
+        return cls(toolkit, pegs, clamps)
+
+    @property
+    def has_blocked(self) -> bool:
+        """Whether holes of the toolkit can be blocked."""
+        return hasattr(self.toolkit, "blocked")
+
+    def smallest(self) -> Toolkit:
+        """The toolkit with no more holes than the set-up needs."""
+        pegs, changes = [*self.pegs, *self.clamps], dict[str, object]()
+        rows = 1 + max(hole.row or 0 for hole in pegs)
+        if self.has_blocked:
+            lattices = [carrier for carrier in self.toolkit.carriers if carrier.has_lattice]
+            # Holes above the set-up are not there; where the jaws have an end, the pegs stand where they stand.
+            rows = rows if lattices[0].rows is None else lattices[0].rows
+            free = {(hole.carrier, hole.column, hole.row) for hole in pegs}
+            changes["blocked"] = [
+                Holes(carrier.name, column, row)
+                for carrier in lattices
+                for column in range(carrier.column_count)
+                for row in range(rows)
+                if (carrier.name, column, row) not in free
+            ]
+            changes["rows"] = rows
+        elif self.clamps or not any(carrier.on for carrier in self.toolkit.carriers):
+            lowest = [0 if self.counts_from_wall else min(hole.row or 0 for hole in pegs)]
+            changes["rows"] = rows - lowest[0]
+            if not self.is_beside_wall:
+                columns = [hole.column for hole in pegs]
+                changes["columns"] = max(columns) - min(columns) + 1
+        return self.toolkit.changed(changes) if changes else self.toolkit
+
+    @property
+    def is_beside_wall(self) -> bool:
+        return WALL_END in self.toolkit.contacts
+
+    @property
+    def counts_from_wall(self) -> bool:
+        """Whether rows are counted from a wall, so that pegs farther on are another set-up."""
+        return self.is_beside_wall and any(carrier.on for carrier in self.toolkit.carriers)
+
+    def matches(self, table: FixtureTable, toolkit: Toolkit) -> NDArray[np.bool_]:
+        """Which fixtures (N,) of a table stand in these holes."""
+        wanted = self.pattern([*self.pegs, *(evolve(one, carrier=CLAMP) for one in self.clamps)])
+        found = np.zeros(len(table), np.bool_)
+        for number, (kind, columns, rows) in enumerate(
+            zip(table.arrangement.tolist(), table.column.tolist(), table.row.tolist(), strict=True)
+        ):
+            carriers = [toolkit.carriers[one] for one in toolkit.arrangements[kind].carriers]
+            there = [
+                Holes(carrier.name if carrier.has_lattice else CLAMP, column, row)
+                for carrier, column, row in zip(carriers, columns, rows, strict=True)
+                if carrier.has_lattice or (carrier.on is not None and self.clamps)
+            ]
+            found[number] = self.pattern(there) == wanted
+        return found
+
+    def pattern(self, holes: Sequence[Holes]) -> frozenset[tuple[str, int, int]]:
+        """Holes as far as they make a set-up: of a plate counted from the lowest."""
+        column, row = (
+            (0, 0)
+            if self.has_blocked
+            else (min(hole.column for hole in holes), min(hole.row or 0 for hole in holes))
+        )
+        row = 0 if self.counts_from_wall else row
+        return frozenset((hole.carrier, hole.column - column, (hole.row or 0) - row) for hole in holes)
+
+    def too_far(self, diameter: float) -> str:
+        """The sentence on a peg that is too far from all others of its lattice; empty where none is."""
+        for hole in self.pegs:
+            carrier = self.toolkit.carrier(hole.carrier)
+            at = carrier.place(hole.column, hole.row or 0)
+            others = [
+                (dist(at, carrier.place(one.column, one.row or 0)), name_of(one, carrier))
+                for one in self.pegs
+                if one.carrier == hole.carrier and one != hole
+            ]
+            away, nearest = min(others, default=(0.0, ""))
+            if away > diameter + 2 * carrier.peg_radius:
+                pegs = listed(sorted((name_of(hole, carrier), nearest)))
+                return (
+                    f"{pegs} are {away:.4g} mm apart, and the part is {diameter:.4g} mm across: no pose touches "
+                    "both."
+                )
+        return ""
+
+    def reason(self, query: Query, threads: int) -> str:
+        """Why no fixture stands in these holes, in a sentence."""
+        named = listed([name_of(hole, self.toolkit.carrier(hole.carrier)) for hole in self.pegs])
+        if self.is_beside_wall or query.toolkit.travels > 1:
+            return f"No pose of {query.workpiece.name} touches {named} and all else, and is held by them."
+        poses, pulls = 0, 4
+        for way in query.toolkit.ways:
+            problem = Problem.of(evolve(query, toolkit=way))
+            contacts = all_contacts(problem, threads)
+            contacts = contacts.take(placeable(contacts.candidates, problem))
+            contacts = contacts.take(self.matches(placed(contacts.candidates, problem), way))
+            poses += len(contacts.margin)
+            loose = (contacts.null < LEAST_CLOSURE).sum(axis=1)
+            pulls = min(pulls, int(loose.min(initial=4)))
+        if not poses:
+            return f"No pose of {query.workpiece.name} touches {named} at the same time, within their faces."
+        how = "in one pose" if poses == 1 else f"in {poses} poses"
+        why = (
+            "what moves would have to pull"
+            if pulls == 0
+            else f"{'one contact' if pulls == 1 else f'{pulls} contacts'} would have to pull the part instead of "
+            "pressing on it"
+        )
+        return f"{query.workpiece.name} touches {named} {how}, and is held in none: {why}."
+
+
+def name_of(hole: Holes, carrier: Carrier) -> str:
+    return carrier.place_name(hole.column, hole.row or 0)
+
+
+def hole_in(name: str, lattices: Iterable[Carrier]) -> Holes:
+    """The hole of a name; refuses one that there is not, and a column."""
+    carriers = {carrier.name: carrier for carrier in lattices}
+    first = next(iter(carriers.values()))
+    if letter_of(first.name):
+        hole = holes_named(name, carriers, first.noun)
+    else:
+        # The holes of the only lattice are named without a letter for it.
+        try:
+            hole = evolve(holes_named(f"L-{name}", ("left",), first.noun), carrier=first.name)
+        except InputError as error:
+            raise InputError(f"{name!r} names no hole: give column letter and row, such as B3.") from error
+    carrier = carriers[hole.carrier]
+    if hole.row is None:
+        raise InputError(
+            f"{name} is a column: give a hole of it, such as {carrier.place_name(hole.column, 2)}."
+        )
+    if hole.column >= (carrier.columns or hole.column + 1) or hole.row >= (carrier.rows or hole.row + 1):
+        last = "" if carrier.columns is None else f" up to {column_letters(carrier.columns - 1)}"
+        raise InputError(f"there is no hole {name}: the {carrier.noun} has columns{last}.")
+    return hole
