@@ -224,7 +224,7 @@ function caughtWords(opening) {
 
 /** Mark some pegs, and no others. @param {number[]} pegs */
 function markEntered(pegs) {
-  for (const peg of byId("drawing-fixture").querySelectorAll(".peg")) {
+  for (const peg of byId("drawing-fixture").querySelectorAll("[data-peg]")) {
     peg.classList.toggle("entered", pegs.includes(Number(/** @type {HTMLElement} */ (peg).dataset.peg)));
   }
 }
