@@ -7,7 +7,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from attrs import asdict
+from attrs import asdict, evolve
 
 from workhold.drawing.bench import bench_of
 from workhold.drawing.panel import arrangement_words
@@ -175,7 +175,7 @@ def fixture_answer(
     move = middle_move(fixture, toolkit, workpiece)
     stands = moved_on(fixture, toolkit, move)
     placed = [steps * pitch for steps, pitch in zip(move, toolkit.plates[0].pitch, strict=True)]
-    bench = bench_of(stands, workpiece, toolkit)
+    bench = evolve(bench_of(stands, workpiece, toolkit), is_exact=True)
     dx, dy = placed
     return {
         **row_answer(fixture, workpiece, toolkit, no_edge(workpiece, toolkit)),

@@ -229,7 +229,7 @@ def test_the_keys_are_enough(walk: Walk) -> None:
     page.wait_for_selector('#list [aria-posinset="1"][aria-selected="true"]')
     page.keyboard.press("ArrowDown")
     walk.seen("#place:has-text('2 of')")
-    page.focus("#drawing-fixture .peg")
+    page.focus("#drawing-fixture [data-peg]")
     assert walk.holes()[0] in walk.seen("#peg-words").inner_text()
     page.keyboard.press("Tab")
     assert page.evaluate("document.activeElement.classList.contains('peg')")

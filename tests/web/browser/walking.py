@@ -21,6 +21,22 @@ POINT_ON_PAGE = """async ([view, x, y]) => {
 }"""
 
 
+# After something is done: the ends of a clamp's body and the middle of its bolt, in mm.
+CLAMP_ENDS = """async (before) => {
+  const { fixtureDrawing } = await import("/static/stage-panel.js");
+  const back = fixtureDrawing.map.inverse();
+  (0, eval)(before);
+  const body = document.querySelector("#drawing-fixture .clamp-body").getAttribute("d");
+  const [x0, y0, x1, y1] = body.match(/-?[\\d.]+/g).map(Number);
+  const bolt = document.querySelector("#drawing-fixture .bolt");
+  const places = [[x0, y0], [x1, y1], [Number(bolt.getAttribute("cx")), Number(bolt.getAttribute("cy"))]];
+  return places.flatMap(([x, y]) => {
+    const point = back.transformPoint({ x, y });
+    return [point.x, point.y];
+  });
+}"""
+
+
 @define(eq=False)
 class Walk:
     """A page of the browser, and the server behind it.

@@ -15,7 +15,7 @@ import { Viewport } from "./viewport.js";
 /** Units of a picture for each pixel. */
 export const UNITS = 1.15;
 /** A picture is asked for anew in a frame that is so many times as wide or high as its own. */
-const OTHER = 1.25;
+const OTHER = 1.12;
 /** How far what slides opens before it closes before the user's eyes, as a share of the drawing's width. */
 const OPEN = 0.16;
 
@@ -91,9 +91,10 @@ export class FixtureDrawing {
     this.svg.setAttribute("aria-label", this.words());
   }
 
-  /** See the whole. */
+  /** See the whole picture. */
   fit() {
-    this.view.fit(this.whole, this.rim);
+    const [from, to] = [[0, this.size[1]], [this.size[0], 0]].map(([x, y]) => this.map.inverse().transformPoint({ x, y }));
+    this.view.fit([from.x, from.y, to.x, to.y], [0, 0, 0, 0]);
   }
 
   /** Show how far the cutter is to keep off the pegs. */
@@ -155,10 +156,13 @@ export class FixtureDrawing {
     this.kept = all(".kept").map((group) => ({ group, at: numbers(group.dataset.at ?? ""), axes: group.dataset.axes ?? "", number: Number(group.dataset.number), step: Number(group.dataset.step ?? 0) }));
     this.movers = all(".moves").map(moverOf);
     this.most = Math.min(...all("[data-most]").map(({ dataset }) => Number(dataset.most)));
+    this.travels = all(".travel").map(travelOf);
     this.pegs = all("[data-peg]");
     for (const peg of this.pegs) this.listen(peg, Number(peg.dataset.peg));
     this.added = [];
     this.over = draw("g");
+    this.arrows = draw("g");
+    all(".forces")[0].after(this.arrows);
     this.view.world.replaceChildren(picture);
     this.add();
   }
@@ -177,9 +181,9 @@ export class FixtureDrawing {
     if (clearance !== null) {
       for (const peg of this.pegs) {
         const k = Number(peg.dataset.peg);
-        const { x, y } = map.transformPoint({ x: row.pegs[k][0], y: row.pegs[k][1] });
+        const [cx, cy] = row.pegs[k];
         const radius = toolkit.body_radius ?? row.carriers.find(({ pegs }) => pegs.includes(k))?.peg_radius ?? 0;
-        const circle = draw("circle.keep-out", { cx: x, cy: y, r: (radius + clearance) * map.a });
+        const circle = draw("g", { transform: String(map) }, draw("circle.keep-out", { cx, cy, r: radius + clearance }));
         peg.prepend(circle);
         this.added.push(circle);
       }
@@ -237,6 +241,9 @@ export class FixtureDrawing {
       group.setAttribute("transform", `matrix(${across} 0 0 ${down} ${x * (1 - across)} ${y * (1 - down)})`);
       if (step) show(group, number % Math.max(1, Math.ceil(step * share)) === 0);
     }
+    // Arrows are drawn in pixels, below the names of holes.
+    const { k, x: left, y: foot } = this.view;
+    this.arrows.setAttribute("transform", String(this.map.multiply(new DOMMatrix([k, 0, 0, -k, left, foot]).inverse())));
     drawOver(this);
     this.suit();
   }
@@ -261,11 +268,7 @@ export class FixtureDrawing {
       if ((x || y) && !bars.length) group.setAttribute("transform", `translate(${x} ${y})`);
       else group.removeAttribute("transform");
     }
-    for (const travel of this.view.world.querySelectorAll(".travel")) {
-      const text = /** @type {SVGElement} */ (travel.querySelector(".dimension-text"));
-      const [x0, y0, x1, y1] = numbers(travel.querySelector(".stretches")?.getAttribute("d") ?? "");
-      text.textContent = `${text.dataset.sign} = ${length(open ? Math.hypot(x1 - x0, y1 - y0) / this.map.a : Number(text.dataset.length))}`;
-    }
+    for (const { sign, length: closed, grows, text } of this.travels) text.textContent = `${sign} = ${length(Math.abs(closed + grows * Math.min(open, this.most)))}`;
     show(this.over, !open);
     this.letter();
   }
@@ -288,6 +291,16 @@ export class FixtureDrawing {
     this.slide(far);
     this.frame = requestAnimationFrame(step);
   }
+}
+
+/**
+ * A length to set: the words of its dimension, and by how much it grows for each mm that what slides is open.
+ * @param {SVGElement} group
+ */
+function travelOf(group) {
+  const text = /** @type {SVGElement} */ (group.querySelector(".dimension-text"));
+  const { way, bars: [{ at: [x0, y0, x1, y1] }] } = moverOf(/** @type {SVGElement} */ (group.querySelector(".moves")));
+  return { text, sign: text.dataset.sign, length: Number(text.dataset.length), grows: -Math.sign(way[0] * (x1 - x0) + way[1] * (y1 - y0)) };
 }
 
 /**

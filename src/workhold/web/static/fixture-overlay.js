@@ -19,7 +19,8 @@ export function drawOver(drawing) {
   const load = drawing.open || drawing.lying ? null : drawing.load;
   const arrows = load ? [...forces(drawing).map(({ tail, tip, kind }) => arrow(tail, tip, kind)), ...loadArrow(drawing)] : [];
   const labels = [...(load ? [loadLabel(drawing)] : []), ...(drawing.lying ? [] : padLabels(drawing))];
-  drawing.view.overlay.replaceChildren(...arrows, ...placed(drawing, labels), ...programLabel(drawing), ...drawing.extras());
+  drawing.arrows.replaceChildren(...arrows);
+  drawing.view.overlay.replaceChildren(...placed(drawing, labels), ...programLabel(drawing), ...drawing.extras());
 }
 
 /** Labels in the first of their places that is free. */

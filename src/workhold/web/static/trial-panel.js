@@ -60,9 +60,10 @@ export function toggleTrial() {
 
 /** See the part with room about it to be moved in, or as it was seen. @param {boolean} wide */
 function look(wide) {
-  const more = wide ? ROOM * armOf(state.part) : 0;
+  const more = ROOM * armOf(state.part);
   const [x0, y0, x1, y1] = fixtureDrawing.whole;
-  fixtureDrawing.view.fit([x0 - more, y0 - more, x1 + more, y1 + more]);
+  if (wide) fixtureDrawing.view.fit([x0 - more, y0 - more, x1 + more, y1 + more], fixtureDrawing.rim);
+  else fixtureDrawing.fit();
 }
 
 /** Leave the part to the fixture. */
