@@ -350,7 +350,7 @@ def test_a_plate_is_drawn_with_its_clamp(walk: Walk, way: str, bolted: bool) -> 
     if bolted:
         tip, stroke = row["pegs"][-1], row["settings"][0]["length"]
         hole = [at - stroke * to for at, to in zip(tip, row["carriers"][-1]["clamping"], strict=True)]
-        assert page.evaluate(CLAMP_ENDS, "") == pytest.approx([*hole, *tip, *hole], abs=1e-3)
+        assert page.evaluate(CLAMP_ENDS, False) == pytest.approx([*hole, *tip, *hole], abs=1e-3)
     words, number = page.inner_text("#pose-words"), f"{row['settings'][0]['length']:.3f} mm".replace("-", "−")
     assert words.startswith("Stroke" if bolted else f"Tip {way[1]}") and number in words
     assert "hole A1" in words and "clamp force" in words

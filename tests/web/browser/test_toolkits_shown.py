@@ -208,10 +208,10 @@ def test_the_clamp_closes(browser: Any, server: RunningServer) -> None:
     walk.until("String(state.selected?.holes) === String(given)", row["holes"])
     moving = "#drawing-fixture .moves[data-peg]"
     page.wait_for_selector(f"{moving}:not([transform])", state="attached")
-    begun = page.evaluate(CLAMP_ENDS, "document.querySelector('#close-vise').click()")
+    begun = page.evaluate(CLAMP_ENDS, True)
     assert begun == pytest.approx([*hole, *back, *hole], abs=1e-3)
     page.wait_for_selector(f"{moving}:not([transform])", state="attached")
-    assert page.evaluate(CLAMP_ENDS, "") == pytest.approx([*hole, *tip, *hole], abs=1e-3)
+    assert page.evaluate(CLAMP_ENDS, False) == pytest.approx([*hole, *tip, *hole], abs=1e-3)
     assert page.locator(moving).count() == 1
     context.close()
     assert walk.troubles == []

@@ -21,11 +21,11 @@ POINT_ON_PAGE = """async ([view, x, y]) => {
 }"""
 
 
-# After something is done: the ends of a clamp's body and the middle of its bolt, in mm.
-CLAMP_ENDS = """async (before) => {
+# The ends of a clamp's body and the middle of its bolt, in mm; as soon as it begins to close where that is wanted.
+CLAMP_ENDS = """async (closes) => {
   const { fixtureDrawing } = await import("/static/stage-panel.js");
   const back = fixtureDrawing.map.inverse();
-  (0, eval)(before);
+  if (closes) document.querySelector("#close-vise").click();
   const body = document.querySelector("#drawing-fixture .clamp-body").getAttribute("d");
   const [x0, y0, x1, y1] = body.match(/-?[\\d.]+/g).map(Number);
   const bolt = document.querySelector("#drawing-fixture .bolt");
