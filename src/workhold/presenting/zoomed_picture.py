@@ -13,18 +13,21 @@ from collections.abc import Sequence
 from functools import reduce
 from math import atan2, ceil, dist
 
+from attrs import evolve
+
+from workhold.conventions import AGREEMENT
 from workhold.drawing.annotation import LabelPlacer
 from workhold.drawing.bench import ARROW, PART_FILL, PEG_FILL, TOUCHED, Bench, face_of, force_arrow
 from workhold.drawing.plan import LONGEST_ARROW, avoid_drawing, draw_flag, draw_tag, face_tag, peg_label
-from workhold.drawing.scene import BLACK, GREY, Box, Scene, View, number, text_width
+from workhold.drawing.scene import BLACK, GREY, Box, LengthUnit, Scene, View, number, text_width
 from workhold.fixels.carrier import column_letters
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Line, Point, Segment, bounding_box
+from workhold.model.clamps import ShownClamp
 from workhold.model.fixture import Fixture
-from workhold.model.shown import Dimension
+from workhold.model.shown import Dimension, Shown
 from workhold.model.workpiece import Workpiece
-from workhold.presenting.moving_picture import draw_ground, draw_peg, moving_group, ways_of
-from workhold.units import MILLIMETRE
+from workhold.presenting.moving_picture import draw_ground, draw_peg, drawn_back, moving_group, ways_of
 
 __all__ = ["draw_small", "draw_zoomed"]
 
@@ -58,6 +61,7 @@ def draw_zoomed(
     str
         SVG text.
     """
+    bench = evolve(bench, shown=with_reached(bench.shown))
     extent, page = bench.extent, Box(0.0, 0.0, *size)
     left, top, right, bottom = rim = NARROW_RIM if size[0] < NARROW else RIM
     view = View.fitting(
@@ -84,6 +88,25 @@ def draw_zoomed(
         taken.append(draw_travel(scene, bench, view, page, place, measured))
     draw_labels(scene, bench, view, page, taken, ways)
     return ET.tostring(scene.element, encoding="unicode")
+
+
+def with_reached(seen: Shown) -> Shown:
+    """What shows, of a clamp that does not reach its tip from its hole its line alone and no length to set.
+
+    Four contacts that are no fixture have such clamps.
+    """
+    lost = {clamp.tip for clamp in seen.clamps if not is_reached(clamp)}
+    clamps = tuple(evolve(clamp, hole=None) if clamp.tip in lost else clamp for clamp in seen.clamps)
+    return evolve(
+        seen, clamps=clamps, measured=tuple(one for one in seen.measured if one.setting.tip not in lost)
+    )
+
+
+def is_reached(clamp: ShownClamp) -> bool:
+    back, travel = drawn_back(clamp), clamp.carrier.travel
+    if back is None or travel is None or travel.most is None:
+        return True
+    return -AGREEMENT <= back <= travel.most - travel.least + AGREEMENT
 
 
 def draw_forces(scene: Scene, bench: Bench, view: View) -> None:
@@ -155,7 +178,7 @@ def draw_travel(scene: Scene, bench: Bench, view: View, page: Box, place: int, m
         x, y = point
         tip.line([(x - 6, y), (x + 14, y)] if upright else [(x, y - 6), (x, y + 14)], GREY, 1.0)
         tip.arrow_head(point, atan2(point[1] - other[1], point[0] - other[0]), GREY, HEAD)
-    words = f"{measured.setting.sign} = {MILLIMETRE.text(measured.setting.length)}"
+    words = f"{measured.setting.sign} = {LengthUnit.mm().words(measured.setting.length)}"
     wide = text_width(words, SETTING, bold=True) + 8
     tight = upright or dist(start, end) < wide + 30
     (x, y), half = ((start[0] + end[0]) / 2, (start[1] + end[1]) / 2), wide / 2

@@ -196,13 +196,10 @@ def test_the_clamp_closes(browser: Any, server: RunningServer) -> None:
     page.select_option("#preset", "clamp-plate-20mm")
     walk.search()
     row = walk.server.client.get(f"/api/jobs/{walk.job()}/fixtures/1").json()
-    (preset,) = (
-        one for one in walk.server.client.get("/api/presets").json() if one["name"] == "clamp-plate-20mm"
-    )
+    travel = walk.server.client.get(f"/api/jobs/{walk.job()}").json()["request"]["toolkit"]["travel"]
     way, tip, stroke = row["carriers"][-1]["clamping"], row["pegs"][-1], row["settings"][0]["length"]
     hole, back = (
-        [at - far * to for at, to in zip(tip, way, strict=True)]
-        for far in (stroke, stroke - preset["travel"][0])
+        [at - far * to for at, to in zip(tip, way, strict=True)] for far in (stroke, stroke - travel[0])
     )
     # Until then the first one of an earlier stage of the search may be on show.
     walk.until("String(state.selected?.holes) === String(given)", row["holes"])

@@ -268,7 +268,7 @@ export class FixtureDrawing {
       if ((x || y) && !bars.length) group.setAttribute("transform", `translate(${x} ${y})`);
       else group.removeAttribute("transform");
     }
-    for (const { sign, length: closed, grows, text } of this.travels) text.textContent = `${sign} = ${length(Math.abs(closed + grows * Math.min(open, this.most)))}`;
+    for (const { sign, length: closed, grows, text } of this.travels) text.textContent = `${sign} = ${length(open ? Math.abs(Math.abs(closed) + grows * Math.min(open, this.most)) : closed)}`;
     show(this.over, !open);
     this.letter();
   }
