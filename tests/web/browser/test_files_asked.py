@@ -249,5 +249,6 @@ def test_no_label_lies_on_another(
             walk.seen("#drawing-fixture .load-text")
         page.click("#next")
         walk.seen(f"#place:has-text('{place} of')")
+        walk.arrived()
         assert page.evaluate(OVERLAPS, "#drawing-fixture") == 0, walk.holes()
     context.close()

@@ -134,12 +134,19 @@ class Walk:
         """The search on show."""
         return str(self.page.evaluate("async () => (await import('/static/state.js')).state.job.job"))
 
+    def arrived(self) -> None:
+        """Wait until the fixture that the list marks has come."""
+        marked = "document.querySelector('#list [aria-selected=true] b')"
+        self.until(f"!{marked} || state.selected?.rank === Number({marked}.textContent)")
+
     def shown(self) -> dict[str, Any]:
         """The fixture on show, as the server told it."""
+        self.arrived()
         return dict(self.page.evaluate("async () => (await import('/static/state.js')).state.selected"))
 
     def holes(self) -> list[str]:
         """Holes in the table of pegs."""
+        self.arrived()
         return list(self.page.locator("#pegs td:first-child").all_inner_texts())
 
     def point(self, x: float, y: float, drawing: str = "partDrawing") -> tuple[float, float]:

@@ -67,7 +67,9 @@ export class FixtureDrawing {
       const picture = await redrawn(row, frame);
       if (!picture || this.row !== row || this.open || this.lying) return;
       row.picture = picture;
+      const focused = this.pegs.indexOf(document.activeElement);
       this.build();
+      this.pegs[focused]?.focus();
       if (this.view.fitted) this.fit();
       else this.view.apply();
     }, 120);

@@ -16,13 +16,14 @@ export function selectFrom(list) {
 }
 
 /**
- * Show the fixture of a rank, as soon as it has come, unless another one is asked for meanwhile.
+ * Show the fixture of a rank, as soon as it has come, unless another one is asked for meanwhile; the list marks it at once.
  * @param {number} rank
  * @param {number} index its place in the list, -1 where it has none
  */
 export async function select(rank, index) {
   const job = state.job?.job;
   const mine = ++latest;
+  change({ index });
   const row = job ? await rowOfRank(job, rank) : null;
   if (row && mine === latest && state.job?.job === job) change({ selected: row, index, view: "fixture" });
 }
