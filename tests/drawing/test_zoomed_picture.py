@@ -81,6 +81,9 @@ def test_words_are_in_the_picture_and_none_lies_on_another(held: Held) -> None:
         assert min(x, y) >= 0 and x + wide <= SIZE[0] and y + high <= SIZE[1]
         assert not any(x < c and a < x + wide and y < d and b < y + high for a, b, c, d in boxes)
         boxes.append((x, y, x + wide, y + high))
+    for word in (*of_class(root, "used"), *of_class(root, "dimension-text")):
+        x, y = float(word.attrib["x"]), float(word.attrib["y"])
+        assert not any(a < x < c and b < y < d for a, b, c, d in boxes), word.text
     used = {one.text for one in of_class(root, "used")}
     cells = [peg for peg in held.fixture.pegs if held.toolkit.carrier(peg.carrier).has_lattice]
     assert {str(peg.row + 1) for peg in cells} | {chr(ord("A") + peg.column) for peg in cells} <= used

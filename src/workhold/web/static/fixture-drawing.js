@@ -59,6 +59,8 @@ export class FixtureDrawing {
     this.program = null;
     /** @type {any} */
     this.passing = null;
+    /** Pegs in the picture. @type {SVGElement[]} */
+    this.pegs = [];
     this.suit = quiet(async () => {
       const { row, size } = this;
       const frame = this.view.size;
@@ -67,9 +69,7 @@ export class FixtureDrawing {
       const picture = await redrawn(row, frame);
       if (!picture || this.row !== row || this.open || this.lying) return;
       row.picture = picture;
-      const focused = this.pegs.indexOf(document.activeElement);
       this.build();
-      this.pegs[focused]?.focus();
       if (this.view.fitted) this.fit();
       else this.view.apply();
     }, 120);
@@ -159,14 +159,15 @@ export class FixtureDrawing {
     this.movers = all(".moves").map(moverOf);
     this.most = Math.min(...all("[data-most]").map(({ dataset }) => Number(dataset.most)));
     this.travels = all(".travel").map(travelOf);
+    const focused = this.pegs.findIndex((peg) => peg === document.activeElement);
     this.pegs = all("[data-peg]");
     for (const peg of this.pegs) this.listen(peg, Number(peg.dataset.peg));
     this.added = [];
-    this.over = draw("g");
     this.arrows = draw("g");
     all(".forces")[0].after(this.arrows);
     this.view.world.replaceChildren(picture);
     this.add();
+    this.pegs[focused]?.focus();
   }
 
   /** What the page adds to the picture: program, supports, circles about the pegs. */
