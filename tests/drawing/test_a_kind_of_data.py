@@ -23,7 +23,7 @@ from workhold.fixels.setup_words import Datum, SetupWords
 from workhold.fixels.toolkit import Arrangement, Carrier, Symmetry, Toolkit, Travel
 from workhold.model.shown import shown
 from workhold.units import MILLIMETRE
-from workhold.web.answers import contact_answer, fixture_answer
+from workhold.web.answers import fixture_answer
 
 
 @frozen
@@ -140,7 +140,7 @@ def test_its_result_file_has_wall_and_jaw() -> None:
 def test_the_page_and_the_terminal_tell_it() -> None:
     answer = fixture_answer(HELD, HOUSE, TOOLKIT)
     assert (answer["flush"], answer["origin"]) == ([0, 1], "column A at the fixed jaw")
-    assert contact_answer(HELD, HOUSE, TOOLKIT)["normals"][0] == [0.0, -1.0]
+    assert answer["normals"][0] == [0.0, -1.0]
     told = fixture_tables(HELD, TOOLKIT, 1, 1)
     assert told[1] == "Opening S 32.121 mm"
     assert str(told[2]).endswith("from column A at the fixed jaw")

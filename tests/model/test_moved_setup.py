@@ -151,11 +151,9 @@ def test_the_sheet_has_it_there_and_the_page_lays_the_plate_so() -> None:
     assert [peg.hole for peg in placed.pegs] == row["holes"] != [peg.hole for peg in result[0].pegs]
     assert row["pegs"] == [[peg.x, peg.y] for peg in result[0].pegs]
     moved = [steps * 20.0 for steps in details.moved]
-    assert row["placed"] == moved and row["carriers"][0]["origin"] == [-moved[0], -moved[1]]
+    assert row["placed"] == moved
     there, details = result_details(result, 1, at="B2")
     assert min(peg.column for peg in there.pegs) == 1 and details.is_asked_place
     mouth = workhold.design(part(MOUTH), FlatJaw(pitch=9, peg_radius=2, columns=12, jaw_width=40), best=3)
     row = fixture_answer(mouth[0], mouth.workpiece, mouth.toolkit)
     assert row["stands_out_of"] == "flat jaw" and row["hangs_over"]
-    wall = row["carriers"][1]["plate"]
-    assert wall[2] - wall[0] == pytest.approx(40.0)

@@ -166,7 +166,7 @@ def test_a_server_that_keeps_fewer_says_that_alone() -> None:
     """So many were found, and so many are kept; those in between nobody sees."""
     result = cut(MOST)
     job = jobs.ServerJob.__new__(jobs.ServerJob)
-    job.queries, job.task, job.fraction, job.revision, job.orders = [("", SYMMETRIC)], None, 0.0, 0, {}
+    job.task, job.fraction, job.revision, job.orders = None, 0.0, 0, {}
     jobs.Jobs.keep(jobs.Jobs.__new__(jobs.Jobs), job, Found(result.part(slice(10)), MOST - 10))
     assert job.notes == (KeptBest(sum(result.found.values()), 10),)
     assert verify(job.result).holds

@@ -335,7 +335,7 @@ def test_restrictions_ranking_and_tolerance_are_heeded(server: RunningServer) ->
     assert values == sorted(values, reverse=True)
     for row in listed:
         assert row["type"] == "I" and 9 not in row["faces"] and row["theta_deg"] <= 180 + 1e-6
-    assert server.state.jobs.by_name[url.rpartition("/")[2]].queries[0][1].tolerance == Tolerance(0.02, 0.0)
+    assert server.state.jobs.by_name[url.rpartition("/")[2]].asked.query.tolerance == Tolerance(0.02, 0.0)
 
 
 @pytest.mark.parametrize(

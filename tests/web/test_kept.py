@@ -20,7 +20,7 @@ from workhold.web import jobs as kept_jobs
 from workhold.web.families import FamilyFound
 from workhold.web.guard import ServerLimits
 from workhold.web.jobs import Jobs, ServerJob, TooManyError
-from workhold.web.searching import Found
+from workhold.web.searching import AskedQueries, Found
 
 LIMITS = ServerLimits(jobs=2, kept_jobs=4, kept_bytes=1_000, life_seconds=100.0, left_seconds=0.05)
 
@@ -54,10 +54,10 @@ def jobs(monkeypatch: pytest.MonkeyPatch) -> Iterator[Jobs]:
 
 
 def job(
-    jobs: Jobs, name: str, *, state: str = "done", unused: float = 0.0, queries: Any = (), **values: Any
+    jobs: Jobs, name: str, *, state: str = "done", unused: float = 0.0, asked: Any = None, **values: Any
 ) -> ServerJob:
     """A job that was used some seconds ago."""
-    made = ServerJob(name, {}, queries, values.pop("address", "a"), values.pop("kind", "design"), **values)
+    made = ServerJob(name, {}, asked, values.pop("address", "a"), values.pop("kind", "design"), **values)
     made.state, made.used = state, monotonic() - unused
     jobs.by_name[name] = made
     return made
@@ -186,7 +186,7 @@ def test_how_many_there_are_about_is_said_beside_the_best(jobs: Jobs) -> None:
     """Not that nobody counted them, which the kept result says, as it is one of the best alone."""
     whole = fake_result(5)
     limited = evolve(whole, query=evolve(whole.query, best=5), notes=(BestOnly(5),))
-    made = job(jobs, "one", queries=(("", whole.query),))
+    made = job(jobs, "one", asked=AskedQueries.of((("", whole.query),)))
     jobs.keep(made, Found(limited, 0, (Many(4_240_000, 5),)))
     assert tuple(map(str, made.notes)) == ("There are about 4,200,000 fixtures: these are the best 5.",)
     assert made.result is not None and made.result.query.best == 5 and made.result.notes == (BestOnly(5),)

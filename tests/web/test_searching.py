@@ -12,7 +12,7 @@ from attrs import evolve
 import workhold.search.design as designing
 from workhold import Query, Result, Vise, load
 from workhold.search import estimate
-from workhold.web.searching import FIRST, mark_of, search, with_best_first
+from workhold.web.searching import FIRST, AskedQueries, mark_of, search, with_best_first
 from workhold.web.worker import Order
 
 SECONDS = 600.0
@@ -55,7 +55,9 @@ def run(
 ) -> tuple[Any, list[Any]]:
     """The outcome of the task, and what it reports."""
     reports: list[Any] = []
-    return search((query, most, every), Order(reports.append, cancel or Event(), SECONDS)), reports
+    return search(
+        (AskedQueries.of((("", query),)), most, every), Order(reports.append, cancel or Event(), SECONDS)
+    ), reports
 
 
 def marks(result: Result) -> list[Any]:
@@ -72,6 +74,7 @@ def test_the_best_of_all_come_first(
     kinds = [kind for kind, *_ in reports]
     (first,) = (value for kind, value, *_ in reports if kind == "first")
     assert marks(first) == marks(whole)[:FIRST]
+    assert first.query == query and not first.complete
     assert marks(found.result) == marks(whole) and found.result.found == whole.found
     assert found.result.query.best is None and found.result.notes == whole.notes
     after = [value for value in reports[kinds.index("first") :] if value[0] == "progress"]
@@ -112,7 +115,7 @@ def test_a_search_that_is_stopped_among_the_best_keeps_those_found(
         if value[0] == "progress" and value[2] > FIRST:
             cancel.set()
 
-    found = search((query, 10_000, False), Order(report, cancel, SECONDS))
+    found = search((AskedQueries.of((("", query),)), 10_000, False), Order(report, cancel, SECONDS))
     assert asked == [FIRST] and not found.result.complete
     assert 0 < len(found.result) <= FIRST and found.result.query == query
 

@@ -148,6 +148,7 @@ class Bench:
     contacts : contact point and outward normal of each peg.
     shown : the carriers as far as they show.
     own : the placed outlines that carriers with heights of their own meet.
+    is_exact : whether pegs are drawn at their radius however small it is; they are drawn larger if not.
     """
 
     fixture: Fixture
@@ -157,6 +158,7 @@ class Bench:
     contacts: list[tuple[Point, Point]]
     shown: Shown
     own: list[list[Segment]] = field(factory=list)
+    is_exact: bool = False
 
     @property
     def extent(self) -> Box:
@@ -193,8 +195,8 @@ class Bench:
         return [index for index, peg in enumerate(self.fixture.pegs) if peg in self.fixture.placed]
 
     def radius(self, view: View, index: int) -> float:
-        carrier = self.toolkit.carrier(self.fixture.pegs[index].carrier)
-        return max(carrier.peg_radius * view.scale, THINNEST_PEG)
+        radius = self.toolkit.carrier(self.fixture.pegs[index].carrier).peg_radius * view.scale
+        return radius if self.is_exact and radius > 0 else max(radius, THINNEST_PEG)
 
 
 def bench_of(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Bench:

@@ -34,7 +34,19 @@ from workhold.geometry.segment import Point
 from workhold.model.shown import ShownCarrier
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["BOTTOM", "LEFT", "RIGHT", "TOP", "draw_plan"]
+__all__ = [
+    "BOTTOM",
+    "LEFT",
+    "LONGEST_ARROW",
+    "RIGHT",
+    "TOP",
+    "avoid_drawing",
+    "draw_flag",
+    "draw_plan",
+    "draw_tag",
+    "face_tag",
+    "peg_label",
+]
 
 LONGEST_ARROW = 62.0
 LABEL_SIZE, LABEL_HEIGHT = 15.0, 22.0
@@ -64,7 +76,8 @@ def draw_labels(
     """
     center = view(bench.fixture.pose.apply(*workpiece.center))
     placer = LabelPlacer(Box(bounds.x0, bounds.y0 + 62, bounds.x1, bounds.y1 - 30))
-    avoid_drawing(placer, bench, view, center)
+    avoid_drawing(placer, bench, view)
+    avoid_turn(placer, bench, center)
     for box in names:
         placer.avoid_box(box)
     for (x, y), _ in marks:
@@ -100,8 +113,8 @@ def draw_labels(
         supports.draw_names(group, list(places), view)
 
 
-def avoid_drawing(placer: LabelPlacer, bench: Bench, view: View, center: Point) -> None:
-    """Marks where the drawing is, so that labels keep off; the part's turn is drawn around ``center``."""
+def avoid_drawing(placer: LabelPlacer, bench: Bench, view: View) -> None:
+    """Marks where the drawing is, so that labels keep off."""
     for outline in bench.outlines(view, 4.0):
         placer.avoid_ink(outline, 3.0)
         placer.avoid_walls(outline[::3])
@@ -109,12 +122,6 @@ def avoid_drawing(placer: LabelPlacer, bench: Bench, view: View, center: Point) 
         (x, y), radius = view((peg.x, peg.y)), bench.radius(view, index)
         placer.avoid_box(Box(x - radius, y - radius, x + radius, y + radius))
         placer.avoid_line(*force_arrow(bench, index, view, LONGEST_ARROW), price=8.0)
-    turn = radians(bench.fixture.pose.written_deg)
-    x, y = center
-    placer.avoid_line(center, (x + ANGLE_REACH * cos(turn), y - ANGLE_REACH * sin(turn)), 8.0)
-    placer.avoid_line(center, (x + ANGLE_REACH, y), 8.0)
-    arc = np.linspace(0.0, turn, 24)
-    placer.avoid_ink(np.column_stack([x + ANGLE_RADIUS * np.cos(arc), y - ANGLE_RADIUS * np.sin(arc)]), 3.0)
     for low, high in (axis for measured in bench.shown.measured for axis in measured.axes):
         placer.avoid_line(view(low), view(high), 0.5)
     for clamp in bench.shown.clamps:
@@ -124,6 +131,16 @@ def avoid_drawing(placer: LabelPlacer, bench: Bench, view: View, center: Point) 
     for shown in bench.shown.carriers:
         if len(shown.columns) * len(shown.rows) < MOST_HOLES_AVOIDED:
             placer.avoid_ink([view(hole.center) for hole in shown.holes()], 2.0)
+
+
+def avoid_turn(placer: LabelPlacer, bench: Bench, center: Point) -> None:
+    """Marks where the part's turn is drawn around a page point."""
+    turn = radians(bench.fixture.pose.written_deg)
+    x, y = center
+    placer.avoid_line(center, (x + ANGLE_REACH * cos(turn), y - ANGLE_REACH * sin(turn)), 8.0)
+    placer.avoid_line(center, (x + ANGLE_REACH, y), 8.0)
+    arc = np.linspace(0.0, turn, 24)
+    placer.avoid_ink(np.column_stack([x + ANGLE_RADIUS * np.cos(arc), y - ANGLE_RADIUS * np.sin(arc)]), 3.0)
 
 
 def spread(count: int) -> list[float]:

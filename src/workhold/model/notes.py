@@ -20,7 +20,7 @@ __all__ = [
     "STAGES",
     "AskedFor",
     "BestOnly",
-    "Chosen",
+    "ChosenSome",
     "PushedByHand",
     "Cut",
     "FittedOutline",
@@ -237,7 +237,7 @@ class KeptBest(Note):
 
 
 @frozen
-class Chosen(Note):
+class ChosenSome(Note):
     """That somebody kept some of the fixtures found."""
 
     kind = "chosen"
@@ -380,7 +380,7 @@ KINDS: Mapping[str, type[Note]] = {
     for one in (
         AskedFor,
         BestOnly,
-        Chosen,
+        ChosenSome,
         PushedByHand,
         Cut,
         FittedOutline,

@@ -17,8 +17,7 @@ from typing import Any
 
 from attrs import evolve, frozen
 
-from workhold.drawing.bench import Bench, bench_of, draw_part, draw_pegs
-from workhold.drawing.carriers import draw_clamp, draw_holes, draw_plate, draw_push, draw_wall, most_holes
+from workhold.drawing.bench import Bench, bench_of
 from workhold.drawing.panel import fixture_words
 from workhold.drawing.scene import Box, Scene, View, text_width
 from workhold.drawing.supports_drawn import (
@@ -44,6 +43,7 @@ from workhold.presenting.figure_words import (
     fixture_title,
     no_edge,
 )
+from workhold.presenting.moving_picture import draw_ground, draw_peg, drawn_back, moving_group, ways_of
 from workhold.statics.loads import jaw_words, load_cases
 from workhold.supports.asking import fixture_supports
 from workhold.supports.words import why_no_set
@@ -175,31 +175,16 @@ class LivePicture:
         return float(x), float(y)
 
     def svg(self) -> str:
-        """The picture; the group of the class ``part`` is the part.
-
-        Groups of the class ``moves`` say in which direction of the page they clamp, in page units per mm.
-        """
+        """The picture, with its groups as in ``presenting.moving_picture``."""
         bench, view = self.bench, self.view
         scene = Scene.page(PAGE, fixture_title(self.fixture))
-        for carrier in bench.shown.carriers:
-            group = self.group_for(scene, carrier.clamping)
-            draw_plate(group, carrier, view, 5.0)
-            draw_holes(group, carrier, view, most_holes(view, bench.shown))
-        for wall in bench.shown.walls:
-            draw_wall(scene.group("wall"), wall.bar, view, has_ends=wall.standouts is not None)
-        for clamp in bench.shown.clamps:
-            draw_clamp(self.group_for(scene, clamp.clamping), clamp, bench.shown.carriers[0], view, 1.0)
-        draw_part(scene, bench, view, 1.0)
-        for clamp in bench.shown.clamps:
-            draw_push(self.group_for(scene, clamp.clamping if clamp.hole is None else None), clamp, view, 1.0)
-        ways = {one.carrier.name: one.clamping for one in bench.shown.carriers}
+        draw_ground(scene, bench, view)
+        ways = ways_of(bench)
         if self.under is not None and self.under.triples:
             self.draw_set(scene, ChosenSupports.of(self.under), ways)
-        ways |= {one.carrier.name: one.clamping for one in bench.shown.clamps}
         for number in bench.placed:
-            peg = self.fixture.pegs[number]
-            group = self.group_for(scene, ways.get(peg.carrier))
-            draw_pegs(group, evolve(bench, fixture=evolve(self.fixture, pegs=(peg,))), view, 1.0)
+            group = moving_group(scene, view, ways.get(self.fixture.pegs[number].carrier))
+            draw_peg(group, bench, view, number)
             self.write_name(group, number)
         return scene.svg()
 
@@ -212,17 +197,10 @@ class LivePicture:
         corners, radius = [view(place) for place in planned.places], size_of(planned.pad_radius, view)
         draw_triangle(scene.group("stands"), corners)
         for pad, (x, y) in zip(chosen.pads, corners, strict=True):
-            group, below = self.group_for(scene, ways.get(pad.carrier)), (x, y + radius + PAD_NAME)
+            group, below = moving_group(scene, view, ways.get(pad.carrier)), (x, y + radius + PAD_NAME)
             draw_pad(group, (x, y), radius)
             group.text(below, pad.hole, PAD_NAME, "middle", bold=True, fill=SUPPORT, halo=3.0)
         draw_tip(scene.group("stands"), view(planned.clamp), size_of(planned.tip_radius, view))
-
-    def group_for(self, scene: Scene, clamping: tuple[float, float] | None) -> Scene:
-        """A group for what stands still, or for what clamps in a direction of the plan."""
-        if clamping is None:
-            return scene.group("stands")
-        (x, y), scale = clamping, self.view.scale
-        return scene.group("moves", data_way=f"{x * scale:.9g} {-y * scale:.9g}")
 
     def write_name(self, scene: Scene, number: int) -> None:
         """Writes the hole of a peg beside it, away from the part and within the page.
@@ -329,12 +307,9 @@ class LivePicture:
         extent = self.bench.extent
         far = max(OPEN_PITCHES * self.bench.shown.pitch, OPEN_SHARE * extent.width)
         for clamp in self.bench.shown.clamps:
-            travel = clamp.carrier.travel
-            if clamp.hole is not None and travel is not None and travel.most is not None:
-                (x, y), (dx, dy) = clamp.hole, clamp.clamping
-                # A clamp is drawn back no farther than to its least stroke.
-                stroke = (clamp.tip.x - x) * dx + (clamp.tip.y - y) * dy
-                far = min(far, stroke + travel.most)
+            # A clamp is drawn back no farther than to its least stroke.
+            back = drawn_back(clamp)
+            far = far if back is None else min(far, back)
         return max(far, 0.0)
 
     def closing(self, keyframes: Sequence[Sequence[float]] = (), words: str = "") -> dict[str, Any]:

@@ -264,7 +264,10 @@ EXAMPLES = {
     f"GET {JOB}/family/{{kind}}": ApiExample(
         {"name": FAMILY_NAME, "kind": "sheets.pdf"}, {"setups": 1}, type="application/pdf"
     ),
-    f"GET {FIRST}": ApiExample(OF_FIRST, answer={"rank": 1, "holes": ["L-A4", "L-B1", "R-A1", "R-B5"]}),
+    f"GET {FIRST}": ApiExample(
+        OF_FIRST, {"width": 640, "height": 480}, answer={"rank": 1, "holes": ["L-A4", "L-B1", "R-A1", "R-B5"]}
+    ),
+    f"GET {FIRST}/small.svg": ApiExample(OF_FIRST, type="image/svg+xml"),
     f"POST {FIRST}/loads": ApiExample(
         OF_FIRST, body={"loads": LOADS, "jaw_force": 3000}, answer={"cases": [{"keeps_contact": True}]}
     ),

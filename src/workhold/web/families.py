@@ -18,6 +18,7 @@ from workhold.model.query import Query
 from workhold.presenting.data import finite
 from workhold.web.forms import HeldIn, ToleranceForm
 from workhold.web.request_forms import LARGEST, Form, Name, WorkpieceForm
+from workhold.web.searching import AskedQueries
 from workhold.web.worker import Order
 
 if TYPE_CHECKING:
@@ -111,15 +112,16 @@ class FamilyFound:
         return fitting[0 if setups is None else -1]
 
 
-def find_family(payload: tuple[tuple[str, Query], ...], order: Order) -> FamilyFound:
+def find_family(payload: AskedQueries, order: Order) -> FamilyFound:
     """Finds a family; reports are ("progress", fraction, found)."""
     from workhold.family.family import Asked, family_of, family_text
 
     def progress(fraction: float, found: int) -> None:
         order.report(("progress", fraction, found))
 
-    names = numbered([name for name, _ in payload])
-    asked = [Asked(name, query) for name, (_, query) in zip(names, payload, strict=True)]
+    queries = payload.queries
+    names = numbered([name for name, _ in queries])
+    asked = [Asked(name, query) for name, (_, query) in zip(names, queries, strict=True)]
     family = family_of(asked, seconds=PROOF * order.seconds, progress=progress)
     text, plans = family_text(family), family.plans
     small = {

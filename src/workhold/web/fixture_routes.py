@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from datetime import date
 from typing import Annotated, Any, Literal
 
@@ -18,9 +19,10 @@ from workhold.files.declared_forms import given_in, with_fields
 from workhold.limits import MOST_LENGTH
 from workhold.model.result import Result
 from workhold.model.seating import Seating
+from workhold.presenting.zoomed_picture import draw_small
 from workhold.seating.clamping import ByHand
 from workhold.units import Unit, unit_named
-from workhold.web.answers import contact_answer, rows_answer
+from workhold.web.answers import USUAL_SIZE, fixture_answer
 from workhold.web.fixture_tasks import (
     AT_ONCE,
     KINDS,
@@ -52,6 +54,7 @@ Jaw = Annotated[
 Loads = Annotated[
     str | None, Query(max_length=20_000, description="instead of the search's, JSON as in a search")
 ]
+Across = Annotated[float, Query(ge=100, le=10_000, description="of the picture, in its own units")]
 Revision = Annotated[
     int | None, Query(ge=0, description="what the caller has seen; 409 when it is another by now")
 ]
@@ -143,8 +146,15 @@ async def closing(
 
 
 @router.get("", summary="One fixture")
-async def fixture(request: Request, name: str, rank: Rank, revision: Revision = None) -> dict[str, Any]:
-    """The row of a fixture, with contacts and outward normals in the vise frame.
+async def fixture(
+    request: Request,
+    name: str,
+    rank: Rank,
+    width: Across = USUAL_SIZE[0],
+    height: Across = USUAL_SIZE[1],
+    revision: Revision = None,
+) -> dict[str, Any]:
+    """The row of a fixture, with its geometry in mm in the vise frame and a picture of the size asked for.
 
     With a program ``passing`` is the move that comes nearest to what holds the part, with line, tool, and
     distance in mm. Its path is that of the tool's axis there, in the part's coordinates. With cutting forces
@@ -152,10 +162,31 @@ async def fixture(request: Request, name: str, rank: Rank, revision: Revision = 
     """
     result = result_of_job(found_job(request, name), revision)
     index = ranked(result, rank)
-    row = rows_answer(result.table.take(slice(index, index + 1)), result.workpiece, result.toolkit, [rank])[0]
-    contacts = contact_answer(result[index], result.workpiece, result.toolkit)
+    told = await asyncio.to_thread(
+        fixture_answer, result[index], result.workpiece, result.toolkit, (width, height)
+    )
     passing, forces = passing_answer(result, index), forces_answer(result, index)
-    return {**row, **contacts, "passing": passing, "program_forces": forces}
+    return {"rank": rank, **told, "passing": passing, "program_forces": forces}
+
+
+CHANGED: dict[int | str, dict[str, Any]] = {204: {"description": "The list has changed meanwhile"}}
+
+
+@router.get(
+    "/small.svg", summary="A small picture to choose a fixture by", response_class=Response, responses=CHANGED
+)
+async def small(request: Request, name: str, rank: Rank, revision: Revision = None) -> Response:
+    """The part as it lies, with the faces that are touched, and the pegs.
+
+    There is no picture (204) when the list is of another revision by now.
+    """
+    job = found_job(request, name)
+    if revision is not None and revision != job.revision:
+        return Response(status_code=204)
+    result = result_of_job(job)
+    chosen = result[ranked(result, rank)]
+    content = await asyncio.to_thread(draw_small, chosen, result.workpiece, result.toolkit)
+    return Response(content, media_type="image/svg+xml")
 
 
 @router.post("/loads", summary="What loads do to a fixture")

@@ -23,14 +23,13 @@ from workhold.model.result import Result
 from workhold.model.search_report import Explanation
 from workhold.model.seating import Seating
 from workhold.seating.clamping import ByHand
-from workhold.web.answers import arrangements_answer, proof_answer
+from workhold.web.answers import proof_answer
 from workhold.web.families import FamilyFound
 from workhold.web.guard import ServerLimits
 from workhold.web.part_tasks import shape_size
 from workhold.web.pool import BusyError, FailedError, Pool, PoolTask, StoppedError
-from workhold.web.searching import Found
+from workhold.web.searching import AskedQueries, Found
 from workhold.web.selection import Selection
-from workhold.web.tasks import NamedQuery
 from workhold.web.worker import return_memory
 
 if TYPE_CHECKING:
@@ -62,7 +61,7 @@ class ServerJob:
     ----------
     name : a random token.
     request : what was asked for, as it came.
-    queries : the query, or those of a comparison and what their toolkits are called.
+    asked : the query, or those of a comparison and what their toolkits are called.
     address : who asked.
     kind : "design", "explore" for a comparison of toolkits, or "family" of several parts.
     weight : about how many bytes of memory the request takes.
@@ -73,7 +72,7 @@ class ServerJob:
 
     name: str
     request: Mapping[str, Any]
-    queries: tuple[NamedQuery, ...]
+    asked: AskedQueries
     address: str
     kind: str
     weight: int = 0
@@ -145,7 +144,7 @@ class ServerJob:
             "distinct": None if listed is None else dict(listed.distinct),
             "best": 0 if over else self.best,
             "listed": 0 if result is None else len(result),
-            "arrangements": [] if self.kind != "design" else arrangements_answer(self.queries[0][1].toolkit),
+            "arrangements": self.asked.arrangements if self.kind == "design" else [],
             "ranking": None if result is None else list(result.query.rank_by),
             "complete": complete,
             "notes": list(map(str, self.notes)),
@@ -209,7 +208,7 @@ class Jobs:
     def submit(
         self,
         request: Mapping[str, Any],
-        queries: tuple[NamedQuery, ...],
+        asked: AskedQueries,
         address: str,
         kind: str,
         sent_bytes: int = 0,
@@ -218,7 +217,7 @@ class Jobs:
         """Begins a job; ``sent_bytes`` is the length of its request."""
         self.refuse_more(address)
         weight = sent_bytes * BYTES_KEPT
-        job = ServerJob(token_urlsafe(NAME_BYTES), request, queries, address, kind, weight, stops_when_left)
+        job = ServerJob(token_urlsafe(NAME_BYTES), request, asked, address, kind, weight, stops_when_left)
         self.by_name[job.name] = job
         job.runner = asyncio.create_task(self.run(job))
         self.make_room()
@@ -240,9 +239,9 @@ class Jobs:
         job.changed()
 
     async def run(self, job: ServerJob) -> None:
-        payload: Any = job.queries
+        payload: Any = job.asked
         if job.kind == "design":
-            payload = job.queries[0][1], self.limits.fixtures, bool(job.request.get("every", False))
+            payload = job.asked, self.limits.fixtures, bool(job.request.get("every", False))
         name = "search" if job.kind == "design" else job.kind
         job.task = PoolTask(
             name,
@@ -260,7 +259,7 @@ class Jobs:
                 self.keep(job, outcome)
             elif isinstance(outcome, FamilyFound):
                 job.family, job.fraction = outcome, 1.0
-            elif len(job.table) < len(job.queries) and not job.task.stop.is_set():
+            elif len(job.table) < job.asked.count and not job.task.stop.is_set():
                 job.notes = (ToolkitsLeft(self.limits.seconds),)
             job.state = "cancelled" if job.task.stop.is_set() else "done"
         except StoppedError:
@@ -286,8 +285,7 @@ class Jobs:
             notes = [kept, *(note for note in notes if not isinstance(note, Cut))]
         if not result.complete and job.task is not None and not job.task.stop.is_set():
             notes.insert(0, Stopped(self.limits.seconds))
-        query = evolve(job.queries[0][1], best=result.query.best)
-        job.result = evolve(result, query=query, notes=notes)
+        job.result = evolve(result, notes=notes)
         # How many there are about says more than that nobody counted them.
         told = [note for note in notes if not (found.notes and isinstance(note, BestOnly))]
         job.notes = (*found.notes, *told)
@@ -304,7 +302,7 @@ class Jobs:
                 if job.fraction >= LISTING and job.kind == "design":
                     job.state = "listing"
             case ("preview" | "first" as kind, Result() as result):
-                job.result = evolve(result, query=job.queries[0][1], complete=False)
+                job.result = result
                 if kind == "first":
                     job.best, job.found = len(result), max(job.found, len(result))
                 job.revision += 1
@@ -323,7 +321,7 @@ class Jobs:
             When it could not be; it may be asked again.
         """
         if job.explaining is None or (job.explaining.done() and not explained(job.explaining)):
-            task = PoolTask("explanation", job.queries[0][1], self.limits.seconds, job.address)
+            task = PoolTask("explanation", job.asked, self.limits.seconds, job.address)
             job.explaining = asyncio.create_task(self.pool.run(task))
         return await asyncio.shield(job.explaining)
 

@@ -162,7 +162,7 @@ async def shape_part(
     held = found_job(request, job)
     if held.kind != "design":
         raise HTTPException(409, "Only a search for fixtures shows the shape of its part: begin one.")
-    part = held.queries[0][1].workpiece
+    part = held.asked.query.workpiece
     held.shape = await at_desk(request, "shape", ShapeOrder(content, name, part))
     state_of(request).jobs.make_room()
     return {"triangles": len(held.shape.triangles)}

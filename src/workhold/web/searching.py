@@ -6,7 +6,8 @@ the best fixtures within seconds, and looks at them while the rest is searched.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import pickle
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from threading import Event, Thread
 from time import perf_counter
@@ -19,9 +20,13 @@ from workhold.model.fixture_table import FixtureTable
 from workhold.model.notes import Many, Note
 from workhold.model.query import Query
 from workhold.model.result import Result
+from workhold.web.answers import arrangements_answer
 from workhold.web.worker import Order
 
-__all__ = ["FIRST", "Found", "search"]
+__all__ = ["FIRST", "AskedQueries", "Found", "NamedQuery", "search"]
+
+# What a toolkit is called, and the query for it.
+NamedQuery = tuple[str, Query]
 
 # So many are sought first. The search for them, and the estimate of all, are given up after so many seconds
 # each, or after this share of the time that there is: what was found by then is shown, and the search for all
@@ -36,6 +41,37 @@ TICK = 0.05
 
 
 @frozen(eq=False)
+class AskedQueries:
+    """What a job searches for: pickled where it is made, and opened by the worker that searches.
+
+    Parameters
+    ----------
+    sealed : the pickled queries.
+    count : how many they are.
+    arrangements : of the toolkit of the first, as plain data.
+    """
+
+    sealed: bytes
+    count: int
+    arrangements: list[dict[str, str]]
+
+    @classmethod
+    def of(cls, queries: tuple[NamedQuery, ...]) -> AskedQueries:
+        arrangements = arrangements_answer(queries[0][1].toolkit)
+        return cls(pickle.dumps(queries, pickle.HIGHEST_PROTOCOL), len(queries), arrangements)
+
+    @property
+    def queries(self) -> tuple[NamedQuery, ...]:
+        opened: tuple[NamedQuery, ...] = pickle.loads(self.sealed)
+        return opened
+
+    @property
+    def query(self) -> Query:
+        """The first query, which is the only one of a search."""
+        return self.queries[0][1]
+
+
+@frozen(eq=False)
 class Found:
     """The outcome of a search; ``left_out`` fixtures were found but not kept."""
 
@@ -44,8 +80,10 @@ class Found:
     notes: tuple[Note, ...] = ()
 
 
-def search(payload: tuple[Query, int, bool], order: Order) -> Found:
+def search(payload: tuple[AskedQueries, int, bool], order: Order) -> Found:
     """Searches; reports are ("progress", fraction, found), ("preview", result) and ("first", result).
+
+    Results that are reported are of the query as it was asked.
 
     A first result has the best fixtures of all, in their order. Of very many fixtures no more than the best
     are sought, unless every one is asked for.
@@ -54,15 +92,20 @@ def search(payload: tuple[Query, int, bool], order: Order) -> Found:
     from workhold.search.design import answer
     from workhold.search.estimate import best_where_many
 
-    query, most, every = payload
+    asked, most, every = payload
+    query = whole = asked.query
+
+    def report(kind: str, result: Result) -> None:
+        order.report((kind, evolve(result, query=whole, complete=False)))
+
     first = None
     if query.best is None and query.seating is None:
-        first = best_of(query, order)
+        first = best_of(query, order, report)
         if order.cancel.is_set() or (first.complete and not len(first)):
             return Found(evolve(first, query=query, complete=first.complete and not len(first)), 0)
     known = first if first is not None and first.complete else None
     if known is not None:
-        order.report(("first", known))
+        report("first", known)
     notes: tuple[Note, ...] = ()
     if first is not None and not every:
         with soon_enough(order) as enough:
@@ -74,7 +117,7 @@ def search(payload: tuple[Query, int, bool], order: Order) -> Found:
         query,
         progress=Reporter(order, begun, 1.0 - begun, 0 if known is None else len(known)),
         cancel=order.cancel,
-        preview=None if known is not None else lambda result: order.report(("preview", result)),
+        preview=None if known is not None else lambda result: report("preview", result),
     )
     if known is not None and not result.complete:
         result = with_best_first(result, known)
@@ -104,7 +147,7 @@ class Reporter:
             self.order.report(("progress", self.begin + self.share * fraction, max(found, self.least)))
 
 
-def best_of(query: Query, order: Order) -> Result:
+def best_of(query: Query, order: Order, report: Callable[[str, Result], None]) -> Result:
     """The best fixtures of a query; incomplete where that takes long, or the order is cancelled."""
     from workhold.search.design import answer
 
@@ -113,7 +156,7 @@ def best_of(query: Query, order: Order) -> Result:
             evolve(query, best=FIRST),
             progress=Reporter(order, 0.0, SHARE),
             cancel=enough,
-            preview=lambda result: order.report(("preview", result.part(slice(0, FIRST)))),
+            preview=lambda result: report("preview", result.part(slice(0, FIRST))),
         )
 
 

@@ -11,7 +11,6 @@ from functools import partial
 from multiprocessing.connection import Connection
 from typing import TYPE_CHECKING, Any
 
-from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.model.search_report import Explanation
 from workhold.model.workpiece import Workpiece
@@ -20,7 +19,7 @@ from workhold.web.fixture_tasks import close, find_seating, make_paper
 from workhold.web.part_tasks import builtin_part, check_part, find_shape, read_part, survey_part
 from workhold.web.program_forms import look_at_program
 from workhold.web.request_forms import check_body
-from workhold.web.searching import search
+from workhold.web.searching import AskedQueries, search
 from workhold.web.support_tasks import find_supports
 from workhold.web.worker import Order, Tasks, worker_main
 
@@ -31,10 +30,7 @@ if TYPE_CHECKING:
     from workhold.web.forms import ExploreForm, JobForm, LoadsForm
     from workhold.web.request_forms import WorkpieceForm
 
-__all__ = ["TASKS", "NamedQuery", "warm_up", "work"]
-
-# What a toolkit is called, and the query for it.
-NamedQuery = tuple[str, Query]
+__all__ = ["TASKS", "warm_up", "work"]
 
 # Best fixtures listed when loads are asked for over all of them.
 MOST_RESISTING = 10
@@ -57,14 +53,14 @@ def warm_up(kind: str) -> None:
     import workhold.web.forms  # noqa: F401
 
 
-def explore(payload: tuple[NamedQuery, ...], order: Order) -> None:
+def explore(payload: AskedQueries, order: Order) -> None:
     """Answers one query after the other; reports are ("row", row) and ("progress", fraction, found)."""
     from workhold.files.result.writer import toolkit_fields
     from workhold.presenting.figure_words import is_edgeless, no_edge
     from workhold.search.design import explore
 
-    total = 0
-    for number, (row, (_, query)) in enumerate(zip(explore(payload, order.cancel), payload, strict=False), 1):
+    total, queries = 0, payload.queries
+    for number, (row, (_, query)) in enumerate(zip(explore(queries, order.cancel), queries, strict=False), 1):
         total += row.fixtures
         entry = {
             "title": row.name,
@@ -78,18 +74,16 @@ def explore(payload: tuple[NamedQuery, ...], order: Order) -> None:
             "note": row.reason,
         }
         order.report(("row", entry))
-        order.report(("progress", number / len(payload), total))
+        order.report(("progress", number / len(queries), total))
 
 
-def explanation(query: Query, order: Order) -> Explanation:
+def explanation(payload: AskedQueries, order: Order) -> Explanation:
     from workhold.search.explaining import explain
 
-    return explain(query)
+    return explain(payload.query)
 
 
-def check_job(
-    payload: tuple[JobForm | ExploreForm | FamilyForm, int], order: Order
-) -> tuple[NamedQuery, ...]:
+def check_job(payload: tuple[JobForm | ExploreForm | FamilyForm, int], order: Order) -> AskedQueries:
     """Makes the queries of a request, and checks what can be checked before the search."""
     from workhold.contact.problem import Problem
     from workhold.search.seated import refuse_unasked
@@ -100,7 +94,7 @@ def check_job(
         Problem.of(queries[0][1])
         if queries[0][1].seating is not None:
             refuse_unasked(queries[0][1])
-    return queries
+    return AskedQueries.of(queries)
 
 
 def make_lesson(payload: tuple[WorkpieceForm, int], order: Order) -> dict[str, Any]:

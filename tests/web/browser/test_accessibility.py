@@ -87,14 +87,14 @@ def test_motion_is_left_out_for_those_who_want_none(browser: Any, server: Runnin
         walk.open()
         walk.take()
         walk.search()
-        walk.page.wait_for_selector("#drawing-fixture .sliding:not([transform])", state="attached")
+        walk.page.wait_for_selector("#drawing-fixture .moves:not([transform])", state="attached")
         slid[motion] = walk.page.evaluate(
             """async () => {
               document.querySelector("#close-vise").click();
-              return document.querySelector("#drawing-fixture .sliding").hasAttribute("transform");
+              return document.querySelector("#drawing-fixture .moves").hasAttribute("transform");
             }"""
         )
-        walk.page.wait_for_selector("#drawing-fixture .sliding:not([transform])", state="attached")
+        walk.page.wait_for_selector("#drawing-fixture .moves:not([transform])", state="attached")
         context.close()
     assert slid == {"reduce": False, "no-preference": True}
 

@@ -17,8 +17,8 @@ from workhold import load
 
 PHONE, DESK = {"width": 390, "height": 800}, {"width": 1280, "height": 800}
 OVERLAPS = """(svg) => {
-  const kinds = ["hole-label", "face-label", "load-text", "hole-axis.used"].map((kind) => `${svg} .${kind}`).join();
-  const labels = [...document.querySelectorAll(kinds)].map((each) => each.getBoundingClientRect());
+  const kinds = ".flag rect, .face-tag rect, .load-text, .axis-name.used";
+  const labels = [...document.querySelector(svg).querySelectorAll(kinds)].map((each) => each.getBoundingClientRect());
   const over = (a, b) => Math.min(
     Math.min(a.right, b.right) - Math.max(a.left, b.left), Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top));
   return labels.flatMap((a, k) => labels.slice(k + 1).filter((b) => over(a, b) > 1)).length;
@@ -209,7 +209,7 @@ def test_the_drawing_is_first_on_a_phone(browser: Any, server: RunningServer, tm
     walk.seen("#search-here").click()
     walk.searched(shown=False)
     page.click("#list .row >> nth=0")
-    walk.seen("#drawing-fixture .peg")
+    walk.seen("#drawing-fixture [data-peg]")
     assert page.locator("#search-here").is_hidden() and page.locator("#file-asks").is_hidden()
     page.click("#view-part")
     walk.seen("#file-asks")
@@ -242,12 +242,13 @@ def test_no_label_lies_on_another(
     page.select_option("#preset", preset)
     walk.searched(shown=False)
     walk.go("stage")
-    walk.seen("#drawing-fixture .hole-label")
+    walk.seen("#drawing-fixture .flag")
     for place in range(2, 10):
         if place == 6:
             page.click("#push")
             walk.seen("#drawing-fixture .load-text")
         page.click("#next")
         walk.seen(f"#place:has-text('{place} of')")
+        walk.arrived()
         assert page.evaluate(OVERLAPS, "#drawing-fixture") == 0, walk.holes()
     context.close()

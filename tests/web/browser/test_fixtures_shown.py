@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import base64
 import json
+import re
 import zlib
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
 import pytest
-from walking import SEARCH_PATIENCE, Walk
+from walking import CLAMP_ENDS, SEARCH_PATIENCE, Walk
 
 
 def test_a_list_of_thousands_has_few_rows_in_the_page(walk: Walk) -> None:
@@ -49,12 +50,21 @@ def test_a_list_of_thousands_has_few_rows_in_the_page(walk: Walk) -> None:
 def test_a_fixture_of_an_earlier_stage_of_the_search_does_not_stay(walk: Walk, sort: str) -> None:
     """The list is changed before the last rows have come, so the fixture on show is of the stage before."""
     page = walk.page
-    begun = False
+    begun = changed = False
+
+    def fixture(route: Any) -> None:
+        """Tell the next fixture for the one asked for, until the list is changed."""
+        rank = int(urlsplit(route.request.url).path.rpartition("/")[2])
+        if not begun or changed:
+            return route.continue_()
+        response = route.fetch(url=route.request.url.replace(f"/{rank}?", f"/{rank + 1}?"))
+        return route.fulfill(response=response, json={**response.json(), "rank": rank})
 
     def answer(route: Any) -> None:
         """Let the first rows miss the best fixture, and no others arrive until the list is changed."""
-        nonlocal begun
+        nonlocal begun, changed
         if "together=false" in route.request.url:
+            changed = True
             return route.continue_()
         if begun:
             return None
@@ -65,6 +75,7 @@ def test_a_fixture_of_an_earlier_stage_of_the_search_does_not_stay(walk: Walk, s
         return route.fulfill(response=response, json=told)
 
     page.route("**/fixtures?*", answer)
+    page.route(re.compile(r"/fixtures/\d+\?width"), fixture)
     walk.take()
     walk.search()
     stale = walk.shown()
@@ -234,7 +245,11 @@ def test_two_fixtures_side_by_side(walk: Walk) -> None:
     first = walk.shown()
     page.keyboard.press("ArrowRight")
     walk.seen("#board-title:has-text('Shown: 2')")
-    assert page.locator("#drawing-pinned .peg").count() == page.locator("#drawing-fixture .peg").count() == 4
+    assert (
+        page.locator("#drawing-pinned [data-peg]").count()
+        == page.locator("#drawing-fixture [data-peg]").count()
+        == 4
+    )
     assert f"{first['rank']} pinned" in page.inner_text("#quality-heads")
     better = page.locator("#quality td.better").count()
     assert better >= 1
@@ -247,9 +262,9 @@ def test_pointing_at_a_peg_tells_its_hole(walk: Walk) -> None:
     walk.take()
     walk.search()
     row = walk.shown()
-    walk.page.hover("#drawing-fixture .peg >> nth=0")
+    walk.page.hover("#drawing-fixture [data-peg] >> nth=0")
     words = walk.seen("#peg-words").inner_text()
-    index = int(walk.page.locator("#drawing-fixture .peg >> nth=0").get_attribute("data-peg"))
+    index = int(walk.page.locator("#drawing-fixture [data-peg] >> nth=0").get_attribute("data-peg"))
     assert row["holes"][index] in words
     assert f"face {row['faces'][index]}" in words
     assert walk.page.locator("#pegs tr.marked td").first.inner_text() == row["holes"][index]
@@ -265,7 +280,7 @@ def test_no_fixture_is_explained_and_helped(walk: Walk) -> None:
     walk.seen("#count:has-text('There is no fixture')", SEARCH_PATIENCE)
     walk.seen("#why h3", SEARCH_PATIENCE)
     assert page.inner_text("#why .last td:last-child") == "0"
-    assert page.locator("#drawing-fixture .peg").count() == 4
+    assert page.locator("#drawing-fixture [data-peg]").count() == 4
     page.click("#why .helps button >> nth=0")
     walk.searched()
     assert walk.count() > 0
@@ -326,18 +341,16 @@ def test_a_plate_is_drawn_with_its_clamp(walk: Walk, way: str, bolted: bool) -> 
     walk.seen("#faces button")
     walk.search()
     row = walk.server.client.get(f"/api/jobs/{walk.job()}/fixtures/1").json()
-    clamp = row["carriers"][-1]["clamp"]
     page = walk.page
     walk.seen("#drawing-fixture .clamp-push")
-    assert page.locator("#drawing-fixture .plate").count() == 1
-    assert page.locator("#drawing-fixture .peg").count() == 4
+    assert page.locator("#drawing-fixture .picture > :has(> circle)").count() == 1
+    assert page.locator("#drawing-fixture [data-peg]").count() == 4
     assert page.locator("#drawing-fixture .clamp-line").count() == int(not bolted)
     page.wait_for_function("() => !document.querySelector('#drawing-fixture [transform^=translate]')")
     if bolted:
-        body = page.locator("#drawing-fixture .clamp-edge")
-        ends = [float(body.get_attribute(name) or "nan") for name in ("x1", "y1", "x2", "y2")]
-        assert ends == pytest.approx([*clamp["hole"], *clamp["tip"]], abs=1e-6)
-        assert float(body.get_attribute("stroke-width") or "nan") == 10
+        tip, stroke = row["pegs"][-1], row["settings"][0]["length"]
+        hole = [at - stroke * to for at, to in zip(tip, row["carriers"][-1]["clamping"], strict=True)]
+        assert page.evaluate(CLAMP_ENDS, False) == pytest.approx([*hole, *tip, *hole], abs=1e-3)
     words, number = page.inner_text("#pose-words"), f"{row['settings'][0]['length']:.3f} mm".replace("-", "−")
     assert words.startswith("Stroke" if bolted else f"Tip {way[1]}") and number in words
     assert "hole A1" in words and "clamp force" in words

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 from running_server import RunningServer
-from walking import EXAMPLES, SEARCH_PATIENCE, Walk
+from walking import CLAMP_ENDS, EXAMPLES, SEARCH_PATIENCE, Walk
 
 STATE = "async () => (await import('/static/state.js')).state"
 
@@ -113,8 +113,8 @@ def test_pegs_with_a_flat_lie_on_the_part(walk: Walk) -> None:
     fill(walk, flat="2")
     assert held_in(walk)["flat"] == 2
     walk.search()
-    flats = page.locator("#drawing-fixture path.peg-body").count()
-    assert 0 < flats <= 3 and page.locator("#drawing-fixture .peg-body").count() == 4
+    flats = page.locator("#drawing-fixture path.peg").count()
+    assert 0 < flats <= 3 and page.locator("#drawing-fixture .peg").count() == 4
     fill(walk, flat="9")
     page.click("#search")
     walk.seen("text=is none of a peg of radius")
@@ -196,28 +196,19 @@ def test_the_clamp_closes(browser: Any, server: RunningServer) -> None:
     page.select_option("#preset", "clamp-plate-20mm")
     walk.search()
     row = walk.server.client.get(f"/api/jobs/{walk.job()}/fixtures/1").json()
-    clamp = row["carriers"][-1]["clamp"]
+    travel = walk.server.client.get(f"/api/jobs/{walk.job()}").json()["request"]["toolkit"]["travel"]
+    way, tip, stroke = row["carriers"][-1]["clamping"], row["pegs"][-1], row["settings"][0]["length"]
+    hole, back = (
+        [at - far * to for at, to in zip(tip, way, strict=True)] for far in (stroke, stroke - travel[0])
+    )
     # Until then the first one of an earlier stage of the search may be on show.
     walk.until("String(state.selected?.holes) === String(given)", row["holes"])
-    moving = "#drawing-fixture .sliding .peg"
-    page.wait_for_selector("#drawing-fixture .sliding:not([transform]) .peg", state="attached")
-    begun = page.evaluate(
-        """() => {
-          document.querySelector("#close-vise").click();
-          const body = document.querySelector("#drawing-fixture .clamp-edge");
-          const bolt = document.querySelector("#drawing-fixture .bolt");
-          const ends = ["x1", "y1", "x2", "y2"].map((name) => Number(body.getAttribute(name)));
-          return [...ends, Number(bolt.getAttribute("cx"))];
-        }"""
-    )
-    way = [(b - a) / row["settings"][0]["length"] for a, b in zip(clamp["hole"], clamp["tip"], strict=True)]
-    back = [tip - clamp["draws_back"] * part for tip, part in zip(clamp["tip"], way, strict=True)]
-    assert begun == pytest.approx([*clamp["hole"], *back, clamp["hole"][0]], abs=1e-6)
-    page.wait_for_selector("#drawing-fixture .sliding:not([transform]) .peg", state="attached")
-    body = page.locator("#drawing-fixture .clamp-edge")
-    assert [float(body.get_attribute(name) or "nan") for name in ("x2", "y2")] == pytest.approx(
-        clamp["tip"], abs=1e-6
-    )
+    moving = "#drawing-fixture .moves[data-peg]"
+    page.wait_for_selector(f"{moving}:not([transform])", state="attached")
+    begun = page.evaluate(CLAMP_ENDS, True)
+    assert begun == pytest.approx([*hole, *back, *hole], abs=1e-3)
+    page.wait_for_selector(f"{moving}:not([transform])", state="attached")
+    assert page.evaluate(CLAMP_ENDS, False) == pytest.approx([*hole, *tip, *hole], abs=1e-3)
     assert page.locator(moving).count() == 1
     context.close()
     assert walk.troubles == []

@@ -26,7 +26,7 @@ def search_for_long(walk: Walk) -> None:
     page.click("#search")
     walk.seen("#progress-row")
     walk.seen("#list .row:not(.coming)", SEARCH_PATIENCE)
-    walk.seen("#drawing-fixture .peg", SEARCH_PATIENCE)
+    walk.seen("#drawing-fixture [data-peg]", SEARCH_PATIENCE)
 
 
 def test_the_first_fixtures_show_while_the_search_runs(walk: Walk) -> None:
@@ -39,7 +39,7 @@ def test_the_first_fixtures_show_while_the_search_runs(walk: Walk) -> None:
     page.fill("#peg-radius", "1.5")
     page.press("#peg-radius", "Tab")
     page.wait_for_selector("#list .row", state="detached")
-    assert page.locator("#drawing-fixture .peg").count() == 0
+    assert page.locator("#drawing-fixture [data-peg]").count() == 0
     page.wait_for_selector('body[data-search="running"]', timeout=SEARCH_PATIENCE)
     assert walk.job() != old
     assert walk.server.client.get(f"/api/jobs/{old}").status_code == 404

@@ -21,6 +21,22 @@ POINT_ON_PAGE = """async ([view, x, y]) => {
 }"""
 
 
+# The ends of a clamp's body and the middle of its bolt, in mm; as soon as it begins to close where that is wanted.
+CLAMP_ENDS = """async (closes) => {
+  const { fixtureDrawing } = await import("/static/stage-panel.js");
+  const back = fixtureDrawing.map.inverse();
+  if (closes) document.querySelector("#close-vise").click();
+  const body = document.querySelector("#drawing-fixture .clamp-body").getAttribute("d");
+  const [x0, y0, x1, y1] = body.match(/-?[\\d.]+/g).map(Number);
+  const bolt = document.querySelector("#drawing-fixture .bolt");
+  const places = [[x0, y0], [x1, y1], [Number(bolt.getAttribute("cx")), Number(bolt.getAttribute("cy"))]];
+  return places.flatMap(([x, y]) => {
+    const point = back.transformPoint({ x, y });
+    return [point.x, point.y];
+  });
+}"""
+
+
 @define(eq=False)
 class Walk:
     """A page of the browser, and the server behind it.
@@ -118,12 +134,19 @@ class Walk:
         """The search on show."""
         return str(self.page.evaluate("async () => (await import('/static/state.js')).state.job.job"))
 
+    def arrived(self) -> None:
+        """Wait until the fixture that the list marks has come."""
+        marked = "document.querySelector('#list [aria-selected=true] b')"
+        self.until(f"!{marked} || state.selected?.rank === Number({marked}.textContent)")
+
     def shown(self) -> dict[str, Any]:
         """The fixture on show, as the server told it."""
+        self.arrived()
         return dict(self.page.evaluate("async () => (await import('/static/state.js')).state.selected"))
 
     def holes(self) -> list[str]:
         """Holes in the table of pegs."""
+        self.arrived()
         return list(self.page.locator("#pegs td:first-child").all_inner_texts())
 
     def point(self, x: float, y: float, drawing: str = "partDrawing") -> tuple[float, float]:

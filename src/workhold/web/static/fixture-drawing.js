@@ -1,28 +1,44 @@
 /**
- * The drawing of one fixture: plates with their holes, the part in its pose, pegs, and what lies in mm.
+ * The drawing of one fixture: the server's picture, of which groups are moved, and what the page adds to it.
  *
- * Lettering and arrows are in fixture-lettering.js; they keep their size when the drawing is zoomed.
+ * How the groups of the picture are marked is written in presenting/zoomed_picture.py and presenting/moving_picture.py.
  */
-import { draw, show } from "./dom.js";
-import { boundsOf, outlinePath, segmentPath } from "./geometry.js";
-import { drawLettering } from "./fixture-lettering.js";
-import { contactsOf, forceOf, intoVise, partSegments, place, poseMatrix, touchableSegments, writtenTurn } from "./pose.js";
+import { draw, quiet, show } from "./dom.js";
+import { drawOver } from "./fixture-overlay.js";
+import { forceOf, intoVise, poseMatrix, writtenTurn } from "./pose.js";
 import { nearestMove, programPaths } from "./program-drawing.js";
 import { clampFromAbove, supportPads } from "./supports-drawing.js";
 import { lyingMatrix } from "./trial.js";
+import { length } from "./units.js";
 import { Viewport } from "./viewport.js";
 
-/** Room around the drawing for lettering, in pixels: top, right, bottom, left. */
-const MARGINS = [62, 52, 48, 52];
-const MOST_HOLES = 2500;
+/** Units of a picture for each pixel. */
+export const UNITS = 1.15;
+/** A picture is asked for anew in a frame that is so many times as wide or high as its own. */
+const OTHER = 1.12;
+/** How far what slides opens before it closes before the user's eyes, as a share of the drawing's width. */
+const OPEN = 0.16;
+
+/** The numbers of a text. @param {string} text */
+const numbers = (text) => text.match(/-?[\d.]+(e[-+]?\d+)?/g)?.map(Number) ?? [];
+
+/**
+ * The groups of a picture, and the picture's root.
+ * @param {string} text
+ */
+export function pictureOf(text) {
+  const root = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;
+  return { root, groups: [...root.children].filter(({ tagName }) => !["title", "rect"].includes(tagName)).map((child) => document.importNode(child, true)) };
+}
 
 /** A drawing of fixtures in an SVG element. */
 export class FixtureDrawing {
   /**
    * @param {SVGSVGElement} svg
    * @param {(index: number|null, at: DOMRect|null) => void} pointed called with the peg that is pointed at or focused
+   * @param {(row: any, size: number[]) => Promise<string|null>} redrawn asks for the picture of a fixture in a frame of another size in pixels
    */
-  constructor(svg, pointed = () => {}) {
+  constructor(svg, pointed, redrawn) {
     this.svg = svg;
     this.view = new Viewport(svg);
     this.view.onview = () => this.letter();
@@ -31,7 +47,6 @@ export class FixtureDrawing {
     this.load = null;
     this.open = 0;
     this.frame = 0;
-    this.underPegs = draw("g");
     /** How the part lies where it was put by hand; null where the fixture has it. @type {import("./trial.js").Lying|null} */
     this.lying = null;
     /** What else keeps its size on top. @type {() => Node[]} */
@@ -44,70 +59,71 @@ export class FixtureDrawing {
     this.program = null;
     /** @type {any} */
     this.passing = null;
+    /** Pegs in the picture. @type {SVGElement[]} */
+    this.pegs = [];
+    this.suit = quiet(async () => {
+      const { row, size } = this;
+      const frame = this.view.size;
+      const others = frame.map((pixels, k) => (pixels * UNITS) / size?.[k]);
+      if (!row?.rank || this.view.printing || !others.every((share) => share > 0) || others.every((share) => share < OTHER && share > 1 / OTHER)) return;
+      const picture = await redrawn(row, frame);
+      if (!picture || this.row !== row || this.open || this.lying) return;
+      row.picture = picture;
+      this.build();
+      if (this.view.fitted) this.fit();
+      else this.view.apply();
+    }, 120);
   }
 
   /**
    * Draw a fixture.
-   * @param {any} part
    * @param {any} toolkit
    * @param {import("./pose.js").Row} row
-   * @param {{keepView?: boolean}} [options]
    */
-  show(part, toolkit, row, { keepView = false } = {}) {
+  show(toolkit, row) {
     cancelAnimationFrame(this.frame);
     this.open = 0;
     this.lying = null;
     this.supports = null;
-    const toVise = intoVise(row);
-    const box = boundsOf(partSegments(part).map(({ segment }) => segment), toVise);
-    this.part = part;
     this.toolkit = toolkit;
     this.row = row;
-    this.toVise = toVise;
-    this.contacts = contactsOf(part, row).map(({ contact, normal }) => {
-      const [x, y] = toVise(normal);
-      return { at: toVise(contact), normal: [x - row.x, y - row.y] };
-    });
+    this.toVise = intoVise(row);
     this.build();
-    const whole = [...box];
-    for (const { plate } of row.carriers) {
-      whole[0] = Math.min(whole[0], plate[0]);
-      whole[1] = Math.min(whole[1], plate[1]);
-      whole[2] = Math.max(whole[2], plate[2]);
-      whole[3] = Math.max(whole[3], plate[3]);
-    }
-    this.whole = whole;
-    const margins = this.svg.clientWidth < 520 ? [58, 34, 40, 34] : MARGINS;
-    if (keepView && !this.view.fitted) this.view.apply();
-    else this.view.fit(whole, margins);
+    this.fit();
     this.svg.setAttribute("aria-label", this.words());
+  }
+
+  /** See the whole picture. */
+  fit() {
+    const [from, to] = [[0, this.size[1]], [this.size[0], 0]].map(([x, y]) => this.map.inverse().transformPoint({ x, y }));
+    this.view.fit([from.x, from.y, to.x, to.y], [0, 0, 0, 0]);
   }
 
   /** Show how far the cutter is to keep off the pegs. */
   keepOff(clearance) {
     if (clearance === this.clearance) return;
     this.clearance = clearance;
-    if (this.row) this.build();
+    if (this.row) this.add();
   }
 
   /** Show supports and the clamp on top, or none. @param {any} supports a set of the server, with the radii */
   showSupports(supports) {
     if (supports === this.supports) return;
     this.supports = supports;
-    if (this.row) this.build();
+    if (this.row) this.add();
   }
 
   /** Show the paths of a program, or none. @param {any} read */
   showProgram(read) {
     this.program = read;
-    if (this.row) this.build();
+    if (this.row) this.add();
   }
 
   /** Light up the move that comes nearest, or none. @param {any} passing as the server tells it */
   showPassing(passing) {
     if (passing === this.passing) return;
     this.passing = passing;
-    if (this.row) this.build();
+    if (this.row) this.add();
   }
 
   /** Nothing is shown. */
@@ -125,31 +141,78 @@ export class FixtureDrawing {
     return `Fixture ${row.rank || ""}, ${row.title}: pegs in ${row.holes.join(", ")}, ${set}part turned by ${writtenTurn(row).toFixed(3)} degrees. The table of pegs tells the rest.`;
   }
 
-  /** Make everything that lies in mm. */
+  /** Put the picture in its place. */
   build() {
-    const { part, row } = this;
-    const outline = outlinePath(part.loops);
-    const touched = new Set(row.faces.filter((_, k) => !row.corners.includes(k)));
-    const shape = draw("g.part", { transform: poseMatrix(row) }, draw("path.part-fill", { d: outline }));
-    this.shape = shape;
-    this.ghost = draw("path.ghost", { d: outline, transform: poseMatrix(row), hidden: true });
-    for (const { segment, face } of touchableSegments(part)) {
-      if (touched.has(face)) shape.append(draw("path.touched", { d: segmentPath(segment), "data-face": face }));
-    }
-    shape.append(...programPaths(this.program), ...nearestMove(this.passing));
-    shape.append(draw("path.outline", { d: outline }));
-    this.underPegs = draw("g.under-pegs");
-    const groups = (contents) => row.carriers.map((each) => draw(each.clamping ? "g.sliding" : "g.still", {}, ...contents(each)));
-    this.plates = groups((each) => (each.clamp ? this.clamp(each) : this.plate(each)));
-    // Arrows lie over the part, for clamps that stand in a hole of it.
-    this.pegs = groups((each) => [
-      ...(each.clamp ? [this.push(each)] : []),
-      ...each.pegs.map((k, at) => this.peg(row.pegs[k], k, each, each.flats?.[at] ?? null)),
-    ]);
-    this.pads = row.carriers.map((_, k) => draw("g", {}, ...supportPads(this.supports, k)));
+    const { root, groups } = pictureOf(this.row.picture);
+    const { dataset } = /** @type {SVGElement} */ (/** @type {any} */ (root));
+    const [left, top, right, bottom] = numbers(dataset.rim ?? "").map((units) => units / UNITS);
+    this.map = new DOMMatrix(numbers(dataset.modelToPage ?? ""));
+    this.size = numbers(root.getAttribute("viewBox") ?? "").slice(2);
+    this.whole = numbers(dataset.extent ?? "");
+    this.rim = [top, right, bottom, left];
+    const picture = draw("g.picture", { transform: String(this.map.inverse()) }, ...groups);
+    const all = (kind) => /** @type {SVGElement[]} */ ([...picture.querySelectorAll(kind)]);
+    this.shape = all(".part")[0];
+    this.ghost = draw("path.ghost", { d: this.shape.lastElementChild?.getAttribute("d"), hidden: true });
+    this.shape.before(this.ghost);
+    this.kept = all(".kept").map((group) => ({ group, at: numbers(group.dataset.at ?? ""), axes: group.dataset.axes ?? "", number: Number(group.dataset.number), step: Number(group.dataset.step ?? 0) }));
+    this.movers = all(".moves").map(moverOf);
+    this.most = Math.min(...all("[data-most]").map(({ dataset }) => Number(dataset.most)));
+    this.travels = all(".travel").map(travelOf);
+    const focused = this.pegs.findIndex((peg) => peg === document.activeElement);
+    this.pegs = all("[data-peg]");
+    for (const peg of this.pegs) this.listen(peg, Number(peg.dataset.peg));
+    this.added = [];
+    this.arrows = draw("g");
+    all(".forces")[0].after(this.arrows);
+    this.view.world.replaceChildren(picture);
+    this.add();
+    this.pegs[focused]?.focus();
+  }
+
+  /** What the page adds to the picture: program, supports, circles about the pegs. */
+  add() {
+    const { row, map, toolkit, clearance } = this;
+    for (const old of this.added) old.remove();
+    const program = draw("g", { transform: String(map.multiply(poseMatrix(row))) }, ...programPaths(this.program), ...nearestMove(this.passing));
+    this.shape.lastElementChild?.before(program);
+    const pads = row.carriers.map(({ clamping }, k) => ({ group: draw("g", {}, ...supportPads(this.supports, k)), way: clamping ?? [0, 0], bars: [] }));
     this.over = draw("g.clamped-down", {}, ...clampFromAbove(this.supports));
-    this.view.world.replaceChildren(...this.plates, this.ghost, shape, ...this.pads, this.over, ...this.pegs);
+    const supports = draw("g", { transform: String(map) }, ...pads.map(({ group }) => group), this.over);
+    this.view.world.querySelector(".over-part")?.append(supports);
+    this.added = [program, supports];
+    if (clearance !== null) {
+      for (const peg of this.pegs) {
+        const k = Number(peg.dataset.peg);
+        const [cx, cy] = row.pegs[k];
+        const radius = toolkit.body_radius ?? row.carriers.find(({ pegs }) => pegs.includes(k))?.peg_radius ?? 0;
+        const circle = draw("g", { transform: String(map) }, draw("circle.keep-out", { cx, cy, r: radius + clearance }));
+        peg.prepend(circle);
+        this.added.push(circle);
+      }
+    }
+    this.pads = pads;
     this.slide(this.open);
+  }
+
+  /** Make a peg something to point at and to focus. */
+  listen(peg, k) {
+    const { row } = this;
+    const where = row.flush.includes(k) ? "Contact with" : "Peg in";
+    const words = `${where} ${row.holes[k]}, on face ${row.touched[k]}, presses with ${row.forces[k].toFixed(3)} N for each N of ${forceOf(row)}`;
+    for (const [name, value] of Object.entries({ tabindex: "0", role: "img", "aria-label": words })) peg.setAttribute(name, value);
+    for (const name of ["pointerenter", "focus"]) {
+      peg.addEventListener(name, () => {
+        this.mark(k);
+        this.pointed(k, peg.getBoundingClientRect());
+      });
+    }
+    for (const name of ["pointerleave", "blur"]) {
+      peg.addEventListener(name, () => {
+        this.mark(-1);
+        this.pointed(null, null);
+      });
+    }
   }
 
   /**
@@ -159,125 +222,56 @@ export class FixtureDrawing {
   lie(lying) {
     cancelAnimationFrame(this.frame);
     this.lying = lying;
-    this.shape.setAttribute("transform", lying ? lyingMatrix(lying) : poseMatrix(this.row));
+    const { map } = this;
+    if (lying) this.shape.setAttribute("transform", String(map.multiply(lyingMatrix(lying)).multiply(poseMatrix(this.row).inverse()).multiply(map.inverse())));
+    else this.shape.removeAttribute("transform");
     this.shape.classList.toggle("put", lying !== null);
     this.shape.classList.toggle("over", lying?.over === true);
     show(this.ghost, lying !== null);
   }
 
-  /** The plate of a carrier and its holes. */
-  plate(carrier) {
-    const { columns, rows, hole_radius: size, clamping } = carrier;
-    const [x0, y0, x1, y1] = carrier.plate;
-    const kind = carrier.pegs.some((k) => this.row.flush.includes(k)) ? "wall" : clamping ? "slides" : "stands";
-    const plate = draw(`rect.plate.${kind}`, { x: x0, y: y0, width: x1 - x0, height: y1 - y0 });
-    let holes = "";
-    if ((columns[1] - columns[0] + 1) * (rows[1] - rows[0] + 1) <= MOST_HOLES) {
-      for (let column = columns[0]; column <= columns[1]; column += 1) {
-        for (let row = rows[0]; row <= rows[1]; row += 1) {
-          const [x, y] = place(carrier, column, row);
-          holes += `M${x - size} ${y}a${size} ${size} 0 1 0 ${2 * size} 0a${size} ${size} 0 1 0 ${-2 * size} 0Z`;
-        }
-      }
-    }
-    return [plate, draw("path.holes", { d: holes })];
-  }
-
-  /** A clamp: its body and bolt, or the line of holes that its tip is on. */
-  clamp({ clamp, clamping: [dx], pitch, peg_radius: size }) {
-    const { hole, tip, bolt_radius: bolt } = clamp;
-    const [x0, y0, x1, y1] = clamp.line;
-    const radius = size || (dx ? pitch[0] : pitch[1]) / 12;
-    if (!hole) return [draw("path.clamp-line", { d: dx ? `M${x0} ${tip[1]}H${x1}` : `M${tip[0]} ${y0}V${y1}` })];
-    const ends = { x1: hole[0], y1: hole[1], x2: tip[0], y2: tip[1] };
-    return [
-      draw("line.clamp-edge.clamp-body", { ...ends, "stroke-width": 2 * radius }),
-      draw("line.clamp-fill.clamp-body", { ...ends, "stroke-width": 1.8 * radius }),
-      draw("circle.bolt", { cx: hole[0], cy: hole[1], r: Math.min(bolt, 0.8 * radius) }),
-    ];
-  }
-
-  /** The arrow behind a clamp in the way it pushes. */
-  push({ clamp, clamping: [dx, dy], pitch, peg_radius: size }) {
-    const pitchAlong = dx ? pitch[0] : pitch[1];
-    const radius = Math.max(size, pitchAlong / 12);
-    const [x, y] = clamp.hole ?? clamp.tip;
-    const at = (away, aside) => `${x - away * dx - aside * dy} ${y - away * dy + aside * dx}`;
-    const [near, far, neck, wing, shaft] = [radius * 1.1, pitchAlong * 0.95, radius * 1.1 + pitchAlong * 0.24, pitchAlong * 0.13, pitchAlong * 0.055];
-    const corners = [[near, 0], [neck, wing], [neck, shaft], [far, shaft], [far, -shaft], [neck, -shaft], [neck, -wing]];
-    return draw("path.clamp-push", { d: `M${corners.map(([away, aside]) => at(away, aside)).join("L")}Z` });
-  }
-
-  /** A peg that can be pointed at and focused. */
-  peg([x, y], k, { peg_radius: size, flat }, looks) {
-    const radius = size || Math.min(...this.toolkit.pitch) / 12;
-    const { row, clearance } = this;
-    const where = row.flush.includes(k) ? "Contact with" : "Peg in";
-    const words = `${where} ${row.holes[k]}, on face ${row.touched[k]}, presses with ${row.forces[k].toFixed(3)} N for each N of ${forceOf(row)}`;
-    const group = draw("g.peg", { tabindex: 0, role: "img", "aria-label": words, "data-peg": k });
-    if (clearance !== null) group.append(draw("circle.keep-out", { cx: x, cy: y, r: (this.toolkit.body_radius ?? size) + clearance }));
-    if (looks === null || flat >= size) group.append(draw("circle.peg-body", { cx: x, cy: y, r: radius }));
-    else group.append(draw("path.peg-body", { d: flattedPath([x, y], radius, (looks * Math.PI) / 180, Math.acos(flat / size)) }));
-    const cross = radius / 2;
-    group.append(draw("path.peg-cross", { d: `M${x - cross} ${y}H${x + cross}M${x} ${y - cross}V${y + cross}` }));
-    const point = () => {
-      this.mark(k);
-      this.pointed(k, group.getBoundingClientRect());
-    };
-    const away = () => {
-      this.mark(-1);
-      this.pointed(null, null);
-    };
-    group.addEventListener("pointerenter", point);
-    group.addEventListener("pointerleave", away);
-    group.addEventListener("focus", point);
-    group.addEventListener("blur", away);
-    return group;
-  }
-
   /** Mark a peg, in the drawing only. */
   mark(index) {
-    for (const peg of this.svg.querySelectorAll(".peg")) peg.classList.toggle("marked", Number(peg.dataset.peg) === index);
+    for (const peg of this.pegs) peg.classList.toggle("marked", Number(peg.dataset.peg) === index);
   }
 
-  /** Draw the lettering for the view as it is. */
+  /** Let what keeps its size keep it, for the view as it is, and draw what lies over the picture. */
   letter() {
-    if (this.row) drawLettering(this);
+    if (!this.row) return;
+    const share = this.map.a / UNITS / this.view.k;
+    for (const { group, at: [x, y], axes, number, step } of this.kept) {
+      const [across, down] = [axes.includes("x") ? share : 1, axes.includes("y") ? share : 1];
+      group.setAttribute("transform", `matrix(${across} 0 0 ${down} ${x * (1 - across)} ${y * (1 - down)})`);
+      if (step) show(group, number % Math.max(1, Math.ceil(step * share)) === 0);
+    }
+    // Arrows are drawn in pixels, below the names of holes.
+    const { k, x: left, y: foot } = this.view;
+    this.arrows.setAttribute("transform", String(this.map.multiply(new DOMMatrix([k, 0, 0, -k, left, foot]).inverse())));
+    drawOver(this);
+    this.suit();
   }
 
   /**
    * Show the forces of a load, or none.
-   * @param {null|{at: number[], vector: number[], forces: number[]}} load `at` and `vector` in mm in the vise frame
+   * @param {null|{at: number[], vector: number[], forces: number[], size: number}} load `at` and `vector` in mm in the vise frame
    */
   showLoad(load) {
     this.load = load;
+    this.svg.classList.toggle("loaded", load !== null);
     this.letter();
   }
 
-  /** How far from its place in the drawing a carrier is shown, in mm; a clamp is drawn back no farther than it goes. */
-  shift({ clamping, clamp }) {
-    const open = Math.min(this.open, clamp?.draws_back ?? Infinity);
-    return clamping && open ? [-clamping[0] * open, -clamping[1] * open] : [0, 0];
-  }
-
-  /** Put what slides `open` mm from where it clamps. */
+  /** Put what slides `open` mm from where it clamps; a clamp is drawn back no farther than it goes. */
   slide(open) {
     this.open = open;
-    this.row.carriers.forEach((carrier, k) => {
-      const [x, y] = this.shift(carrier);
-      const { clamp } = carrier;
-      if (clamp) {
-        // The bolt stays where it is, and the body is as long as the tip is out.
-        for (const body of this.plates[k].querySelectorAll(".clamp-body")) {
-          body.setAttribute("x2", clamp.tip[0] + x);
-          body.setAttribute("y2", clamp.tip[1] + y);
-        }
-      }
-      for (const group of clamp?.hole ? [this.pegs[k]] : [this.plates[k], this.pegs[k], this.pads[k]]) {
-        if (x || y) group.setAttribute("transform", `translate(${x} ${y})`);
-        else group.removeAttribute("transform");
-      }
-    });
+    this.svg.classList.toggle("opened", open !== 0 || this.lying !== null);
+    for (const { group, way, bars } of [...this.movers, ...this.pads]) {
+      const [x, y] = way.map((each) => -each * Math.min(open, this.most));
+      for (const { bar, at } of bars) bar.setAttribute("d", `M${at[0]} ${at[1]}L${at[2] + x} ${at[3] + y}`);
+      if ((x || y) && !bars.length) group.setAttribute("transform", `translate(${x} ${y})`);
+      else group.removeAttribute("transform");
+    }
+    for (const { sign, length: closed, grows, text } of this.travels) text.textContent = `${sign} = ${length(open ? Math.abs(Math.abs(closed) + grows * Math.min(open, this.most)) : closed)}`;
     show(this.over, !open);
     this.letter();
   }
@@ -290,7 +284,7 @@ export class FixtureDrawing {
       this.slide(0);
       return;
     }
-    const far = Math.max(1.5 * this.row.carriers[0].pitch[0], (this.whole[2] - this.whole[0]) * 0.16);
+    const far = (this.whole[2] - this.whole[0]) * OPEN;
     const begun = performance.now();
     const step = (now) => {
       const share = Math.min(1, (now - begun) / 650);
@@ -303,14 +297,25 @@ export class FixtureDrawing {
 }
 
 /**
- * The outline of a peg that a flat cuts off.
- *
- * @param {number[]} center
- * @param {number} radius
- * @param {number} looks which way the flat looks, in radians
- * @param {number} half half of the angle that the flat takes of the circle
+ * A length to set: the words of its dimension, and by how much it grows for each mm that what slides is open.
+ * @param {SVGElement} group
  */
-function flattedPath([x, y], radius, looks, half) {
-  const at = (angle) => `${x + radius * Math.cos(angle)} ${y + radius * Math.sin(angle)}`;
-  return `M${at(looks + half)}A${radius} ${radius} 0 ${half < Math.PI / 2 ? 1 : 0} 1 ${at(looks - half)}Z`;
+function travelOf(group) {
+  const text = /** @type {SVGElement} */ (group.querySelector(".dimension-text"));
+  const { way, bars: [{ at: [x0, y0, x1, y1] }] } = moverOf(/** @type {SVGElement} */ (group.querySelector(".moves")));
+  return { text, sign: text.dataset.sign, length: Number(text.dataset.length), grows: -Math.sign(way[0] * (x1 - x0) + way[1] * (y1 - y0)) };
+}
+
+/**
+ * What moves: its group and its way; of a bolted clamp and a dimension only the second end of its bars does.
+ * @param {SVGElement} group
+ */
+function moverOf(group) {
+  const bolted = group.querySelector(".clamp .bolt") ? group.querySelectorAll('.clamp > path[stroke-linecap="round"]') : [];
+  const bars = [...bolted, ...group.querySelectorAll(":scope > .stretches")];
+  return {
+    group,
+    way: numbers(group.dataset.way ?? ""),
+    bars: bars.map((bar) => ({ bar, at: numbers(bar.getAttribute("d") ?? "") })),
+  };
 }

@@ -1,14 +1,17 @@
 /**
  * The list of fixtures: only the rows in sight exist, so ten thousand scroll like ten.
  */
-import { make } from "./dom.js";
+import { ApiError, downloadPath, fetched } from "./api.js";
+import { draw, make } from "./dom.js";
+import { pictureOf } from "./fixture-drawing.js";
 import { writtenTurn } from "./pose.js";
+import { isSame } from "./selection.js";
 import { state } from "./state.js";
-import { drawThumbnail } from "./thumbnails.js";
 import { figureText, length, number, shownFigures } from "./units.js";
 
 const ROW = 88;
-const THUMBNAIL = [84, 72];
+/** Milliseconds that a row stays in sight before its small picture is asked for. */
+const STAYS = 40;
 const SPARE = 4;
 /** Browsers end at about 33 million pixels; beyond this many the scroll bar is scaled. */
 const HIGHEST = 12_000_000;
@@ -108,21 +111,17 @@ export class FixtureList {
 
   /** An empty cell. */
   made() {
-    const [width, height] = THUMBNAIL;
-    const ratio = Math.min(window.devicePixelRatio || 1, 2);
-    const canvas = /** @type {HTMLCanvasElement} */ (
-      make("canvas.thumbnail", { width: width * ratio, height: height * ratio, "aria-hidden": "true" })
-    );
+    const picture = draw("svg.thumbnail.picture", { viewBox: "0 0 84 72", "aria-hidden": "true" });
     const title = make("span.row-title");
     const holes = make("span.row-holes");
     const figures = make("span.row-figures");
-    const element = make("div.row", { role: "option", "aria-selected": "false" }, canvas, make("span.row-words", {}, title, holes, figures));
+    const element = make("div.row", { role: "option", "aria-selected": "false" }, picture, make("span.row-words", {}, title, holes, figures));
     element.addEventListener("click", () => {
       const index = Number(element.dataset.index);
       const row = this.rows?.at(index);
       if (row) this.chosen(index, row);
     });
-    return { element, canvas, title, holes, figures, row: null };
+    return { element, picture, title, holes, figures, row: null };
   }
 
   /** Fill a cell. */
@@ -145,7 +144,27 @@ export class FixtureList {
           make("i", {}, `${figure.short} `), figureText(figure, shownFigures(row)[figure.key])),
       ),
     );
-    drawThumbnail(cell.canvas, state.part, row);
+    this.showSmall(cell, row);
+  }
+
+  /** Show the small picture of a row, as soon as it has come. */
+  async showSmall(cell, row) {
+    const { job, revision } = this.rows;
+    if (cell.drawn && isSame(cell.drawn, row)) row.small ??= cell.drawn.small;
+    else cell.picture.replaceChildren();
+    if (!row.small) {
+      await new Promise((resolve) => setTimeout(resolve, STAYS));
+      if (cell.row !== row) return;
+      try {
+        row.small = await (await fetched(downloadPath(job, row.rank, "small.svg", { revision }))).content.text();
+      } catch (error) {
+        if (!(error instanceof ApiError)) throw error;
+      }
+    }
+    // Where the list has changed meanwhile there is none: other rows come, with pictures of their own.
+    if (cell.row !== row || !row.small) return;
+    cell.drawn = row;
+    cell.picture.replaceChildren(...pictureOf(row.small).groups);
   }
 
   /** Three figures at most: the one sorted by first, then warnings and what tells most. */

@@ -11,28 +11,27 @@
  * a contact, f0 - h (h . f0) / (1 / s + h . h) is. Contacts are without
  * friction (docs/quality.md).
  */
-import { contactsOf, turn } from "./pose.js";
+import { intoVise } from "./pose.js";
 
 /**
- * Coefficients (4, 4) of a fixture: the force of each peg per unit of g_x, g_y, m and F, in part coordinates.
+ * Coefficients (4, 4) of a fixture: the force of each peg per unit of g_x, g_y, m and F, in the vise frame.
  * @param {any} part
  * @param {import("./pose.js").Row} row
  * @returns {number[][]|null} null where the contacts do not determine the forces
  */
 export function coefficients(part, row) {
-  const center = centerOf(part);
-  const [c, s] = turn(row);
-  const contacts = contactsOf(part, row);
+  const center = intoVise(row)(centerOf(part));
   const size = Math.hypot(part.bounds[2] - part.bounds[0], part.bounds[3] - part.bounds[1]) / 2;
   const matrix = [0, 1, 2, 3].map((equation) =>
-    contacts.map(({ contact, normal }, k) => {
+    row.contacts.map((contact, k) => {
+      const normal = row.normals[k];
       if (equation < 2) return normal[equation];
       if (equation === 2) {
         return ((contact[0] - center[0]) * normal[1] - (contact[1] - center[1]) * normal[0]) / size;
       }
       const { clamping } = row.carriers.find(({ pegs }) => pegs.includes(k)) ?? {};
       // The force is told as positive: against the way in which the carrier pushes.
-      return clamping ? -clamping[0] * (normal[0] * c - normal[1] * s) - clamping[1] * (normal[0] * s + normal[1] * c) : 0;
+      return clamping ? -clamping[0] * normal[0] - clamping[1] * normal[1] : 0;
     }),
   );
   const inverse = inverted(matrix);
@@ -62,8 +61,9 @@ export function reactions(part, row, load) {
   if (!rows) return null;
   const center = centerOf(part);
   const angle = (load.direction * Math.PI) / 180;
-  const [gx, gy] = [load.size * Math.cos(angle), load.size * Math.sin(angle)];
-  const moment = (load.x - center[0]) * gy - (load.y - center[1]) * gx + load.moment;
+  const moment = load.size * ((load.x - center[0]) * Math.sin(angle) - (load.y - center[1]) * Math.cos(angle)) + load.moment;
+  const turned = angle + (row.theta_deg * Math.PI) / 180;
+  const [gx, gy] = [load.size * Math.cos(turned), load.size * Math.sin(turned)];
   const free = rows.map(([x, y, m]) => x * gx + y * gy + m * moment);
   const squares = rows.reduce((sum, line) => sum + line[3] * line[3], 0);
   const stiffness = load.kind === "constant" ? 0 : typeof load.kind === "number" ? load.kind : Infinity;

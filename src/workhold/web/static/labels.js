@@ -48,16 +48,14 @@ export function apart(labels, obstacles = []) {
   }
 }
 
-/**
- * Small boxes along a line, as obstacles.
- * @param {number[]} from
- * @param {number[]} to
- * @param {number} width
- * @returns {Box[]}
- */
-export function along(from, to, width) {
-  const steps = Math.max(1, Math.ceil(Math.hypot(to[0] - from[0], to[1] - from[1]) / width));
-  return Array.from({ length: steps + 1 }, (_, k) => ({
-    x: from[0] + (k / steps) * (to[0] - from[0]), y: from[1] + (k / steps) * (to[1] - from[1]), w: width, h: width,
+/** Degrees to either side of the wanted way, and how many times as far, a label may stand; those wanted most first. */
+const TURNS = [0, 25, -25, 50, -50, 80, -80, 115, -115, 150, -150, 180];
+const FARTHER = [1, 1.4, 1.9];
+
+/** Places around a middle: on an ellipse towards a unit vector (y downward), and then ever more aside and farther. */
+export function around([x, y], [ux, uy], [far, high]) {
+  return FARTHER.flatMap((times) => TURNS.map((turn) => {
+    const [c, s] = [Math.cos((turn * Math.PI) / 180), Math.sin((turn * Math.PI) / 180)];
+    return { x: x + times * far * (c * ux - s * uy), y: y + times * high * (s * ux + c * uy) };
   }));
 }

@@ -1,7 +1,7 @@
 /**
  * The machine's program beside the part: a file and its table of tools, what was understood of them, and what its tools come near to.
  */
-import { ApiError, ask, send } from "./api.js";
+import { ApiError, send } from "./api.js";
 import { byId, field, make, quiet, show } from "./dom.js";
 import { colourOf } from "./program-drawing.js";
 import { fixtureDrawing, partDrawing } from "./stage-panel.js";
@@ -213,26 +213,16 @@ function aboveWords({ tools, peg_height: high }) {
   return ` ${listed} above pegs ${length(high, 1)} high all the way.`;
 }
 
-let asked = 0;
-
 /** What the tools come nearest to at the fixture shown: in words, and lit up in the drawing. */
-async function tellPassing() {
-  const mine = ++asked;
-  const { selected, job, program } = state;
+function tellPassing() {
+  const { selected, program } = state;
   show(byId("passing-card"), selected !== null && program !== null);
-  fixtureDrawing.showPassing(null);
-  if (!selected?.rank || !job?.job || !program) return;
-  try {
-    const { passing, program_forces: asksFor } = await ask(`jobs/${encodeURIComponent(job.job)}/fixtures/${selected.rank}`);
-    if (mine !== asked) return;
-    fixtureDrawing.showPassing(passing);
-    byId("passing").textContent = passing
-      ? `T${passing.tool} comes nearest in line ${passing.line}: ${length(passing.distance)} from the ${passing.element}. ${length(program.clearance, 2)} is asked for.`
-      : "No tool comes down to where anything holds the part.";
-    byId("passing").append(...(asksFor ? [make("br"), asksFor.words.join(" ")] : []));
-  } catch (error) {
-    if (!(error instanceof ApiError)) throw error;
-  }
+  const { passing = null, program_forces: asksFor = null } = (program && selected) || {};
+  fixtureDrawing.showPassing(passing);
+  byId("passing").textContent = passing
+    ? `T${passing.tool} comes nearest in line ${passing.line}: ${length(passing.distance)} from the ${passing.element}. ${length(program.clearance, 2)} is asked for.`
+    : "No tool comes down to where anything holds the part.";
+  byId("passing").append(...(asksFor ? [make("br"), asksFor.words.join(" ")] : []));
 }
 
 /** Keep the program over a reload; a link does not carry it. */

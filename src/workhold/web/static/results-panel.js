@@ -5,10 +5,9 @@ import { byId, choice, field, make, show } from "./dom.js";
 import { FixtureList } from "./fixture-list.js";
 import { Rows } from "./rows.js";
 import { cancel, searching, start } from "./search.js";
-import { rowOfRank, select, selectFrom } from "./selection.js";
+import { isSame, rowOfRank, select, selectFrom } from "./selection.js";
 import { tellTotal } from "./stage-panel.js";
 import { change, on, state } from "./state.js";
-import { forgetColours } from "./thumbnails.js";
 import { countText } from "./units.js";
 import { explain } from "./why-panel.js";
 
@@ -36,7 +35,7 @@ export function resultsPanel(figures) {
   const known = figures.map((figure) => ({ ...figure, short: SHORT[figure.key] ?? figure.words }));
   list = new FixtureList(byId("list"), (index, row) => {
     chosenByUser = true;
-    select(row, index);
+    select(row.rank, index);
   });
   list.figures = known;
   choice("sort").append(
@@ -73,11 +72,6 @@ export function resultsPanel(figures) {
     byId("search").toggleAttribute("disabled", state.part === null && !state.reading);
     show(byId("search-there"), state.part !== null && state.job === null);
     byId("search").textContent = state.job ? "Search again" : "Find every fixture";
-  });
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
-    forgetColours();
-    list.clear();
-    list.paint();
   });
 }
 
@@ -160,6 +154,9 @@ function openRows() {
   if (job && state.selected && !searching()) followSelected(job);
 }
 
+/** The first row whose fixture is on its way. @type {any} */
+let coming = null;
+
 /** Show the first fixture as soon as there is one, or the one a link asks for. */
 async function firstRow(from) {
   if (from !== rows) return;
@@ -183,13 +180,12 @@ async function firstRow(from) {
   // Of two fixtures with one rank, the one on show is of an earlier stage of the search.
   const moved = selected !== null && !same && !chosenByUser && (index === 0 || first.rank === selected.rank);
   if (!selected || moved) {
-    change({ selected: first, index: 0, ...(selected || state.view === "draw" ? {} : { view: "fixture" }) });
+    if (coming === first) return;
+    coming = first;
+    const row = await rowOfRank(state.job.job, first.rank);
+    if (!row || from !== rows || coming !== first || state.selected !== selected) return;
+    change({ selected: row, index: 0, ...(selected || state.view === "draw" ? {} : { view: "fixture" }) });
   } else if (index < 0 && same) change({ index: 0 });
-}
-
-/** Whether two rows are one fixture, whatever their ranks. */
-function isSame(row, other) {
-  return String(row.holes) === String(other.holes) && String(row.faces) === String(other.faces) && Math.abs(row.theta_deg - other.theta_deg) < 1e-6;
 }
 
 /** The search has moved on. */
@@ -226,7 +222,8 @@ async function followSelected(job) {
   if (state.selected !== selected || state.job?.job !== job) return;
   if (row && isSame(row, selected)) return;
   const first = await rows?.whenAt(0);
-  if (first) change({ selected: first, index: 0 });
+  const best = first && (await rowOfRank(job, first.rank));
+  if (best && state.selected === selected) change({ selected: best, index: 0 });
 }
 
 /** How many there are, in words; told to screen readers only now and then. */

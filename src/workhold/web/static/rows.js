@@ -3,8 +3,8 @@
  */
 import { ApiError, ask } from "./api.js";
 
-const PAGE = 200;
-const MOST_PAGES = 60;
+const PAGE = 40;
+const MOST_PAGES = 300;
 
 /** Fixtures of one job in one order. */
 export class Rows {

@@ -32,8 +32,11 @@ export function seatPictures(part, row, told, chosen, pick) {
     const seat = told.seats[number];
     const lying = lyingIn(seat);
     const pegs = pegsOpen(row, told.clamping * seat.difference);
-    const [a, b, c, d, x, y] = lyingMatrix(lying).slice(7, -1).split(" ").map(Number);
-    const box = boundsOf(segments, ([px, py]) => [a * px + c * py + x, b * px + d * py + y]);
+    const matrix = lyingMatrix(lying);
+    const box = boundsOf(segments, ([px, py]) => {
+      const { x, y } = matrix.transformPoint({ x: px, y: py });
+      return [x, y];
+    });
     if (row.flush.length) extend(box, [box[0], -FENCE]);
     for (const [k, [px, py]] of pegs.entries()) {
       if (row.flush.includes(k)) continue;

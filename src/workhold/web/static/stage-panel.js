@@ -7,7 +7,7 @@ import { FixtureDrawing } from "./fixture-drawing.js";
 import { PartDrawing } from "./part-drawing.js";
 import { usePart } from "./part-panel.js";
 import { forceOf } from "./pose.js";
-import { step } from "./selection.js";
+import { isSame, rowOfRank, step } from "./selection.js";
 import { change, on, state } from "./state.js";
 import { kindOf, kinds } from "./toolkits.js";
 import { countText, forceText, number } from "./units.js";
@@ -29,8 +29,8 @@ let miss = null;
 export function stagePanel() {
   const svg = (id) => /** @type {SVGSVGElement} */ (/** @type {any} */ (byId(id)));
   partDrawing = new PartDrawing(svg("drawing-part"));
-  fixtureDrawing = new FixtureDrawing(svg("drawing-fixture"), (k, at) => pointPeg(k, at, state.selected ?? miss));
-  pinnedDrawing = new FixtureDrawing(svg("drawing-pinned"), (k, at) => pointPeg(k, at, state.pinned, false));
+  fixtureDrawing = new FixtureDrawing(svg("drawing-fixture"), (k, at) => pointPeg(k, at, state.selected ?? miss), pictureIn);
+  pinnedDrawing = new FixtureDrawing(svg("drawing-pinned"), (k, at) => pointPeg(k, at, state.pinned, false), pictureIn);
   byId("view-part").addEventListener("click", () => change({ view: "part" }));
   byId("view-fixture").addEventListener("click", () => change({ view: "fixture" }));
   byId("previous").addEventListener("click", () => step(-1));
@@ -55,7 +55,13 @@ export function stagePanel() {
   on(["selected", "index", "job"], showPlace);
   on(["toolkit"], () => (byId("close-vise").textContent = kinds.length ? kindOf(state.toolkit).closes : "Close"));
   on(["sheet"], () => [fixtureDrawing, pinnedDrawing].forEach((drawing) => drawing.keepOff(state.sheet.clearance ?? null)));
-  on(["unit"], () => [fixtureDrawing, pinnedDrawing].forEach((drawing) => drawing.letter()));
+  on(["unit"], () => [fixtureDrawing, pinnedDrawing].forEach((drawing) => drawing.row && drawing.slide(drawing.open)));
+}
+
+/** The picture of a fixture of the search on show in a frame of another size; null where there is none any more. */
+async function pictureIn(row, frame) {
+  const other = state.job?.job ? await rowOfRank(state.job.job, row.rank, frame) : null;
+  return other && isSame(other, row) ? other.picture : null;
 }
 
 /** The views on show. */
@@ -110,7 +116,7 @@ function showSelected() {
   miss = null;
   // The title first: it takes room from the drawing.
   showTitle(state.pinned ? `Shown: ${row.rank}` : "");
-  fixtureDrawing.show(state.part, state.toolkit, row);
+  fixtureDrawing.show(state.toolkit, row);
   const now = performance.now();
   if (now - shownAt > 700) fixtureDrawing.close();
   shownAt = now;
@@ -131,7 +137,7 @@ export function showMiss(row, words = "") {
     return;
   }
   change({ view: "fixture" });
-  fixtureDrawing.show(state.part, state.toolkit, row);
+  fixtureDrawing.show(state.toolkit, row);
   byId("drawing-fixture").setAttribute("aria-label", `The nearest miss: ${words}`);
 }
 
@@ -148,7 +154,7 @@ function showPinned() {
   if (row) {
     if (state.selected) showTitle(`Shown: ${state.selected.rank}`);
     byId("pinned-title").textContent = `Pinned: ${row.rank}`;
-    pinnedDrawing.show(state.part, state.toolkit, row);
+    pinnedDrawing.show(state.toolkit, row);
   } else {
     pinnedDrawing.clear();
     if (state.selected) showTitle("");

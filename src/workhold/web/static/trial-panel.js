@@ -60,9 +60,10 @@ export function toggleTrial() {
 
 /** See the part with room about it to be moved in, or as it was seen. @param {boolean} wide */
 function look(wide) {
-  const more = wide ? ROOM * armOf(state.part) : 0;
+  const more = ROOM * armOf(state.part);
   const [x0, y0, x1, y1] = fixtureDrawing.whole;
-  fixtureDrawing.view.fit([x0 - more, y0 - more, x1 + more, y1 + more]);
+  if (wide) fixtureDrawing.view.fit([x0 - more, y0 - more, x1 + more, y1 + more], fixtureDrawing.rim);
+  else fixtureDrawing.fit();
 }
 
 /** Leave the part to the fixture. */
@@ -224,7 +225,7 @@ function caughtWords(opening) {
 
 /** Mark some pegs, and no others. @param {number[]} pegs */
 function markEntered(pegs) {
-  for (const peg of byId("drawing-fixture").querySelectorAll(".peg")) {
+  for (const peg of byId("drawing-fixture").querySelectorAll("[data-peg]")) {
     peg.classList.toggle("entered", pegs.includes(Number(/** @type {HTMLElement} */ (peg).dataset.peg)));
   }
 }

@@ -74,12 +74,12 @@ export function intoLying({ theta_deg, x, y, over }) {
   return ([px, py]) => [(over ? -1 : 1) * (c * (px - x) + s * (py - y)), -s * (px - x) + c * (py - y)];
 }
 
-/** A pose as an SVG matrix. */
+/** A pose as a matrix. */
 export function lyingMatrix({ theta_deg, x, y, over }) {
   const angle = (theta_deg * Math.PI) / 180;
   const [c, s] = [Math.cos(angle), Math.sin(angle)];
   const sign = over ? -1 : 1;
-  return `matrix(${sign * c} ${sign * s} ${-s} ${c} ${x} ${y})`;
+  return new DOMMatrix([sign * c, sign * s, -s, c, x, y]);
 }
 
 /**

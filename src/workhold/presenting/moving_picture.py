@@ -1,0 +1,68 @@
+"""What the pictures that are pushed and closed have in common: what moves stands in groups of its own.
+
+A group of the class ``moves`` says in ``data-way`` in which direction of the page it clamps, in page units for
+each mm, and in ``data-most`` how far in mm it can be drawn back. A clamp that is bolted to a plate stays there,
+and its bars grow as its tip goes out.
+"""
+
+from __future__ import annotations
+
+from attrs import evolve
+
+from workhold.drawing.bench import Bench, draw_part, draw_pegs
+from workhold.drawing.carriers import draw_clamp, draw_holes, draw_plate, draw_push, draw_wall, most_holes
+from workhold.drawing.scene import Scene, View, number
+from workhold.geometry.segment import Point
+from workhold.model.clamps import ShownClamp
+
+__all__ = ["draw_ground", "draw_peg", "drawn_back", "moving_group", "ways_of"]
+
+
+def moving_group(scene: Scene, view: View, clamping: Point | None, **attributes: str) -> Scene:
+    """Adds a group for what stands still, or for what clamps in a direction of the plan."""
+    if clamping is None:
+        return scene.group("stands", None, **attributes)
+    (x, y), scale = clamping, view.scale
+    return scene.group("moves", None, data_way=f"{x * scale:.9g} {-y * scale:.9g}", **attributes)
+
+
+def ways_of(bench: Bench) -> dict[str, Point | None]:
+    """The direction in which each carrier clamps, by its name; None for those that stand still."""
+    ways = {one.carrier.name: one.clamping for one in bench.shown.carriers}
+    return ways | {one.carrier.name: one.clamping for one in bench.shown.clamps}
+
+
+def drawn_back(clamp: ShownClamp) -> float | None:
+    """How far in mm a clamp can be drawn back from where it clamps; None where only its line is known.
+
+    Below 0 for a clamp that does not reach its tip from its hole.
+    """
+    travel = clamp.carrier.travel
+    if clamp.hole is None or travel is None or travel.most is None:
+        return None
+    (x, y), (dx, dy) = clamp.hole, clamp.clamping
+    return (clamp.tip.x - x) * dx + (clamp.tip.y - y) * dy + travel.most
+
+
+def draw_ground(scene: Scene, bench: Bench, view: View) -> None:
+    """Draws plates, walls, clamps and the part, whose group has the class ``part``."""
+    for carrier in bench.shown.carriers:
+        group = moving_group(scene, view, carrier.clamping)
+        draw_plate(group, carrier, view, 5.0)
+        draw_holes(group, carrier, view, most_holes(view, bench.shown))
+    for wall in bench.shown.walls:
+        draw_wall(scene.group("wall"), wall.bar, view, has_ends=wall.standouts is not None)
+    for clamp in bench.shown.clamps:
+        back = drawn_back(clamp)
+        most = {} if back is None else {"data_most": number(max(back, 0.0))}
+        group = moving_group(scene, view, clamp.clamping, **most)
+        draw_clamp(group, clamp, bench.shown.carriers[0], view, 1.0)
+    draw_part(scene, bench, view, 1.0)
+    for clamp in bench.shown.clamps:
+        draw_push(moving_group(scene, view, clamp.clamping if clamp.hole is None else None), clamp, view, 1.0)
+
+
+def draw_peg(scene: Scene, bench: Bench, view: View, number: int) -> None:
+    draw_pegs(
+        scene, evolve(bench, fixture=evolve(bench.fixture, pegs=(bench.fixture.pegs[number],))), view, 1.0
+    )
