@@ -18,7 +18,7 @@ from workhold.cli.commands import flag, option, print_remark, spread
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.jobs import asked_of, jobs_of
 from workhold.cli.options import PartWords
-from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output
+from workhold.cli.outputs import FORCE, JSON, OUTPUT, print_json, refuse_output
 from workhold.cli.progress import search_progress
 from workhold.cli.search_options import QueryWords
 from workhold.cli.table import Table, plural, print_tables
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 
 __all__ = ["family"]
 
-FAMILY, OUTPUT = "The family", "Results"
+FAMILY = "The family"
 EVERY_TYPE = "both"
 SECONDS = "60"
 SHEET_ENDINGS = (".pdf", ".svg", ".png")
