@@ -174,11 +174,13 @@ def make_sets(asked: BenchmarkTask, chosen: Sequence[SetEntry]) -> list[MadeSet]
     if words.parquet:
         load_arrow()
     write_common(chosen, folder)
-    making = {"parquet": words.parquet, "threads": asked.threads}
     with ask_to_stop("the sets that are done are kept") as cancel:
         compile_on_first_run(cancel)
         with progress_bar("Making sets", "fixtures") as progress:
-            return list(made_sets(chosen, folder, progress=progress, cancel=cancel, **making))
+            made = made_sets(
+                chosen, folder, parquet=words.parquet, threads=asked.threads, progress=progress, cancel=cancel
+            )
+            return list(made)
 
 
 def report_made(asked: BenchmarkTask, chosen: Sequence[SetEntry], made: Sequence[MadeSet]) -> None:

@@ -105,16 +105,17 @@ def parse(result_file: str, rank: int, words: SeatWords) -> SeatTask:
 
 def ask(asked: SeatTask) -> Seating:
     """Find where the part can come to rest, where the result does not say it."""
-    result, seating = asked.result, asked.fixture.seating
-    if seating is None:
-        from workhold.cli.warming import compile_seating
-        from workhold.seating.pattern import refuse_unseated
-        from workhold.seating.solver import Solver
+    result = asked.result
+    known: Seating | None = asked.fixture.seating
+    if known is not None:
+        return known
+    from workhold.cli.warming import compile_seating
+    from workhold.seating.pattern import refuse_unseated
+    from workhold.seating.solver import Solver
 
-        refuse_unseated(result.toolkit)
-        compile_seating(Event())
-        seating = Solver(result.workpiece, result.toolkit).of(asked.fixture)
-    return seating
+    refuse_unseated(result.toolkit)
+    compile_seating(Event())
+    return Solver(result.workpiece, result.toolkit).of(asked.fixture)
 
 
 def report(asked: SeatTask, seating: Seating) -> None:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from attrs import frozen
@@ -34,8 +33,7 @@ from workhold.errors import InputError
 
 if TYPE_CHECKING:
     from workhold.family.copies import Packing
-    from workhold.fixels.toolkit import Toolkit
-    from workhold.model.dowels import Bolts
+    from workhold.model.dowels import Bolts, JawPlate
     from workhold.model.fixture import Fixture
     from workhold.model.result import Result
     from workhold.units import Unit
@@ -195,22 +193,6 @@ class DrillWords:
     )
 
 
-@frozen
-class DrillTask:
-    """The plates to write.
-
-    Parameters
-    ----------
-    sizes : keyword arguments of ``model.dowels.jaw_plates``.
-    thickness : of the plates in mm; None for the usual one.
-    """
-
-    toolkit: Toolkit
-    sizes: Mapping[str, Any]
-    thickness: float | None
-    path: Path
-
-
 @spread
 def drill(
     *,
@@ -232,20 +214,20 @@ def drill(
 
     Example: workhold drill --vise plate-20mm --rows 6 --bolts '10,10;10,90' --bolt-diameter 6.6 -o plates.dxf
     """
-    asked = parse_plates(Path(out), force, held_in, words, length_unit(unit))
-    write_plates(asked)
-    print_written(json_, f"Written to {asked.path}.", asked.path)
-
-
-def parse_plates(path: Path, force: bool, held_in: ToolkitWords, words: DrillWords, unit: Unit) -> DrillTask:
-    """Read what was typed."""
+    path, shown = Path(out), length_unit(unit)
     if path.suffix.lower() not in ENDINGS:
         raise InputError(f"-o {path} names no drawing of plates: let the name end in .dxf or .step.")
+    thickness = optional_positive_length("--thickness", words.thickness, shown)
+    refuse_output(path, (held_in.vise,), force)
+    write_plates(path, asked_plates(held_in, words, shown), thickness)
+    print_written(json_, f"Written to {path}.", path)
+
+
+def asked_plates(held_in: ToolkitWords, words: DrillWords, unit: Unit) -> tuple[JawPlate, ...]:
+    """The plates of the vise that was typed; refuses one whose plates have no end."""
     bolts = asked_bolts(words.bolts, words.bolt_diameter, unit)
     diameter = optional_positive_length("--hole-diameter", words.hole_diameter, unit)
     edge = optional_positive_length("--edge", words.edge, unit)
-    thickness = optional_positive_length("--thickness", words.thickness, unit)
-    refuse_output(path, (held_in.vise,), force)
     toolkit, tolerance = held_in.asked(unit)
     if any(carrier.rows is None or carrier.columns is None for carrier in toolkit.carriers):
         raise InputError(
@@ -253,23 +235,22 @@ def parse_plates(path: Path, force: bool, held_in: ToolkitWords, words: DrillWor
         )
     if diameter is None and tolerance is not None and tolerance.fit is not None:
         diameter = sum(tolerance.fit.hole) / 2
-    sizes = {"hole_diameter": diameter, "edge": edge, "bolts": bolts, "unit": unit}
-    return DrillTask(toolkit, sizes, thickness, path)
-
-
-def write_plates(asked: DrillTask) -> None:
-    from workhold.files.atomic import write_bytes
     from workhold.model.dowels import jaw_plates
 
-    made = jaw_plates(asked.toolkit, **asked.sizes)
-    if asked.path.suffix.lower() == ".dxf":
+    return jaw_plates(toolkit, hole_diameter=diameter, edge=edge, bolts=bolts, unit=unit)
+
+
+def write_plates(path: Path, plates: tuple[JawPlate, ...], thickness: float | None) -> None:
+    from workhold.files.atomic import write_bytes
+
+    if path.suffix.lower() == ".dxf":
         from workhold.files.dxf.writer import plates_dxf
 
-        write_bytes(asked.path, plates_dxf(made))
+        write_bytes(path, plates_dxf(plates))
     else:
         from workhold.files.step.writer import plates_step
 
-        write_bytes(asked.path, plates_step(made, asked.thickness))
+        write_bytes(path, plates_step(plates, thickness))
 
 
 def asked_bolts(places: str | None, diameter: str | None, unit: Unit) -> Bolts | None:
