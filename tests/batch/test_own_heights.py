@@ -14,6 +14,7 @@ from own_heights import BASE, ROOF, STEM, stepped
 from workhold import Plate, design, load
 from workhold.batch.store import part_record, plain_record, workpiece_of
 from workhold.cli.main import app
+from workhold.files.part.load import read_workpiece
 
 CLAMP, LOW = (14.0, 24.0), (3.0, 9.0)
 TOML = 'kind = "translating-clamp"\nunit = "mm"\npitch = 20\npeg_radius = 3\nclamp_radius = 5\nclamp_heights = [{}, {}]\n'
@@ -45,10 +46,20 @@ def test_a_batch_finds_what_one_search_finds(block: Path, tmp_path: Path) -> Non
     (found,) = (p for p in (tmp_path / "out").rglob("*.json") if '"workhold-result' in p.read_text()[:60])
     assert list(json.loads(found.read_text())["outlines"]) == ["clamp"]
     result = workhold.open(found)
-    assert result.found == alone.found and len(alone) > 3
+    assert result.found == alone.found and len(alone) > len(result) == 3
     for one, other in zip(result, alone, strict=False):
         assert [(peg.hole, peg.face) for peg in one.pegs] == [(peg.hole, peg.face) for peg in other.pegs]
     assert result[0].pegs[-1].face >= len(result.workpiece.segments)
+
+
+def test_a_part_is_told_of_as_the_toolkit_meets_it(block: Path, tmp_path: Path) -> None:
+    """With pegs no higher than they must be, which is not how it is read where nothing holds it."""
+    words = ["features", block, "--toolkit", toolkit_file(tmp_path, "high", CLAMP), "--json"]
+    told = json.loads(CliRunner().invoke(app, [str(word) for word in words]).stdout)["solid"]
+    met = read_workpiece(str(block), heights={"clamp": CLAMP}, peg_diameter=6).workpiece.solid
+    alone = read_workpiece(str(block)).workpiece.solid
+    assert met is not None and alone is not None
+    assert told["peg_height"] == met.peg_height != alone.peg_height
 
 
 def test_toolkits_of_two_heights_are_refused(block: Path, tmp_path: Path) -> None:

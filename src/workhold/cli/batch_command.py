@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from contextlib import ExitStack
 from importlib.util import find_spec
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from attrs import frozen
 
 from workhold.cli.commands import flag, option, print_remark, spread
 from workhold.cli.ending import INTERRUPTED, ask_to_stop, keep_what_is_found
 from workhold.cli.options import PartWords
-from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output_folder
+from workhold.cli.outputs import FORCE, JSON, OUTPUT, print_json, refuse_output_folder
 from workhold.cli.program_options import SOLIDS, ProgramWords
 from workhold.cli.progress import batch_progress
 from workhold.cli.search_options import QueryWords, SeatingWords
 from workhold.cli.table import plural, print_tables
 from workhold.cli.toolkit_options import (
+    SWEEP,
     ListWords,
     Named,
     heights_of_all,
@@ -47,7 +48,7 @@ __all__ = ["batch"]
 # What is asked of the fixtures, of their seating, and of a program.
 AskedWords = tuple[QueryWords, SeatingWords, ProgramWords]
 
-TOOLKITS, WORK = "Toolkits to try", "The work"
+WORK = "The work"
 # Fixtures that are kept of each job.
 USUAL_BEST = "10"
 # Far more than any job of docs/benchmarks.md takes.
@@ -66,52 +67,163 @@ PartsArgument = Annotated[
 ]
 
 
-@spread
-def batch(
-    parts: PartsArgument,
-    *,
-    toolkit: list[str] | None = option(
-        TOOLKITS,
-        "NAMES|FILES",
-        "Vises, plates and fences by name or from TOML files, such as plate-20mm,own.toml; or a kind (vise, "
-        "plate, fence) with the lists below. May be repeated.",
-        "--toolkit",
-        "--toolkits",
-    ),
-    varied: ListWords,
-    words: QueryWords,
-    seated_by: SeatingWords,
-    machined: ProgramWords,
+TRIED = option(
+    SWEEP,
+    "NAMES|FILES",
+    "Vises, plates and fences by name or from TOML files, such as plate-20mm,own.toml; or a kind (vise, "
+    "plate, fence) with the lists below. May be repeated.",
+    "--toolkit",
+    "--toolkits",
+)
+
+
+@frozen
+class BatchOutputWords:
+    """The options of what is kept of a batch, as typed."""
+
     out: str = option(
-        "Results", "DIR", "The folder for tables, report and records; the same again goes on.", default=""
-    ),
+        OUTPUT, "DIR", "The folder for tables, report and records; the same again goes on.", default=""
+    )
     best: str = option(
-        "Results", "K", "How many fixtures of each job to keep; all are counted.", default=USUAL_BEST
-    ),
-    sheets: bool = flag("Results", "Write the setup sheet of each first choice as PDF.", "--sheets"),
-    force: bool = FORCE,
-    json_: bool = JSON,
-    workers: str | None = option(WORK, "N", "Worker processes; one for each processor if not given."),
+        OUTPUT, "K", "How many fixtures of each job to keep; all are counted.", default=USUAL_BEST
+    )
+    sheets: bool = flag(OUTPUT, "Write the setup sheet of each first choice as PDF.", "--sheets")
+    force: bool = FORCE
+    json_: bool = JSON
+
+
+@frozen
+class WorkWords:
+    """The options of where the work is done, as typed."""
+
+    workers: str | None = option(WORK, "N", "Worker processes; one for each processor if not given.")
     seconds: str = option(
         WORK,
         "S",
         "How long one job may take at most; its row then says so, and the others go on.",
         default=USUAL_SECONDS,
-    ),
+    )
     cluster: str | None = option(
         WORK,
         "ADDRESS",
         "Work on a Dask cluster instead, by the address of its scheduler, such as tcp://10.0.0.5:8786.",
-    ),
+    )
     local_cluster: str | None = option(
         WORK, "N", "Work on a Dask cluster of N processes on this machine instead."
-    ),
+    )
     records: str | None = option(
         WORK,
         "URL|DIR",
         "Where records are kept, if not in the folder of --out: a folder that all workers of a cluster see, "
         "or an object store such as s3://bucket/batch. Workers write there themselves.",
-    ),
+    )
+
+    def place(self) -> Workplace:
+        """Where the work is done; refuses two places, and a cluster without its library."""
+        count = optional_count("--workers", self.workers)
+        processes = optional_count("--local-cluster", self.local_cluster)
+        if sum(word is not None for word in (self.workers, self.cluster, self.local_cluster)) > 1:
+            raise InputError(
+                "--workers, --cluster and --local-cluster are three places to work: give one of them."
+            )
+        on_cluster = self.cluster is not None or processes is not None
+        if on_cluster and find_spec("distributed") is None:
+            raise InputError(
+                "a cluster takes Dask, which is not installed: install distributed>=2024.8 and fsspec>=2024.6."
+            )
+        longest = positive_number("--seconds", self.seconds)
+        if on_cluster and self.seconds != USUAL_SECONDS:
+            raise InputError("--seconds is of the workers of this machine: a cluster has no such limit.")
+        return Workplace(count, longest, self.cluster, processes, self.records)
+
+
+@frozen
+class Workplace:
+    """Where the work is done: by processes of this machine, or on a cluster.
+
+    Parameters
+    ----------
+    count : of processes; None for one on each processor.
+    seconds : that a job may take in one of them.
+    cluster : the address of a cluster's scheduler.
+    processes : of a cluster on this machine.
+    records : where records are kept; None for the folder of the results.
+    """
+
+    count: int | None
+    seconds: float
+    cluster: str | None
+    processes: int | None
+    records: str | None
+
+    def queue(self, progress: BatchProgress, store: Store) -> LocalWorkers | ClusterWorkers:
+        """Make the queue of jobs; the workers of a cluster write records to ``store`` themselves if it is
+        no folder of the results."""
+        if self.cluster is None and self.processes is None:
+            from workhold.batch.workers import LocalWorkers
+
+            return LocalWorkers(self.count or thread_count(None), progress, seconds=self.seconds)
+        from workhold.batch.cluster import ClusterWorkers
+
+        kept_there = None if self.records is None else store
+        return ClusterWorkers(progress, self.cluster, self.processes or 0, kept_there)
+
+
+@frozen
+class BatchTask:
+    """What is asked of many parts.
+
+    Parameters
+    ----------
+    kept : how many fixtures of each job are kept.
+    folder, names : where tables and report go, and what they are called.
+    """
+
+    requests: Sequence[Request]
+    kept: int
+    place: Workplace
+    folder: Path
+    names: tuple[str, ...]
+    written: BatchOutputWords
+
+
+@frozen
+class BatchAnswer:
+    """What was found.
+
+    Parameters
+    ----------
+    store, measured : records of jobs, and how long they took.
+    spent : seconds that it took.
+    events : what happened to workers, for the report.
+    gone : how all workers were lost; empty where they were not.
+    """
+
+    done: Batch
+    store: Store
+    measured: Measured
+    spent: float
+    events: list[str]
+    gone: str
+
+    @property
+    def sentence(self) -> str:
+        before = f"; {self.done.kept:,} were known from before" if self.done.kept else ""
+        parts, fresh = plural(len(self.done.parts), "part"), plural(self.done.fresh, "answer")
+        return f"{parts}, {fresh} found in {self.spent:.1f} s{before}."
+
+
+@spread
+def batch(
+    parts: PartsArgument,
+    *,
+    toolkit: list[str] | None = TRIED,
+    varied: ListWords,
+    words: QueryWords,
+    seated_by: SeatingWords,
+    machined: ProgramWords,
+    written: BatchOutputWords,
+    work: WorkWords,
     reading: PartWords,
 ) -> None:
     """Try many parts in many toolkits: every part with every toolkit, into tables, a report and result files.
@@ -121,69 +233,97 @@ def batch(
 
     Example: workhold batch parts/ --toolkit plate-20mm,clamp-plate-20mm --out results
     """
-    if not out:
+    asked = parse(parts, toolkit, varied, (words, seated_by, machined), written, work, reading)
+    report(asked, ask(asked))
+
+
+def parse(
+    parts: list[str],
+    toolkit: list[str] | None,
+    varied: ListWords,
+    words: AskedWords,
+    written: BatchOutputWords,
+    work: WorkWords,
+    reading: PartWords,
+) -> BatchTask:
+    """Read what was typed; the parts are read later, each by who works on it."""
+    if not written.out:
         raise InputError("the folder for the results is not given: name one with --out.")
-    kept = optional_count("--best", best) or 1
-    count, processes = optional_count("--workers", workers), optional_count("--local-cluster", local_cluster)
-    if sum(word is not None for word in (workers, cluster, local_cluster)) > 1:
-        raise InputError(
-            "--workers, --cluster and --local-cluster are three places to work: give one of them."
-        )
-    if (cluster is not None or processes is not None) and find_spec("distributed") is None:
-        raise InputError(
-            "a cluster takes Dask, which is not installed: install distributed>=2024.8 and fsspec>=2024.6."
-        )
-    longest = positive_number("--seconds", seconds)
-    if (cluster is not None or processes is not None) and seconds != USUAL_SECONDS:
-        raise InputError("--seconds is of the workers of this machine: a cluster has no such limit.")
-    folder = Path(out)
-    from workhold.batch.tables import has_parquet, table_names
+    kept, place, folder = optional_count("--best", written.best) or 1, work.place(), Path(written.out)
+    from workhold.batch.tables import table_names
 
     names = (*table_names(), REPORT)
-    refuse_output_folder(folder, names, (*parts, words.loads, *machined.files), force)
-    requests = requests_of(parts, toolkit, varied, (words, seated_by, machined), reading, folder)
+    refuse_output_folder(folder, names, (*parts, words[0].loads, *words[2].files), written.force)
+    requests = requests_of(parts, toolkit, varied, words, reading, folder)
+    return BatchTask(requests, kept, place, folder, names, written)
+
+
+def ask(asked: BatchTask) -> BatchAnswer:
+    """Search in the place that was asked for, for as long as nobody says to stop."""
     from workhold.batch.durations import Measured
     from workhold.batch.run import BatchRun, run_batch
     from workhold.batch.store import FolderStore, store_at
     from workhold.cli.warming import compile_on_first_run, compile_seating
 
-    store = FolderStore(folder / RECORDS) if records is None else store_at(records)
-    measured = Measured(folder / MEASURED)
+    records = asked.place.records
+    store = FolderStore(asked.folder / RECORDS) if records is None else store_at(records)
+    measured = Measured(asked.folder / MEASURED)
     start = perf_counter()
     with ask_to_stop("what is done is kept, tables and report are written") as stop:
         keep_what_is_found()
-        if cluster is None:
+        if asked.place.cluster is None:
             compile_on_first_run(stop)
-            if any(is_seated(held) for request in requests for held in request.held_in):
+            if any(is_seated(held) for request in asked.requests for held in request.held_in):
                 compile_seating(stop)
-        with batch_progress() as progress, ExitStack() as workshop:
-            where = None if records is None else store
-            queue = place_to_work(progress, count, cluster, processes, where, longest)
-            workshop.enter_context(queue)
-            done = run_batch(requests, kept, BatchRun(store, queue, measured, progress, stop))
+        with batch_progress() as progress, asked.place.queue(progress, store) as queue:
+            done = run_batch(asked.requests, asked.kept, BatchRun(store, queue, measured, progress, stop))
     spent = perf_counter() - start
-    report = write_all(done, store, measured, folder, spent, progress.events, sheets)
+    return BatchAnswer(done, store, measured, spent, progress.events, getattr(queue, "gone", ""))
 
-    for part, reason in list(report.bad)[:MOST_NAMED]:
+
+def report(asked: BatchTask, answer: BatchAnswer) -> None:
+    """Write tables, report and sheets, and print what is in them."""
+    from workhold.batch.tables import has_parquet
+
+    done, folder, names = answer.done, asked.folder, asked.names
+    found = write_all(asked, answer)
+    for part, reason in list(found.bad)[:MOST_NAMED]:
         print_remark(f"{part}: {reason}")
-    if len(report.bad) > MOST_NAMED:
-        print_remark(f"and {len(report.bad) - MOST_NAMED:,} more, which the report names.")
-    if json_:
-        bad = [{"part": part, "reason": reason} for part, reason in report.bad]
+    if len(found.bad) > MOST_NAMED:
+        print_remark(f"and {len(found.bad) - MOST_NAMED:,} more, which the report names.")
+    if asked.written.json_:
+        bad = [{"part": part, "reason": reason} for part, reason in found.bad]
         counts = {"parts": len(done.parts), "found": done.fresh, "known_before": done.kept}
         print_json(
             **counts, complete=done.is_complete, bad=bad, written=[str(folder / name) for name in names]
         )
     else:
-        print_tables(report.counts, run_sentence(done, spent), f"Written to {folder}: {', '.join(names)}.")
+        print_tables(found.counts, answer.sentence, f"Written to {folder}: {', '.join(names)}.")
     if not has_parquet():
         print_remark("the tables are comma-separated values: with pyarrow>=18 installed they are Parquet.")
-    gone = getattr(queue, "gone", "")
-    if gone:
-        raise InputError(gone)
+    if answer.gone:
+        raise InputError(answer.gone)
     if not done.is_complete:
         print_remark("interrupted: start the same command again to go on.")
         raise typer.Exit(INTERRUPTED)
+
+
+def write_all(asked: BatchTask, answer: BatchAnswer) -> Report:
+    from workhold.batch.report import Summary, write_results
+    from workhold.version import __version__
+
+    done, folder = answer.done, asked.folder
+    toolkits = len({job.held_in.name for job in done.jobs})
+    headline = f"{plural(len(done.parts), 'part')} in {plural(toolkits, 'toolkit')}"
+    sentences = [
+        answer.sentence,
+        f"Made by workhold {__version__}; the tables beside this page have every figure.",
+    ]
+    if not done.is_complete:
+        sentences.append("The run was interrupted: the same command again goes on.")
+    where = folder / SHEETS if asked.written.sheets and done.is_complete else None
+    summary = Summary(headline, sentences, answer.events)
+    return write_results(done, answer.store, answer.measured, folder, REPORT, summary, where)
 
 
 def is_seated(held: HeldIn) -> bool:
@@ -193,24 +333,6 @@ def is_seated(held: HeldIn) -> bool:
     return (
         isinstance(held.query, Query) and held.query.seating is not None and held.query.toolkit.closes_at_once
     )
-
-
-def place_to_work(
-    progress: BatchProgress,
-    count: int | None,
-    cluster: str | None,
-    processes: int | None,
-    store: Store | None,
-    seconds: float,
-) -> LocalWorkers | ClusterWorkers:
-    """Makes the queue asked for; the workers of a cluster write records to ``store`` themselves."""
-    if cluster is None and processes is None:
-        from workhold.batch.workers import LocalWorkers
-
-        return LocalWorkers(count or thread_count(None), progress, seconds=seconds)
-    from workhold.batch.cluster import ClusterWorkers
-
-    return ClusterWorkers(progress, cluster, processes or 0, store)
 
 
 def requests_of(
@@ -314,28 +436,3 @@ def asked_of(words: AskedWords, reading: PartWords) -> dict[str, Any]:
     unit, has_program = length_unit(reading.unit), machined.program is not None
     asked = wishes.asked(unit, has_program, machined.has_forces) | seated_by.asked(unit)
     return asked | machined.asked(unit, reading.peg_height)
-
-
-def run_sentence(done: Batch, spent: float) -> str:
-    before = f"; {done.kept:,} were known from before" if done.kept else ""
-    return (
-        f"{plural(len(done.parts), 'part')}, {plural(done.fresh, 'answer')} found in {spent:.1f} s{before}."
-    )
-
-
-def write_all(
-    done: Batch, store: Store, measured: Measured, folder: Path, spent: float, events: list[str], sheets: bool
-) -> Report:
-    from workhold.batch.report import Summary, write_results
-    from workhold.version import __version__
-
-    toolkits = len({job.held_in.name for job in done.jobs})
-    headline = f"{plural(len(done.parts), 'part')} in {plural(toolkits, 'toolkit')}"
-    sentences = [
-        run_sentence(done, spent),
-        f"Made by workhold {__version__}; the tables beside this page have every figure.",
-    ]
-    if not done.is_complete:
-        sentences.append("The run was interrupted: the same command again goes on.")
-    where = folder / SHEETS if sheets and done.is_complete else None
-    return write_results(done, store, measured, folder, REPORT, Summary(headline, sentences, events), where)

@@ -5,11 +5,12 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import typer
+from attrs import frozen
 
-from workhold.cli.commands import flag, option
+from workhold.cli.commands import flag, option, spread
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output_folder
 from workhold.cli.progress import progress_bar
@@ -19,16 +20,62 @@ from workhold.errors import InputError
 
 if TYPE_CHECKING:
     from workhold.benchmark.catalogue import SetEntry
+    from workhold.benchmark.making import MadeSet
     from workhold.benchmark.matching import Comparison
 
 __all__ = ["benchmark"]
 
+# The name of a file, its set, and the comparison with it.
+ComparedFile: TypeAlias = "tuple[str, str, Comparison]"
 ACTIONS = ("list", "run", "check", "checker")
 DIFFERS = 2
 # mm: how far another program's pegs may be from where the complete list has them.
 TOLERANCE = "0.001"
 
 
+@frozen
+class BenchmarkWords:
+    """The options of all actions, as typed."""
+
+    out: str | None = option(None, "DIR", "Of run: the folder to write the sets into.")
+    parquet: bool = flag(None, "Of run: write sets of 5,000 fixtures or more as Parquet.", "--parquet")
+    set_: str | None = option(
+        None, "NAME", "Of check: the set that the files are for, where they do not say.", "--set"
+    )
+    tolerance: str = option(
+        None,
+        "MM",
+        "Of check: how far pegs may be from where the complete list has them.",
+        default=TOLERANCE,
+    )
+    symmetric: bool = flag(
+        None,
+        "Of check: one fixture stands for all that a rotation of the part carries into it.",
+        "--symmetric",
+    )
+    threads: str | None = option(None, "N", "Threads to use; all processors if not given.")
+    force: bool = FORCE
+    json_: bool = JSON
+
+
+@frozen
+class BenchmarkTask:
+    """An action of the benchmark.
+
+    Parameters
+    ----------
+    names : of sets, or of files with another program's fixtures.
+    tolerance : in mm, of these.
+    """
+
+    action: str
+    names: Sequence[str]
+    words: BenchmarkWords
+    threads: int | None
+    tolerance: float
+
+
+@spread
 def benchmark(
     action: Annotated[str, typer.Argument(metavar="ACTION", help="list, run, check or checker.")],
     names: Annotated[
@@ -39,25 +86,8 @@ def benchmark(
             "Of check: files with another program's fixtures, JSON or CSV.",
         ),
     ] = None,
-    out: str | None = option(None, "DIR", "Of run: the folder to write the sets into."),
-    parquet: bool = flag(None, "Of run: write sets of 5,000 fixtures or more as Parquet.", "--parquet"),
-    set_: str | None = option(
-        None, "NAME", "Of check: the set that the files are for, where they do not say.", "--set"
-    ),
-    tolerance: str = option(
-        None,
-        "MM",
-        "Of check: how far pegs may be from where the complete list has them.",
-        default=TOLERANCE,
-    ),
-    symmetric: bool = flag(
-        None,
-        "Of check: one fixture stands for all that a rotation of the part carries into it.",
-        "--symmetric",
-    ),
-    threads: str | None = option(None, "N", "Threads to use; all processors if not given."),
-    force: bool = FORCE,
-    json_: bool = JSON,
+    *,
+    words: BenchmarkWords,
 ) -> None:
     """List the sets of the benchmark, make their complete lists, or compare another program's with them.
 
@@ -67,22 +97,32 @@ def benchmark(
 
     Example: workhold benchmark run kite --out sets
     """
-    asked = choice("the action", action, ACTIONS)
-    given = names or []
-    workers = optional_count("--threads", threads)
-    room = positive_number("--tolerance", tolerance)
-    if out is not None and asked != "run":
-        raise InputError(f"--out is of run alone: leave it out, or say run instead of {asked}.")
-    if asked == "checker":
-        from workhold.benchmark.catalogue import data_bytes
-
-        sys.stdout.write(data_bytes("check.py").decode("utf-8"))
-    elif asked == "list":
-        list_sets(chosen_sets(given), json_)
-    elif asked == "run":
-        make_sets(chosen_sets(given), out, parquet, workers, force, json_)
+    asked = parse(action, names or [], words)
+    if asked.action == "checker":
+        print_checker()
+    elif asked.action == "list":
+        list_sets(chosen_sets(asked.names), words.json_)
+    elif asked.action == "run":
+        chosen = chosen_sets(asked.names)
+        report_made(asked, chosen, make_sets(asked, chosen))
     else:
-        check_entries(given, set_, room, symmetric, workers, json_)
+        report_compared(asked, compare(asked))
+
+
+def parse(action: str, names: Sequence[str], words: BenchmarkWords) -> BenchmarkTask:
+    """Read what was typed."""
+    asked = choice("the action", action, ACTIONS)
+    threads = optional_count("--threads", words.threads)
+    tolerance = positive_number("--tolerance", words.tolerance)
+    if words.out is not None and asked != "run":
+        raise InputError(f"--out is of run alone: leave it out, or say run instead of {asked}.")
+    return BenchmarkTask(asked, names, words, threads, tolerance)
+
+
+def print_checker() -> None:
+    from workhold.benchmark.catalogue import data_bytes
+
+    sys.stdout.write(data_bytes("check.py").decode("utf-8"))
 
 
 def chosen_sets(words: Sequence[str]) -> list[SetEntry]:
@@ -120,34 +160,33 @@ def list_sets(chosen: Sequence[SetEntry], as_json: bool) -> None:
     print_tables(table, f"{plural(len(chosen), 'set')}, {plural(total, 'fixture')}.")
 
 
-def make_sets(
-    chosen: Sequence[SetEntry],
-    out: str | None,
-    parquet: bool,
-    workers: int | None,
-    force: bool,
-    as_json: bool,
-) -> None:
-    if out is None:
+def make_sets(asked: BenchmarkTask, chosen: Sequence[SetEntry]) -> list[MadeSet]:
+    """Make the sets that were chosen, as many as are done before a Ctrl-C."""
+    words = asked.words
+    if words.out is None:
         raise InputError("run needs a folder for the sets: name one with --out.")
-    folder = Path(out)
+    folder = Path(words.out)
     names = ["manifest.json", "check.py", *(f"{one.name}.json" for one in chosen)]
-    refuse_output_folder(folder, names, (), force)
+    refuse_output_folder(folder, names, (), words.force)
     from workhold.benchmark.making import load_arrow, made_sets, write_common
     from workhold.cli.warming import compile_on_first_run
 
-    if parquet:
+    if words.parquet:
         load_arrow()
     write_common(chosen, folder)
     with ask_to_stop("the sets that are done are kept") as cancel:
         compile_on_first_run(cancel)
         with progress_bar("Making sets", "fixtures") as progress:
-            made = list(
-                made_sets(chosen, folder, parquet=parquet, threads=workers, progress=progress, cancel=cancel)
+            made = made_sets(
+                chosen, folder, parquet=words.parquet, threads=asked.threads, progress=progress, cancel=cancel
             )
+            return list(made)
+
+
+def report_made(asked: BenchmarkTask, chosen: Sequence[SetEntry], made: Sequence[MadeSet]) -> None:
+    """Print whether the sets are those of the manifest."""
     other = [one for one in made if not one.is_same]
-    rounded = [one for one in made if one.is_same and "fixtures" in one.differs]
-    if as_json:
+    if asked.words.json_:
         print_json(
             sets=[
                 {"name": one.entry.name, "file": str(one.path), "counts": dict(one.counts)}
@@ -156,6 +195,7 @@ def make_sets(
             ]
         )
     else:
+        rounded = [one for one in made if one.is_same and "fixtures" in one.differs]
         sentences = [
             f"{one.entry.name}: {one.size:,} fixtures, not the {one.entry.size:,} of the manifest."
             for one in other
@@ -165,22 +205,17 @@ def make_sets(
             sentences.append(f"The same fixtures, but for rounding of this machine: {few}.")
         total = sum(one.size for one in made)
         same = "all as the manifest has them" if not other and not rounded else f"{len(other)} of them differ"
-        done = f"{plural(len(made), 'set')} with {plural(total, 'fixture')} written to {out}, {same}."
-        print_tables(*sentences, done)
+        done = f"{plural(len(made), 'set')} with {plural(total, 'fixture')} written to {asked.words.out}"
+        print_tables(*sentences, f"{done}, {same}.")
     if len(made) < len(chosen):
         raise typer.Exit(INTERRUPTED)
     if other:
         raise typer.Exit(DIFFERS)
 
 
-def check_entries(
-    files: Sequence[str],
-    set_name: str | None,
-    tolerance: float,
-    symmetric: bool,
-    workers: int | None,
-    as_json: bool,
-) -> None:
+def compare(asked: BenchmarkTask) -> list[ComparedFile]:
+    """Compare another program's fixtures with the complete lists, as many files as are done before a Ctrl-C."""
+    files, words = asked.names, asked.words
     if not files:
         raise InputError("check needs a file with another program's fixtures: name one or more.")
     from workhold.benchmark.catalogue import set_named
@@ -188,24 +223,29 @@ def check_entries(
     from workhold.benchmark.matching import read_entry
     from workhold.cli.warming import compile_on_first_run
 
-    entries = [read_entry(Path(name), set_name) for name in files]
+    entries = [read_entry(Path(name), words.set_) for name in files]
     for entry in entries:
         set_named(entry.set_name)
-    done = list[tuple[str, str, Any]]()
+    done: list[ComparedFile] = []
     with ask_to_stop("what is compared is printed") as cancel:
         compile_on_first_run(cancel)
         with progress_bar("Comparing", "files") as progress:
             for number, (name, entry) in enumerate(zip(files, entries, strict=True), 1):
-                outcome = compared_entry(entry, tolerance, symmetric, workers, cancel)
+                outcome = compared_entry(entry, asked.tolerance, words.symmetric, asked.threads, cancel)
                 if outcome is None:
                     break
                 done.append((name, entry.set_name, outcome))
                 progress(number / len(files), number)
-    if as_json:
+    return done
+
+
+def report_compared(asked: BenchmarkTask, done: Sequence[ComparedFile]) -> None:
+    """Print how much of each set another program has."""
+    if asked.words.json_:
         print_json(files=[comparison_data(*one) for one in done])
     else:
         print_comparisons(done)
-    if len(done) < len(files):
+    if len(done) < len(asked.names):
         raise typer.Exit(INTERRUPTED)
 
 
@@ -217,7 +257,7 @@ def comparison_data(name: str, set_name: str, outcome: Comparison) -> dict[str, 
     return data | {"share": outcome.share}
 
 
-def print_comparisons(done: Sequence[tuple[str, str, Comparison]]) -> None:
+def print_comparisons(done: Sequence[ComparedFile]) -> None:
     table = Table(("set", ">complete", ">theirs", ">found", ">missed", ">extra", ">repeated", ">share"))
     sentences = []
     for _, set_name, one in done:

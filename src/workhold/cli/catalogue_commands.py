@@ -11,11 +11,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from attrs import asdict
+from attrs import asdict, frozen
 
 from workhold.cli.commands import flag, option, spread
 from workhold.cli.options import SHOWN_UNIT, PartArgument, PartWords
 from workhold.cli.outputs import FORCE, JSON, asked_picture, print_json, write_picture
+from workhold.cli.program_options import SOLIDS
 from workhold.cli.table import Table, plural, print_tables
 from workhold.cli.values import length_from_zero, length_unit
 
@@ -194,88 +195,123 @@ def limits_words(limits: Limits, unit: Unit) -> str:
     return f"{unit.number(limits[0])} to {unit.text(limits[1])}"
 
 
-@spread
-def features(
-    part: PartArgument,
-    *,
-    draw: str | None = option(None, "FILE", "Draw them into this file, whose name ends in .svg or .png."),
-    force: bool = FORCE,
+@frozen
+class FeatureWords:
+    """The options of what is listed of a part, as typed."""
+
+    draw: str | None = option(None, "FILE", "Draw them into this file, whose name ends in .svg or .png.")
+    force: bool = FORCE
     toolkit: str | None = option(
         None,
         "NAME|FILE",
         "What the part will be held in: of a STEP file the faces as design --toolkit numbers them, with pegs no "
         "higher than they must be.",
         "--toolkit",
-    ),
+    )
     peg_radius: str | None = option(
         None, "LENGTH", "Draw also where the centres of pegs of this radius can be."
-    ),
+    )
     parts: bool = flag(
         None, "List, and draw, the parts of a file that holds several; of a STEP file its solids.", "--parts"
-    ),
-    layers: bool = flag(None, "List the layers of a DXF file with what is on them.", "--layers"),
-    json_: bool = JSON,
-    reading: PartWords,
-) -> None:
+    )
+    layers: bool = flag(None, "List the layers of a DXF file with what is on them.", "--layers")
+    json_: bool = JSON
+
+
+@frozen
+class FeaturesTask:
+    """A part of which something is listed.
+
+    Parameters
+    ----------
+    radius : of pegs whose centres are drawn; None for none.
+    unit : of lengths shown.
+    """
+
+    part: str
+    words: FeatureWords
+    reading: PartWords
+    radius: float | None
+    picture: Path | None
+    unit: Unit
+
+    @property
+    def written(self) -> list[str]:
+        return [] if self.picture is None else [str(self.picture)]
+
+    def load(self) -> Loaded:
+        """Read the part, for the toolkit that will hold it."""
+        if self.words.toolkit is None:
+            return self.reading.load(self.part)
+        from workhold.files.toolkit_file import load_toolkit
+
+        held_in = load_toolkit(self.words.toolkit).toolkit
+        return self.reading.load(self.part, held_in.heights, held_in.peg_diameter)
+
+
+@spread
+def features(part: PartArgument, *, words: FeatureWords, reading: PartWords) -> None:
     """List the numbered faces of PART, as pictures and result files name them.
 
     Example: workhold features part.dxf --draw faces.svg
     """
-    shown_unit = length_unit(reading.unit)
-    radius = None if peg_radius is None else length_from_zero("--peg-radius", peg_radius, shown_unit)
-    picture = asked_picture(draw, (part,), force)
-    if layers:
-        list_layers(part, reading, shown_unit, json_)
-        return
-    if parts and picture is None and Path(part).suffix.lower() in (".step", ".stp"):
-        list_solids(part, shown_unit, json_)
-        return
-    if toolkit is None:
-        loaded = reading.load(part)
+    asked = parse(part, words, reading)
+    if words.layers:
+        report_layers(asked)
+    elif words.parts and asked.picture is None and Path(part).suffix.lower() in SOLIDS:
+        report_solids(asked)
+    elif words.parts:
+        report_parts(asked, asked.load())
     else:
-        from workhold.files.toolkit_file import load_toolkit
+        report_faces(asked, asked.load())
 
-        held_in = load_toolkit(toolkit).toolkit
-        loaded = reading.load(part, held_in.heights, held_in.peg_diameter)
-    workpiece = loaded.workpiece
 
-    from workhold.cli.tables import band_table, face_table, height_table, jumps_sentence
+def parse(part: str, words: FeatureWords, reading: PartWords) -> FeaturesTask:
+    """Read what was typed, but not the part."""
+    unit, radius = length_unit(reading.unit), words.peg_radius
+    wide = None if radius is None else length_from_zero("--peg-radius", radius, unit)
+    picture = asked_picture(words.draw, (part,), words.force)
+    return FeaturesTask(part, words, reading, wide, picture, unit)
 
-    if parts:
-        list_parts(loaded, shown_unit, picture, json_)
-        return
 
-    if not json_:
+def report_faces(asked: FeaturesTask, loaded: Loaded) -> None:
+    """Print and draw the faces of a part, and where pegs of a radius can stand."""
+    workpiece, unit = loaded.workpiece, asked.unit
+    if not asked.words.json_:
+        from workhold.cli.tables import band_table, face_table, height_table, jumps_sentence
+
         x0, y0, x1, y1 = workpiece.bounds
-        faces = plural(len(workpiece.faces), "face")
-        size = f"{shown_unit.number(x1 - x0)} x {shown_unit.text(y1 - y0)}"
-        table = face_table(workpiece, shown_unit)
-        of_solid = (*band_table(workpiece, shown_unit), *height_table(loaded.heights, shown_unit))
-        print_tables(f"{workpiece.name}: {size}, {faces}", table, *jumps_sentence(workpiece), *of_solid)
-    if picture is not None:
+        size = f"{unit.number(x1 - x0)} x {unit.text(y1 - y0)}"
+        of_solid = (*band_table(workpiece, unit), *height_table(loaded.heights, unit))
+        print_tables(
+            f"{workpiece.name}: {size}, {plural(len(workpiece.faces), 'face')}",
+            face_table(workpiece, unit),
+            *jumps_sentence(workpiece),
+            *of_solid,
+        )
+    if asked.picture is not None:
         from workhold.drawing.part_pictures import draw_features
 
-        write_picture(picture, draw_features(workpiece, peg_radius=radius, unit=shown_unit))
-    if json_:
-        from workhold.presenting.data import part_data
+        write_picture(asked.picture, draw_features(workpiece, peg_radius=asked.radius, unit=unit))
+    if not asked.words.json_:
+        print_tables(*(f"Drawn in {path}." for path in asked.written))
+        return
+    from workhold.presenting.data import part_data
 
-        rows = {"heights": [asdict(row) for row in loaded.heights]} if loaded.heights else {}
-        print_json(
-            **part_data(workpiece, loaded.remarks), **rows, written=[] if picture is None else [str(picture)]
-        )
-    elif picture is not None:
-        print_tables(f"Drawn in {picture}.")
+    rows = {"heights": [asdict(row) for row in loaded.heights]} if loaded.heights else {}
+    print_json(**part_data(workpiece, loaded.remarks), **rows, written=asked.written)
 
 
-def list_layers(part: str, reading: PartWords, unit: Unit, as_json: bool) -> None:
+def report_layers(asked: FeaturesTask) -> None:
     """Prints the layers of a DXF file.
 
     In JSON sizes are in mm where the unit is known, else in units of the drawing.
     """
     from workhold.files.part.survey import drawn_layers
 
-    found, known = drawn_layers(part, reading.drawing_unit, reading.unit)
-    if as_json:
+    unit = asked.unit
+    found, known = drawn_layers(asked.part, asked.reading.drawing_unit, asked.reading.unit)
+    if asked.words.json_:
         names = ("name", "kinds", "hidden", "loops", "size")
         print_json(layers=[{name: getattr(one, name) for name in names} for one in found], in_mm=known)
         return
@@ -296,18 +332,20 @@ def list_layers(part: str, reading: PartWords, unit: Unit, as_json: bool) -> Non
     print_tables(table, "Read only some of them with --layer NAME, which may be repeated.")
 
 
-def list_solids(part: str, unit: Unit, as_json: bool) -> None:
+def report_solids(asked: FeaturesTask) -> None:
     from workhold.cli.tables import solid_table
     from workhold.files.part.loaded import solids_in
 
-    solids = solids_in(part)
-    if as_json:
+    solids = solids_in(asked.part)
+    if asked.words.json_:
         print_json(solids=[asdict(solid) for solid in solids])
         return
-    print_tables(solid_table(solids, unit), "Take one of them with --part and its number or its name.")
+    print_tables(solid_table(solids, asked.unit), "Take one of them with --part and its number or its name.")
 
 
-def list_parts(loaded: Loaded, unit: Unit, picture: Path | None, as_json: bool) -> None:
+def report_parts(asked: FeaturesTask, loaded: Loaded) -> None:
+    """Print and draw the parts of a drawing."""
+    unit = asked.unit
     table = Table(
         (">part", f">width {unit.abbreviation}", f">height {unit.abbreviation}", ">holes", "lowest corner")
     )
@@ -317,9 +355,9 @@ def list_parts(loaded: Loaded, unit: Unit, picture: Path | None, as_json: bool) 
         table.add_row(
             str(one.number), unit.number(x1 - x0), unit.number(y1 - y0), str(len(one.loops) - 1), corner
         )
-    if not as_json:
+    if not asked.words.json_:
         print_tables(table)
-    if picture is not None:
+    if asked.picture is not None:
         from workhold.drawing.part_pictures import draw_parts
 
         svg = draw_parts(
@@ -328,11 +366,9 @@ def list_parts(loaded: Loaded, unit: Unit, picture: Path | None, as_json: bool) 
             loaded.number,
             unit=unit,
         )
-        write_picture(picture, svg)
-    if as_json:
-        parts = [
-            {"number": p.number, "bounds": list(p.bounds), "holes": len(p.loops) - 1} for p in loaded.parts
-        ]
-        print_json(parts=parts, chosen=loaded.number, written=[] if picture is None else [str(picture)])
-    elif picture is not None:
-        print_tables(f"Drawn in {picture}.")
+        write_picture(asked.picture, svg)
+    if not asked.words.json_:
+        print_tables(*(f"Drawn in {path}." for path in asked.written))
+        return
+    parts = [{"number": p.number, "bounds": list(p.bounds), "holes": len(p.loops) - 1} for p in loaded.parts]
+    print_json(parts=parts, chosen=loaded.number, written=asked.written)

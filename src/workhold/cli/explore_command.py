@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import csv
 import io
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import typer
+from attrs import frozen
 
 from workhold.cli.commands import option, print_remark, spread
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
@@ -38,23 +40,56 @@ if TYPE_CHECKING:
 __all__ = ["explore"]
 
 
+VISES = option(
+    SWEEP,
+    "NAMES|FILES",
+    "Vises and plates by name or from TOML files, such as plate-20mm,clamp-plate-20mm; all presets if "
+    "neither this nor --pitch is given.",
+)
+
+
+@frozen
+class TableWords:
+    """The options of where the table goes, as typed."""
+
+    out: str | None = option(None, "FILE", "Write the table to this file, as comma-separated values.")
+    force: bool = FORCE
+    json_: bool = JSON
+
+
+@frozen
+class ExploreTask:
+    """A part to be tried in many toolkits.
+
+    Parameters
+    ----------
+    loaded : the part as it was read, once for each height of the pegs.
+    queries : by the name of the toolkit; an error says why there is no such toolkit.
+    unit : of lengths shown.
+    """
+
+    loaded: Sequence[Loaded]
+    queries: Sequence[tuple[str, Query | InputError]]
+    written: TableWords
+    unit: Unit
+
+    @property
+    def ranking(self) -> tuple[str, ...]:
+        """The figures in the table: toolkits with one clamp and with two have a usual ranking each, and that
+        of the first that can be asked counts."""
+        return next((query.rank_by for _, query in self.queries if not isinstance(query, InputError)), ())
+
+
 @spread
 def explore(
     part: PartArgument,
     *,
-    vise: list[str] | None = option(
-        SWEEP,
-        "NAMES|FILES",
-        "Vises and plates by name or from TOML files, such as plate-20mm,clamp-plate-20mm; all presets if "
-        "neither this nor --pitch is given.",
-    ),
+    vise: list[str] | None = VISES,
     toolkit: str | None = TOOLKIT,
     varied: ListWords,
     words: QueryWords,
     machined: ProgramWords,
-    out: str | None = option(None, "FILE", "Write the table to this file, as comma-separated values."),
-    force: bool = FORCE,
-    json_: bool = JSON,
+    written: TableWords,
     reading: PartWords,
 ) -> None:
     """Try PART in many toolkits: how many fixtures each has, and the figures of its first choice.
@@ -64,71 +99,100 @@ def explore(
 
     Example: workhold explore part.dxf --pitch 8,10,12.5 --columns 1,2 --peg-radius 3
     """
+    asked = parse(part, vise, toolkit, varied, words, machined, written, reading)
+    report(asked, ask(asked))
+
+
+def parse(
+    part: str,
+    vise: list[str] | None,
+    toolkit: str | None,
+    varied: ListWords,
+    words: QueryWords,
+    machined: ProgramWords,
+    written: TableWords,
+    reading: PartWords,
+) -> ExploreTask:
+    """Read what was typed and the part, and make the query of each toolkit."""
     shown = length_unit(reading.unit)
     toolkits = toolkits_to_try(vise, toolkit, varied, shown)
     asked = words.asked(shown, machined.program is not None, machined.has_forces)
-    if out is not None:
+    if written.out is not None:
         named = (name for names in vise or () for name in names.split(","))
-        refuse_output(out, (part, words.loads, *machined.files, *named), force)
-    heights, read_as = heights_of_all(toolkits), machined.reading(part, reading)
+        refuse_output(written.out, (part, words.loads, *machined.files, *named), written.force)
     # Pegs of each diameter reach as high as they must beside a solid, and the outline is what those meet.
     is_solid = reading.peg_height is None and Path(part).suffix.lower() in SOLIDS
     diameters = [peg_diameter_of(one) if is_solid else None for one in toolkits]
-    loaded: dict[float | None, Loaded] = {}
-    for one in dict.fromkeys(diameters):
-        said = {remark for each in loaded.values() for remark in each.remarks}
-        loaded[one] = read_as.load(part, heights, one, said)
-    from workhold.files.part.load import refuse_unsure_numbers
-
-    for each in loaded.values():
-        refuse_unsure_numbers(each, asked["restrictions"].avoid, CALLED)
+    loaded = read_for(diameters, part, heights_of_all(toolkits), machined.reading(part, reading))
+    refuse_unknown_faces(asked["restrictions"].avoid, loaded.values())
     further = {one: machined.asked(shown, reading.peg_height, each.workpiece) for one, each in loaded.items()}
-    from workhold.cli.tables import slides_always
-    from workhold.cli.warming import compile_on_first_run
-    from workhold.contact.features import face_of_segment
-    from workhold.files.atomic import text_file
-    from workhold.files.toolkit_file import is_sold
-    from workhold.search.design import explore as try_all
-    from workhold.search.design import first_choice
-
-    # Faces that do not exist are refused before any toolkit is tried.
-    for number in asked["restrictions"].avoid:
-        for each in loaded.values():
-            face_of_segment(each.workpiece, number)
     queries = [
         (one.name, query_of(loaded[diameter].workpiece, one, asked | further[diameter]))
         for one, diameter in zip(toolkits, diameters, strict=True)
     ]
+    return ExploreTask(list(loaded.values()), queries, written, shown)
+
+
+def read_for(
+    diameters: Iterable[float | None], part: str, heights: Mapping[str, Sequence[float]], reading: PartWords
+) -> dict[float | None, Loaded]:
+    """Read the part once for each diameter of pegs; what was remarked of one reading is not said again."""
+    loaded: dict[float | None, Loaded] = {}
+    for one in dict.fromkeys(diameters):
+        said = {remark for each in loaded.values() for remark in each.remarks}
+        loaded[one] = reading.load(part, heights, one, said)
+    return loaded
+
+
+def refuse_unknown_faces(numbers: Sequence[int], loaded: Collection[Loaded]) -> None:
+    """Refuse, before any toolkit is tried, faces that do not exist, and those whose numbers are not sure."""
+    from workhold.contact.features import face_of_segment
+    from workhold.files.part.load import refuse_unsure_numbers
+
+    for each in loaded:
+        refuse_unsure_numbers(each, numbers, CALLED)
+    for number in numbers:
+        for each in loaded:
+            face_of_segment(each.workpiece, number)
+
+
+def ask(asked: ExploreTask) -> list[Explored]:
+    """Try the toolkits, as many as are done before a Ctrl-C."""
+    from workhold.cli.warming import compile_on_first_run
+    from workhold.search.design import explore as try_all
+
     found: list[Explored] = []
     with ask_to_stop("what was tried so far is kept") as cancel:
         compile_on_first_run(cancel)
         with search_progress() as progress:
-            for item in try_all(queries, cancel):
+            for item in try_all(asked.queries, cancel):
                 found.append(item)
-                progress(len(found) / len(toolkits), sum(one.fixtures for one in found))
-    types = list(dict.fromkeys(name for one in found for name in one.found))
-    # Toolkits with one clamp and with two have a default ranking each; the first that can be asked gives the
-    # columns.
-    ranking = next((query.rank_by for _, query in queries if not isinstance(query, InputError)), ())
-    first = first_choice(found, ranking, is_sold)
-    if not json_:
-        known = [figures_known(*each) for each in zip(found, queries, strict=False)]
-        print_explored(found, known, types, ranking, first, shown)
-        sliding = [slides_always(one.workpiece, one.heights) for one in loaded.values()]
-        if first is None and all(sliding):
-            print_tables(*sliding[0])
+                progress(len(found) / len(asked.queries), sum(one.fixtures for one in found))
+    return found
+
+
+def report(asked: ExploreTask, found: list[Explored]) -> None:
+    """Print the table and the first choice, and write the file."""
+    from workhold.files.atomic import text_file
+    from workhold.files.toolkit_file import is_sold
+    from workhold.search.design import first_choice
+
+    out, types = asked.written.out, list(dict.fromkeys(name for one in found for name in one.found))
+    first = first_choice(found, asked.ranking, is_sold)
+    if not asked.written.json_:
+        print_explored(asked, found, types, first)
     if out is not None:
         with text_file(Path(out)) as stream:
             stream.write(table_text(found, types))
-    if json_:
+    if asked.written.json_:
         from workhold.presenting.data import explored_data
 
-        choice = {"ranking": list(ranking), "first_choice": None if first is None else first.name}
+        choice = {"ranking": list(asked.ranking), "first_choice": None if first is None else first.name}
         print_json(toolkits=explored_data(found), **choice, written=[] if out is None else [out])
     elif out is not None:
         print_tables(f"Written to {out}.")
-    if len(found) < len(toolkits):
-        print_remark(f"interrupted: {len(toolkits) - len(found)} toolkits were not tried.")
+    if len(found) < len(asked.queries):
+        print_remark(f"interrupted: {len(asked.queries) - len(found)} toolkits were not tried.")
         raise typer.Exit(INTERRUPTED)
 
 
@@ -147,18 +211,16 @@ def figures_known(item: Explored, query: tuple[str, Query | InputError]) -> dict
 
 
 def print_explored(
-    found: list[Explored],
-    known: list[dict[str, float]],
-    types: list[str],
-    ranking: tuple[str, ...],
-    best: Explored | None,
-    unit: Unit,
+    asked: ExploreTask, found: list[Explored], types: list[str], best: Explored | None
 ) -> None:
-    """Prints the table and says which toolkit is best; ``known`` are the figures of each."""
+    """Print the table and say which toolkit is best."""
+    from workhold.cli.tables import slides_always
     from workhold.files.toolkit_file import is_sold
     from workhold.model.quality import FIGURES, LOCATION_ERROR, PROGRAM_FIGURE
     from workhold.presenting.figure_words import figure_text, figure_words, heading
 
+    unit, ranking = asked.unit, asked.ranking
+    known = [figures_known(*each) for each in zip(found, asked.queries, strict=False)]
     keys = dict.fromkeys([FIGURES[LOCATION_ERROR].key, *ranking])
     figures = [figure for key in keys for figure in (*FIGURES, PROGRAM_FIGURE) if figure.key == key]
     # What is known of all, then what there may be no room for: later figures, and of which types the fixtures
@@ -185,6 +247,10 @@ def print_explored(
         unsold = "" if is_sold(best.name) else " Nobody sells it: it is the gripper of the paper."
         over = f"It holds the part over {best.held:.0%} of its length."
         print_tables(f"First choice: {best.name}; its first fixture has {words}. {over}{unsold}")
+        return
+    sliding = [slides_always(one.workpiece, one.heights) for one in asked.loaded]
+    if all(sliding):
+        print_tables(*sliding[0])
 
 
 def table_text(found: list[Explored], types: list[str]) -> str:

@@ -9,15 +9,16 @@ from datetime import date
 from math import isfinite
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from attrs import frozen
 
 from workhold.cli.commands import flag, option, print_remark, spread
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.jobs import asked_of, jobs_of
 from workhold.cli.options import PartWords
-from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output
+from workhold.cli.outputs import FORCE, JSON, OUTPUT, print_json, refuse_output
 from workhold.cli.progress import search_progress
 from workhold.cli.search_options import QueryWords
 from workhold.cli.table import Table, plural, print_tables
@@ -34,15 +35,265 @@ from workhold.cli.values import (
 from workhold.errors import InputError
 
 if TYPE_CHECKING:
-    from workhold.family.family import Family
+    from collections.abc import Mapping, Sequence
+
+    from workhold.family.family import Asked, Family, LeftOut
     from workhold.family.members import Threshold
     from workhold.family.plan import Plan, SetUp
     from workhold.units import Unit
 
 __all__ = ["family"]
 
+FAMILY = "The family"
+EVERY_TYPE = "both"
+SECONDS = "60"
+SHEET_ENDINGS = (".pdf", ".svg", ".png")
 
-def report(found: Family, plan: Plan | None, spent: str, unit: Unit) -> None:
+PartsArgument = Annotated[
+    list[str],
+    typer.Argument(
+        metavar="PARTS...",
+        help="Parts: files, folders with drawings, built-in names; or files of jobs (.toml, .csv), each "
+        "with its part, restrictions and loads.",
+    ),
+]
+
+
+@frozen
+class FamilyWords:
+    """The options of the set-ups that are sought, as typed."""
+
+    max_loss: str | None = option(
+        FAMILY,
+        "LOSS",
+        "Accept no larger loss than this, such as 1.25; the plan is then that of the fewest set-ups.",
+    )
+    setups: str | None = option(
+        FAMILY, "K", "The plan is that of at most K set-ups, as good as those can be."
+    )
+    limit: list[str] | None = option(
+        FAMILY,
+        "FIGURE=VALUE",
+        "Use no fixture whose figure is worse, such as location-error=0.05 (mm, N or degrees). May be "
+        "repeated.",
+    )
+    unfit: bool = flag(FAMILY, "Use also what is no fixture for a workshop.", "--unfit")
+    both_sides: bool = flag(
+        FAMILY, "Hold every part turned over as well, for the second operation.", "--both-sides"
+    )
+    zero: str | None = option(
+        FAMILY,
+        "POINT",
+        "The parts' zero: corner (lower left, as drawn), centre, hole N, or X,Y of the drawing. If not "
+        "given, the origin of the drawing where that is on the part, else the corner.",
+    )
+    same_zero: bool = flag(
+        FAMILY, "All parts of a set-up have their zero at one place and are turned alike.", "--same-zero"
+    )
+    time_limit: str = option(
+        FAMILY,
+        "SECONDS",
+        "How long to prove that there are no fewer set-ups; then what is known is reported.",
+        default=SECONDS,
+    )
+    type_: str = option(
+        FAMILY, "I|II|both", "Of a vise: which arrangements of pegs to use.", "--type", default=EVERY_TYPE
+    )
+    threads: str | None = option(FAMILY, "N", "Threads to use; all processors if not given.")
+
+    @property
+    def ask_for_plan(self) -> bool:
+        return self.setups is not None or self.max_loss is not None
+
+    def asked(self) -> dict[str, Any]:
+        """Keyword arguments of ``family.family.family_of``."""
+        return {
+            "most_loss": None if self.max_loss is None else loss_of(self.max_loss),
+            "seconds": positive_number("--time-limit", self.time_limit),
+            "threads": optional_count("--threads", self.threads),
+            "thresholds": [threshold_of(text) for text in self.limit or ()],
+            "unfit": self.unfit,
+            "same_zero": self.same_zero,
+        }
+
+
+@frozen
+class FamilyOutputWords:
+    """The options of where curve and plans go, as typed."""
+
+    out: str | None = option(OUTPUT, "FILE", "Write curve and plans to this JSON file.")
+    draw: str | None = option(OUTPUT, "FILE", "Draw the curve into this file; its name ends in .svg or .png.")
+    sheets: str | None = option(
+        OUTPUT,
+        "FILE",
+        "Write the sheets of the plan, one for each set-up, to this file; its name ends in .pdf, .svg or "
+        ".png.",
+    )
+    force: bool = FORCE
+    json_: bool = JSON
+
+    def refuse(self, inputs: Sequence[str | Path | None], has_plan: bool) -> None:
+        """Refuse, before anything is searched, what cannot be written."""
+        if self.draw is not None:
+            picture_ending(Path(self.draw))
+        if self.sheets is not None and Path(self.sheets).suffix.lower() not in SHEET_ENDINGS:
+            raise InputError(
+                f"--sheets {self.sheets} names no kind of sheet: let the name end in .pdf, .svg or .png."
+            )
+        if self.sheets is not None and not has_plan:
+            raise InputError("--sheets needs a plan: say which with --setups or --max-loss.")
+        outputs = [name for name in (self.out, self.draw, self.sheets) if name is not None]
+        resolved = [Path(name).resolve() for name in outputs]
+        for place, name in enumerate(outputs):
+            if resolved[place] in resolved[:place]:
+                raise InputError(f"{name} is named for two outputs: give each a name of its own.")
+        for name in outputs:
+            refuse_output(name, inputs, self.force)
+
+
+@frozen
+class FamilyTask:
+    """A family of parts, and how it is to be answered.
+
+    Parameters
+    ----------
+    rules : keyword arguments of ``family.family.family_of``.
+    setups : the most of the plan; None for as many as the largest loss takes.
+    has_plan : whether a plan is asked for.
+    unit : of lengths shown.
+    """
+
+    members: Sequence[Asked]
+    left_out: Sequence[LeftOut]
+    rules: Mapping[str, Any]
+    setups: int | None
+    has_plan: bool
+    written: FamilyOutputWords
+    unit: Unit
+
+
+@frozen
+class FamilyAnswer:
+    """The family that was found, the plan that was asked for, and the time it took in words."""
+
+    found: Family
+    plan: Plan | None
+    spent: str
+
+
+@spread
+def family(
+    parts: PartsArgument,
+    *,
+    held_in: ToolkitWords,
+    planned: FamilyWords,
+    words: QueryWords,
+    written: FamilyOutputWords,
+    reading: PartWords,
+) -> None:
+    """Report which peg patterns hold many of PARTS, and what each fewer set-up costs in quality.
+
+    A loss is a fixture's location error, or the first figure of --rank-by, over the best that the part has
+    here: 1 is the best, 2 is twice as bad. For each number of set-ups the least worst loss is reported. Give
+    --setups or --max-loss to see which pegs stand where and how each part lies.
+
+    Example: workhold family drawings --vise plate-20mm --max-loss 1.25
+    """
+    asked = parse(parts, held_in, planned, words, written, reading)
+    report(asked, ask(asked))
+
+
+def parse(
+    parts: list[str],
+    held_in: ToolkitWords,
+    planned: FamilyWords,
+    words: QueryWords,
+    written: FamilyOutputWords,
+    reading: PartWords,
+) -> FamilyTask:
+    """Read what was typed, and the parts."""
+    shown = length_unit(reading.unit)
+    setups = optional_count("--setups", planned.setups)
+    rules = planned.asked()
+    toolkit, tolerance = held_in.asked(shown)
+    words.asked(shown)
+    type_ = choice("--type", planned.type_, (*toolkit.types, EVERY_TYPE))
+    types = None if type_ == EVERY_TYPE else type_
+    from workhold.family.solver import load_solver
+
+    load_solver()
+    jobs = jobs_of(parts, words, reading)
+    files = [name for job in jobs for name in (job.listed.path, job.words.loads)]
+    written.refuse((*parts, *files, held_in.vise, held_in.toolkit), planned.ask_for_plan)
+    members, left_out = asked_of(jobs, toolkit, tolerance, types, planned.zero, both_sides=planned.both_sides)
+    if not members:
+        raise InputError(f"none of the parts can be used: {left_out[0].name}: {left_out[0].reason}")
+    unit = printed_unit(reading.unit, toolkit)
+    return FamilyTask(members, left_out, rules, setups, planned.ask_for_plan, written, unit)
+
+
+def ask(asked: FamilyTask) -> FamilyAnswer:
+    """Look for the patterns that hold the parts, and for the plan."""
+    from workhold.cli.warming import compile_on_first_run
+    from workhold.kernels.base.compiling import is_first_run
+
+    start = perf_counter()
+    compiled = ", compiling on this first run included" if is_first_run() else ""
+    with ask_to_stop("nothing is found yet") as cancel:
+        compile_on_first_run(cancel)
+    if cancel.is_set():
+        raise typer.Exit(INTERRUPTED)
+    from workhold.family.family import family_of
+
+    with search_progress(keeps=False) as progress:
+        found = family_of(asked.members, left_out=asked.left_out, progress=progress, **asked.rules)
+    plan = found.plan(asked.setups) if found.members and asked.has_plan else None
+    return FamilyAnswer(found, plan, f"{perf_counter() - start:.1f} s{compiled}")
+
+
+def report(asked: FamilyTask, answer: FamilyAnswer) -> None:
+    """Write the files, and print the curve and the plan."""
+    written = write_files(asked, answer)
+    if asked.written.json_:
+        from json import loads
+
+        from workhold.family.family import family_text
+
+        print_json(**loads(family_text(answer.found)), written=written)
+        return
+    print_family(answer, asked.unit)
+    if written:
+        print_tables(f"Written to {', '.join(written)}.")
+
+
+def write_files(asked: FamilyTask, answer: FamilyAnswer) -> list[str]:
+    from workhold.files.atomic import write_bytes
+
+    found, plan, names, contents = answer.found, answer.plan, asked.written, dict[str, bytes]()
+    if names.out is not None:
+        from workhold.family.family import family_text
+
+        contents[names.out] = family_text(found).encode("utf-8")
+    if names.draw is not None and found.members:
+        from workhold.drawing.render import render
+        from workhold.family.pages import draw_curve
+
+        curve = draw_curve(found, None if plan is None else plan.point)
+        contents[names.draw] = render(curve, Path(names.draw).suffix)
+    if names.sheets is not None and plan is not None:
+        from workhold.family.pages import draw_setups
+        from workhold.presenting.papers import pages_bytes
+
+        day = date.today()
+        pages = draw_setups(plan, found.figure, day, asked.unit)
+        contents[names.sheets] = pages_bytes(pages, Path(names.sheets).suffix.lower(), day)
+    for name, content in contents.items():
+        write_bytes(name, content)
+    return list(contents)
+
+
+def print_family(answer: FamilyAnswer, unit: Unit) -> None:
+    found, plan, spent = answer.found, answer.plan, answer.spent
     toolkit = found.toolkit
     for part in found.left_out:
         print_remark(f"{part.name} is left out: {part.reason}.")
@@ -66,10 +317,15 @@ def report(found: Family, plan: Plan | None, spent: str, unit: Unit) -> None:
             "See the plan of a line with --setups K, or of the fewest set-ups within a loss with --max-loss."
         )
         return
-    for number_, setup in enumerate(plan.setups, 1):
+    print_plan(plan, found, unit)
+
+
+def print_plan(plan: Plan, found: Family, unit: Unit) -> None:
+    """Print which pegs stand where in each set-up, and how each part lies."""
+    for count, setup in enumerate(plan.setups, 1):
         holes = ", ".join(peg.hole for peg in setup.standing.fixture.placed)
-        heading = f"Set-up {number_} of {len(plan.setups)}: {holes}"
-        place = "" if number_ == 1 else f" ({setup.moved} to place, the rest stands)"
+        heading = f"Set-up {count} of {len(plan.setups)}: {holes}"
+        place = "" if count == 1 else f" ({setup.moved} to place, the rest stands)"
         print_tables("", f"{heading}{place}", setup_table(setup, found, unit))
         for one in setup.holdings:
             if not one.in_place:
@@ -133,187 +389,6 @@ def setup_table(setup: SetUp, found: Family, unit: Unit) -> Table:
             figure_text(found.figure, one.figure, unit),
         )
     return table
-
-
-FAMILY, OUTPUT = "The family", "Results"
-EVERY_TYPE = "both"
-SECONDS = "60"
-SHEET_ENDINGS = (".pdf", ".svg", ".png")
-
-PartsArgument = Annotated[
-    list[str],
-    typer.Argument(
-        metavar="PARTS...",
-        help="Parts: files, folders with drawings, built-in names; or files of jobs (.toml, .csv), each "
-        "with its part, restrictions and loads.",
-    ),
-]
-
-
-@spread
-def family(
-    parts: PartsArgument,
-    *,
-    held_in: ToolkitWords,
-    max_loss: str | None = option(
-        FAMILY,
-        "LOSS",
-        "Accept no larger loss than this, such as 1.25; the plan is then that of the fewest set-ups.",
-    ),
-    setups: str | None = option(
-        FAMILY, "K", "The plan is that of at most K set-ups, as good as those can be."
-    ),
-    limit: list[str] | None = option(
-        FAMILY,
-        "FIGURE=VALUE",
-        "Use no fixture whose figure is worse, such as location-error=0.05 (mm, N or degrees). May be "
-        "repeated.",
-    ),
-    unfit: bool = flag(FAMILY, "Use also what is no fixture for a workshop.", "--unfit"),
-    both_sides: bool = flag(
-        FAMILY, "Hold every part turned over as well, for the second operation.", "--both-sides"
-    ),
-    zero: str | None = option(
-        FAMILY,
-        "POINT",
-        "The parts' zero: corner (lower left, as drawn), centre, hole N, or X,Y of the drawing. If not "
-        "given, the origin of the drawing where that is on the part, else the corner.",
-    ),
-    same_zero: bool = flag(
-        FAMILY, "All parts of a set-up have their zero at one place and are turned alike.", "--same-zero"
-    ),
-    time_limit: str = option(
-        FAMILY,
-        "SECONDS",
-        "How long to prove that there are no fewer set-ups; then what is known is reported.",
-        default=SECONDS,
-    ),
-    words: QueryWords,
-    type_: str = option(
-        FAMILY, "I|II|both", "Of a vise: which arrangements of pegs to use.", "--type", default=EVERY_TYPE
-    ),
-    threads: str | None = option(FAMILY, "N", "Threads to use; all processors if not given."),
-    out: str | None = option(OUTPUT, "FILE", "Write curve and plans to this JSON file."),
-    draw: str | None = option(
-        OUTPUT, "FILE", "Draw the curve into this file; its name ends in .svg or .png."
-    ),
-    sheets: str | None = option(
-        OUTPUT,
-        "FILE",
-        "Write the sheets of the plan, one for each set-up, to this file; its name ends in .pdf, .svg or "
-        ".png.",
-    ),
-    force: bool = FORCE,
-    json_: bool = JSON,
-    reading: PartWords,
-) -> None:
-    """Report which peg patterns hold many of PARTS, and what each fewer set-up costs in quality.
-
-    A loss is a fixture's location error, or the first figure of --rank-by, over the best that the part has
-    here: 1 is the best, 2 is twice as bad. For each number of set-ups the least worst loss is reported. Give
-    --setups or --max-loss to see which pegs stand where and how each part lies.
-
-    Example: workhold family drawings --vise plate-20mm --max-loss 1.25
-    """
-    shown = length_unit(reading.unit)
-    loss = None if max_loss is None else loss_of(max_loss)
-    most = optional_count("--setups", setups)
-    seconds = positive_number("--time-limit", time_limit)
-    workers = optional_count("--threads", threads)
-    toolkit, tolerance = held_in.asked(shown)
-    printed = printed_unit(reading.unit, toolkit)
-    words.asked(shown)
-    type_ = choice("--type", type_, (*toolkit.types, EVERY_TYPE))
-    from workhold.family.solver import load_solver
-
-    thresholds = [threshold_of(text) for text in limit or ()]
-    load_solver()
-    jobs = jobs_of(parts, words, reading)
-    inputs = [*parts, *(job.listed.path for job in jobs), held_in.vise, held_in.toolkit]
-    inputs += [job.words.loads for job in jobs]
-    if draw is not None:
-        picture_ending(Path(draw))
-    if sheets is not None and Path(sheets).suffix.lower() not in SHEET_ENDINGS:
-        raise InputError(f"--sheets {sheets} names no kind of sheet: let the name end in .pdf, .svg or .png.")
-    if sheets is not None and most is None and loss is None:
-        raise InputError("--sheets needs a plan: say which with --setups or --max-loss.")
-    outputs = [name for name in (out, draw, sheets) if name is not None]
-    resolved = [Path(name).resolve() for name in outputs]
-    for place, name in enumerate(outputs):
-        if resolved[place] in resolved[:place]:
-            raise InputError(f"{name} is named for two outputs: give each a name of its own.")
-    for name in outputs:
-        refuse_output(name, inputs, force)
-    types = None if type_ == EVERY_TYPE else type_
-    members, left_out = asked_of(jobs, toolkit, tolerance, types, zero, both_sides=both_sides)
-    if not members:
-        raise InputError(f"none of the parts can be used: {left_out[0].name}: {left_out[0].reason}")
-    start = perf_counter()
-    from workhold.kernels.base.compiling import is_first_run
-
-    first_run = is_first_run()
-    if first_run:
-        from workhold.cli.warming import compile_kernels
-
-        with ask_to_stop("nothing is found yet") as cancel:
-            compile_kernels(cancel)
-        if cancel.is_set():
-            raise typer.Exit(INTERRUPTED)
-    from workhold.family.family import family_of
-
-    with search_progress(keeps=False) as progress:
-        found = family_of(
-            members,
-            thresholds=thresholds,
-            unfit=unfit,
-            most_loss=loss,
-            seconds=seconds,
-            same_zero=same_zero,
-            threads=workers,
-            left_out=left_out,
-            progress=progress,
-        )
-    plan = found.plan(most) if found.members and (most is not None or loss is not None) else None
-    compiled = ", compiling on this first run included" if first_run else ""
-    spent = f"{perf_counter() - start:.1f} s{compiled}"
-    written = write_all(found, plan, out, draw, sheets, printed)
-    if json_:
-        from json import loads
-
-        from workhold.family.family import family_text
-
-        print_json(**loads(family_text(found)), written=written)
-        return
-    report(found, plan, spent, printed)
-    if written:
-        print_tables(f"Written to {', '.join(written)}.")
-
-
-def write_all(
-    found: Family, plan: Plan | None, out: str | None, draw: str | None, sheets: str | None, unit: Unit
-) -> list[str]:
-    from workhold.files.atomic import write_bytes
-
-    contents: dict[str, bytes] = {}
-    if out is not None:
-        from workhold.family.family import family_text
-
-        contents[out] = family_text(found).encode("utf-8")
-    if draw is not None and found.members:
-        from workhold.drawing.render import render
-        from workhold.family.pages import draw_curve
-
-        contents[draw] = render(draw_curve(found, None if plan is None else plan.point), Path(draw).suffix)
-    if sheets is not None and plan is not None:
-        from workhold.family.pages import draw_setups
-        from workhold.presenting.papers import pages_bytes
-
-        day = date.today()
-        pages = draw_setups(plan, found.figure, day, unit)
-        contents[sheets] = pages_bytes(pages, Path(sheets).suffix.lower(), day)
-    for name, content in contents.items():
-        write_bytes(name, content)
-    return list(contents)
 
 
 def loss_of(text: str) -> float:

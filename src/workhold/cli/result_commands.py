@@ -5,10 +5,12 @@ The first writes the result in another form; the second proves or refutes every 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from time import perf_counter
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from attrs import frozen
 
 from workhold.cli.commands import flag, option
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
@@ -67,6 +69,34 @@ def convert(
 REFUTED = 2
 
 
+@frozen
+class VerifyTask:
+    """A file to verify.
+
+    Parameters
+    ----------
+    of_supports : whether it lists supports, not fixtures.
+    listed : how many that are not proven are listed on the terminal.
+    complete, threads : whether what the file leaves out is searched for, and by how many threads.
+    """
+
+    path: str
+    of_supports: bool
+    listed: int
+    complete: bool
+    threads: int | None
+    as_json: bool
+
+
+@frozen
+class VerifyAnswer:
+    """What was proven, the time it took in words, and what was not looked at."""
+
+    outcome: Verification
+    spent: str
+    scope: Sequence[str] = ()
+
+
 def verify(
     result_file: ResultArgument,
     list_: str = option(
@@ -88,54 +118,59 @@ def verify(
 
     Example: workhold verify part.json
     """
-    listed = whole_number("--list", list_)
-    workers = optional_count("--threads", threads)
+    asked = parse(result_file, list_, complete, threads, json_)
+    report(asked, ask(asked))
 
+
+def parse(path: str, list_: str, complete: bool, threads: str | None, as_json: bool) -> VerifyTask:
+    """Read what was typed."""
+    listed, workers = whole_number("--list", list_), optional_count("--threads", threads)
+    from workhold.verification.supports import is_supports_file
+
+    of_supports = is_supports_file(path)
+    if of_supports and complete:
+        raise InputError(
+            "--complete searches for fixtures again, and this file lists supports: leave it out."
+        )
+    return VerifyTask(path, of_supports, listed, complete, workers, as_json)
+
+
+def ask(asked: VerifyTask) -> VerifyAnswer:
+    """Verify all that the file lists, and search again if that was asked."""
     from workhold.verification.listing import read_listing
+    from workhold.verification.supports import verify_supports_file
     from workhold.verification.verify import verify_listing
 
     start = perf_counter()
-    from workhold.verification.supports import is_supports_file, verify_supports_file
-
-    if is_supports_file(result_file):
-        if complete:
-            raise InputError(
-                "--complete searches for fixtures again, and this file lists supports: leave it out."
-            )
-        found = verify_supports_file(result_file)
-        print_supports(found, listed, perf_counter() - start, json_)
-        if not found.holds:
-            raise typer.Exit(REFUTED)
-        return
-    listing = read_listing(result_file)
+    if asked.of_supports:
+        return VerifyAnswer(verify_supports_file(asked.path), f"{perf_counter() - start:.1f} s")
+    listing = read_listing(asked.path)
     with progress_bar("Verifying", "not proven") as progress:
         outcome = verify_listing(listing, progress)
-    if complete:
-        outcome = compared(outcome, listing, workers)
-    seconds = perf_counter() - start
-    if json_:
+    if asked.complete:
+        outcome = compared(outcome, listing, asked.threads)
+    spent = f"{perf_counter() - start:.1f} s"
+    return VerifyAnswer(outcome, spent, scope(outcome, asked.complete, listing))
+
+
+def report(asked: VerifyTask, answer: VerifyAnswer) -> None:
+    """Print what is not proven, and end with a code that says so."""
+    outcome = answer.outcome
+    if asked.as_json:
         from workhold.presenting.data import verification_data
 
         print_json(**verification_data(outcome))
     else:
-        sentences = unproven_sentences(outcome, listed)
-        print_tables(*sentences, f"{summary(outcome)}; {seconds:.1f} s", *scope(outcome, complete, listing))
-    if complete and not outcome.is_compared:
+        unproven, tally = unproven_sentences(outcome, asked.listed), summary(outcome)
+        if asked.of_supports:
+            unproven = [sentence.replace("Fixture", "Triple", 1) for sentence in unproven]
+            of_all = f"{plural(outcome.fixtures, 'triple')} of supports"
+            tally = f"{of_all}: {outcome.proven} proven, {outcome.refuted} refuted"
+        print_tables(*unproven, f"{tally}; {answer.spent}", *answer.scope)
+    if asked.complete and not outcome.is_compared:
         raise typer.Exit(INTERRUPTED)
     if not outcome.holds:
         raise typer.Exit(REFUTED)
-
-
-def print_supports(outcome: Verification, count: int, seconds: float, as_json: bool) -> None:
-    if as_json:
-        from workhold.presenting.data import verification_data
-
-        print_json(**verification_data(outcome))
-        return
-
-    words = [sentence.replace("Fixture", "Triple", 1) for sentence in unproven_sentences(outcome, count)]
-    tally = f"{outcome.proven} proven, {outcome.refuted} refuted"
-    print_tables(*words, f"{plural(outcome.fixtures, 'triple')} of supports: {tally}; {seconds:.1f} s")
 
 
 def compared(outcome: Verification, listing: Listing, workers: int | None) -> Verification:

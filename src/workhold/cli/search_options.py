@@ -25,10 +25,10 @@ if TYPE_CHECKING:
 
 __all__ = [
     "FRICTION",
-    "JAW",
     "JAW_FORCE",
     "LOAD",
     "LOADS_FILE",
+    "LoadWords",
     "QueryWords",
     "SeatingWords",
     "asked_loads",
@@ -79,8 +79,28 @@ def parse_load(text: str, unit_scale: float = 1.0) -> Load:
 LOAD = option(LOADS, "LOAD", LOAD_HELP)
 LOADS_FILE = option(LOADS, "FILE", "Loads from a TOML file.")
 # Of loads on a fixture that is known, as its sheet has them.
-ABOUT_LOADS = {row.name: row for row in declarations_of(SheetQuestion, [LOADS])}
-JAW_FORCE, JAW, FRICTION = (option_of(ABOUT_LOADS[name]) for name in ("jaw_force", "jaw", "friction"))
+OF_LOADS = declarations_of(SheetQuestion, [LOADS])
+JAW_FORCE, FRICTION = (option_of(row) for row in OF_LOADS if row.name in ("jaw_force", "friction"))
+LOADS_TYPED = {"load": several_words(LOAD), "loads": one_word(LOADS_FILE)}
+
+
+@frozen(these=options_of(OF_LOADS, jaw_force=LOADS_TYPED))
+class LoadWords:
+    """The options of loads on a fixture that is known, as typed; None for those not given."""
+
+    if TYPE_CHECKING:
+        load: list[str] | None
+        loads: str | None
+
+    def asked(self, unit: Unit) -> dict[str, Any]:
+        """The jaw force in N, how stiff the jaw is and the friction, None for those not given, and the loads."""
+        from workhold.statics.loads import jaw_stiffness
+
+        asked = read_words(OF_LOADS, self, unit)
+        asked["jaw"] = jaw_stiffness(asked["jaw"])
+        return asked | {"loads": asked_loads(self.load, self.loads, unit)}
+
+
 # What a search in one toolkit and a comparison of several both ask; beside these fields stand options that are no fields.
 OF_RESTRICTIONS = declarations_of(RuledOut)
 OF_SEARCHES = declarations_of(SearchQuestion, (RULING_OUT, LOADS, RANKING))
@@ -96,7 +116,7 @@ BESIDE = {
             )
         )
     },
-    "jaw_force": {"load": several_words(LOAD), "loads": one_word(LOADS_FILE)},
+    "jaw_force": LOADS_TYPED,
     "rank_by": one_word(
         option(
             RANKING,

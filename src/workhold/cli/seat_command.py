@@ -6,7 +6,9 @@ from pathlib import Path
 from threading import Event
 from typing import TYPE_CHECKING
 
-from workhold.cli.commands import option, print_remark
+from attrs import frozen
+
+from workhold.cli.commands import option, print_remark, spread
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
 from workhold.cli.outputs import FORCE, JSON, asked_picture, print_json, write_picture
 from workhold.cli.table import Table, print_tables
@@ -24,23 +26,58 @@ __all__ = ["by_hand_words", "seat", "seat_table", "seating_words"]
 SIDES = ("both", "drawn", "turned-over")
 
 
-def seat(
-    result_file: ResultArgument,
-    number: RankArgument,
+@frozen
+class SeatWords:
+    """The options of what is shown of a seating and where it is drawn, as typed."""
+
     side: str = option(
         None, "WORD", "Which side of the part may lie up: drawn, turned-over, or both.", default="both"
-    ),
+    )
     opening: str | None = option(
         None,
         "LENGTH",
         "Open the jaws, or draw the clamp back, by this much to put the part in; as far as they go if not "
         "given.",
-    ),
-    draw: str | None = option(None, "FILE", "Draw how the part can rest into this file, .svg or .png."),
-    force: bool = FORCE,
-    unit: str | None = SHOWN_UNIT,
-    json_: bool = JSON,
-) -> None:
+    )
+    draw: str | None = option(None, "FILE", "Draw how the part can rest into this file, .svg or .png.")
+    force: bool = FORCE
+    unit: str | None = SHOWN_UNIT
+    json_: bool = JSON
+
+
+@frozen
+class SeatTask:
+    """A fixture whose seating is to be shown.
+
+    Parameters
+    ----------
+    side, opened : which seats are shown, see :func:`shown_seats`.
+    unit : of lengths shown.
+    """
+
+    result: Result
+    rank: int
+    side: str
+    opened: float | None
+    picture: Path | None
+    unit: Unit
+    as_json: bool
+
+    @property
+    def fixture(self) -> Fixture:
+        return self.result[self.rank - 1]
+
+    @property
+    def title(self) -> str:
+        return f"Seating of fixture {self.rank} of {len(self.result)}: {self.result.workpiece.name}"
+
+    @property
+    def written(self) -> list[str]:
+        return [] if self.picture is None else [str(self.picture)]
+
+
+@spread
+def seat(result_file: ResultArgument, number: RankArgument, *, words: SeatWords) -> None:
     """Report whether the part ends up in the pose of fixture N when the vise or the clamp is tightened.
 
     It says how wide open that may be when the part is let go, and how far off the part may lie. It lists
@@ -49,70 +86,81 @@ def seat(
 
     Example: workhold seat part.json 1 --draw seats.svg
     """
-    rank = asked_rank(number)
-    shown_unit = length_unit(unit)
-    shown_side = choice("--side", side, SIDES)
-    opened = optional_positive_length("--opening", opening, shown_unit)
-    picture = asked_picture(draw, (result_file,), force)
+    asked = parse(result_file, asked_rank(number), words)
+    if asked.result.toolkit.closes_at_once:
+        report(asked, ask(asked))
+    else:
+        report_by_hand(asked)
+
+
+def parse(result_file: str, rank: int, words: SeatWords) -> SeatTask:
+    """Read what was typed, and the fixture."""
+    shown, side = length_unit(words.unit), choice("--side", words.side, SIDES)
+    opened = optional_positive_length("--opening", words.opening, shown)
+    picture = asked_picture(words.draw, (result_file,), words.force)
     result = result_with(result_file, rank)
-    shown_unit = printed_unit(unit, result.toolkit)
-    fixture, written = result[rank - 1], [] if picture is None else [str(picture)]
-    if not result.toolkit.closes_at_once:
-        print_by_hand(result, rank, picture, shown_unit, json_)
-        return
+    unit = printed_unit(words.unit, result.toolkit)
+    return SeatTask(result, rank, side, opened, picture, unit, words.json_)
+
+
+def ask(asked: SeatTask) -> Seating:
+    """Find where the part can come to rest, where the result does not say it."""
+    result = asked.result
+    known: Seating | None = asked.fixture.seating
+    if known is not None:
+        return known
+    from workhold.cli.warming import compile_seating
+    from workhold.seating.pattern import refuse_unseated
+    from workhold.seating.solver import Solver
+
+    refuse_unseated(result.toolkit)
+    compile_seating(Event())
+    return Solver(result.workpiece, result.toolkit).of(asked.fixture)
+
+
+def report(asked: SeatTask, seating: Seating) -> None:
+    """Print how the part comes home and where else it can rest, and draw it."""
     from workhold.seating.clamping import Gauge
 
-    gauge, seating = Gauge(fixture, result.toolkit), fixture.seating
-    if seating is None:
-        from workhold.cli.warming import compile_seating
-        from workhold.seating.pattern import refuse_unseated
-        from workhold.seating.solver import Solver
-
-        refuse_unseated(result.toolkit)
-        compile_seating(Event())
-        seating = Solver(result.workpiece, result.toolkit).of(fixture)
-    seats = shown_seats(seating, shown_side, opened, result)
-    if not json_:
+    result, fixture, unit = asked.result, asked.fixture, asked.unit
+    gauge, seats = Gauge(fixture, result.toolkit), shown_seats(seating, asked.side, asked.opened, result)
+    if not asked.as_json:
         print_tables(
-            f"Seating of fixture {rank} of {len(result)}: {result.workpiece.name}",
+            asked.title,
             "",
-            *setting_words(seating, gauge, shown_unit),
+            *setting_words(seating, gauge, unit),
             "",
-            *wrong_words(seating, seats, opened, gauge, shown_unit),
-            seat_table(seats, gauge, shown_unit),
+            *wrong_words(seating, seats, asked.opened, gauge, unit),
+            seat_table(seats, gauge, unit),
         )
     for words in seating.unsettled:
         print_remark(words)
-    if picture is not None:
+    if asked.picture is not None:
         from workhold.drawing.seats import draw_seats
 
-        svg = draw_seats(
-            seats, fixture, result.workpiece, result.toolkit, title=f"Fixture {rank}", unit=shown_unit
-        )
-        write_picture(picture, svg)
-    if json_:
-        print_json(rank=rank, seating=seating.as_fields(), written=written)
+        held = (fixture, result.workpiece, result.toolkit)
+        write_picture(asked.picture, draw_seats(seats, *held, title=f"Fixture {asked.rank}", unit=unit))
+    if asked.as_json:
+        print_json(rank=asked.rank, seating=seating.as_fields(), written=asked.written)
     else:
-        print_tables(*(f"Drawn in {path}." for path in written))
+        print_tables(*(f"Drawn in {path}." for path in asked.written))
 
 
-def print_by_hand(result: Result, rank: int, picture: Path | None, unit: Unit, json_: bool) -> None:
+def report_by_hand(asked: SeatTask) -> None:
+    """Print how a part that two clamps hold is put in, and draw the fixture."""
     from workhold.drawing.fixture_pictures import draw_fixture
     from workhold.seating.clamping import by_hand
 
-    fixture, written = result[rank - 1], [] if picture is None else [str(picture)]
-    if picture is not None:
-        svg = draw_fixture(fixture, result.workpiece, result.toolkit, title=f"Fixture {rank}", unit=unit)
-        write_picture(picture, svg)
-    if json_:
-        steps = by_hand(fixture, result.workpiece, result.toolkit)
-        print_json(rank=rank, seating=None, by_hand=steps.as_fields(unit.text), written=written)
+    result, unit = asked.result, asked.unit
+    held = (asked.fixture, result.workpiece, result.toolkit)
+    if asked.picture is not None:
+        write_picture(asked.picture, draw_fixture(*held, title=f"Fixture {asked.rank}", unit=unit))
+    if asked.as_json:
+        steps = by_hand(*held).as_fields(unit.text)
+        print_json(rank=asked.rank, seating=None, by_hand=steps, written=asked.written)
         return
-    print_tables(
-        f"Seating of fixture {rank} of {len(result)}: {result.workpiece.name}",
-        *by_hand_words(rank, result, unit),
-    )
-    print_tables(*(f"Drawn in {path}." for path in written))
+    print_tables(asked.title, *by_hand_words(asked.rank, result, unit))
+    print_tables(*(f"Drawn in {path}." for path in asked.written))
 
 
 def by_hand_words(rank: int, result: Result, unit: Unit) -> list[str]:

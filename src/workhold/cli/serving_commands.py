@@ -15,15 +15,19 @@ from pathlib import Path
 from secrets import token_urlsafe
 from tempfile import TemporaryDirectory
 from threading import Event
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 import typer.completion
+from attrs import frozen
 
-from workhold.cli.commands import flag, option
+from workhold.cli.commands import flag, option, spread
 from workhold.cli.values import choice, positive_number, whole_number
 from workhold.errors import InputError, lacks_memory
 from workhold.version import __version__
+
+if TYPE_CHECKING:
+    from workhold.web.guard import ServerLimits
 
 __all__ = ["completion", "mcp", "outcome", "serve"]
 
@@ -46,33 +50,100 @@ def limit(default: str | None, metavar: str, variable: str, help: str) -> Any:
     )
 
 
-def serve(
+@frozen
+class ServerWords:
+    """The options of where a server listens and to whom, as typed."""
+
     host: str = option(
         None, "ADDRESS", "Where to listen; 0.0.0.0 lets other machines in.", default="127.0.0.1"
-    ),
-    port: str = option(None, "PORT", "Port to listen at; 0 takes a free one.", default="8000"),
-    open_: bool = flag(None, "Open the page in the browser.", "--open"),
+    )
+    port: str = option(None, "PORT", "Port to listen at; 0 takes a free one.", default="8000")
+    open_: bool = flag(None, "Open the page in the browser.", "--open")
     allow_host: list[str] | None = option(
         None, "NAME", "Another name that the server may be called by. May be repeated."
-    ),
+    )
     trust_proxy: list[str] | None = option(
         None, "ADDRESS", "A reverse proxy that says for whom it asks. May be repeated."
-    ),
+    )
     allow_origin: list[str] | None = option(
         None,
         "ORIGIN",
         "A site whose pages may use the server, such as https://shop.example. May be repeated.",
-    ),
-    ask_token: bool = flag(None, "Let in only who has the address that is printed.", "--ask-token"),
-    upload_size: str = limit("20", "MB", "UPLOAD_SIZE", "Largest file with a part."),
-    searches: str = limit("2", "N", "SEARCHES", "Searches at the same time."),
-    seconds: str = limit("120", "S", "SECONDS", "Longest search; what was found by then is shown."),
+    )
+    ask_token: bool = flag(None, "Let in only who has the address that is printed.", "--ask-token")
+
+    def port_number(self) -> int:
+        at = whole_number("--port", self.port)
+        if not 0 <= at <= HIGHEST_PORT:
+            raise InputError(f"--port {self.port} is no port: give a number from 0 to {HIGHEST_PORT}.")
+        return at
+
+    def proxies(self) -> list[str]:
+        """The proxies that are trusted; refuses what is no address."""
+        for proxy in self.trust_proxy or ():
+            try:
+                ip_address(proxy)
+            except ValueError:
+                raise InputError(
+                    f"--trust-proxy {proxy!r} is no address: give a number such as 10.0.0.2."
+                ) from None
+        return self.trust_proxy or []
+
+    def announce(self, address: str) -> None:
+        """Say where the page is, and show it if that was asked."""
+        from workhold.web.serve import is_for_others
+
+        typer.echo(f"workhold is at {address} (Ctrl-C stops it)")
+        if is_for_others(self.host) and not self.ask_token:
+            typer.echo(OPEN_TO_ALL, err=True)
+        if self.open_:
+            import webbrowser
+
+            webbrowser.open(address)
+
+
+@frozen
+class LimitWords:
+    """The options of how much a server gives, as typed or as the environment says."""
+
+    upload_size: str = limit("20", "MB", "UPLOAD_SIZE", "Largest file with a part.")
+    searches: str = limit("2", "N", "SEARCHES", "Searches at the same time.")
+    seconds: str = limit("120", "S", "SECONDS", "Longest search; what was found by then is shown.")
     memory: str | None = limit(
         None, "MB", "MEMORY", "Most memory of each search: 4096, or less on a small machine."
-    ),
-    fixtures: str = limit("300000", "N", "FIXTURES", "Most fixtures kept of a search, the best ones."),
-    life: str = limit("60", "MINUTES", "LIFE", "How long a search is kept after its last use."),
-) -> None:
+    )
+    fixtures: str = limit("300000", "N", "FIXTURES", "Most fixtures kept of a search, the best ones.")
+    life: str = limit("60", "MINUTES", "LIFE", "How long a search is kept after its last use.")
+
+    def asked(self) -> ServerLimits:
+        """The limits of the server; refuses what is no number, and counts that are too small or too large."""
+        upload_size = int(1e6 * positive_number("--upload-size", self.upload_size))
+        searches = int(positive_number("--searches", self.searches))
+        seconds = positive_number("--seconds", self.seconds)
+        fixtures = int(positive_number("--fixtures", self.fixtures))
+        life = 60 * positive_number("--life", self.life)
+        if searches < 1 or fixtures < 1:
+            raise InputError("--searches and --fixtures are counts: give 1 or more.")
+        if searches > MOST_SEARCHES:
+            raise InputError(
+                f"--searches {searches:,} is beyond {MOST_SEARCHES}: one for each processor is best."
+            )
+        from workhold.web.guard import ServerLimits, usual_memory
+
+        return ServerLimits(
+            upload_bytes=upload_size,
+            searches=searches,
+            seconds=seconds,
+            fixtures=fixtures,
+            life_seconds=life,
+            memory_bytes=usual_memory(searches)
+            if self.memory is None
+            else int(positive_number("--memory", self.memory)) << 20,
+        )
+
+
+@spread
+def serve(*, words: ServerWords, limits: LimitWords) -> None:
     """Serve the page: from a drawing to a setup sheet in the browser.
 
     It can be used from this machine only, unless --host says otherwise. The same is there for programs: see
@@ -80,52 +151,14 @@ def serve(
 
     Example: workhold serve --open
     """
-    at = whole_number("--port", port)
-    if not 0 <= at <= HIGHEST_PORT:
-        raise InputError(f"--port {port} is no port: give a number from 0 to {HIGHEST_PORT}.")
-    figures: dict[str, Any] = {
-        "upload_bytes": int(1e6 * positive_number("--upload-size", upload_size)),
-        "searches": int(positive_number("--searches", searches)),
-        "seconds": positive_number("--seconds", seconds),
-        "fixtures": int(positive_number("--fixtures", fixtures)),
-        "life_seconds": 60 * positive_number("--life", life),
-    }
-    if figures["searches"] < 1 or figures["fixtures"] < 1:
-        raise InputError("--searches and --fixtures are counts: give 1 or more.")
-    if figures["searches"] > MOST_SEARCHES:
-        raise InputError(
-            f"--searches {figures['searches']:,} is beyond {MOST_SEARCHES}: one for each processor is best."
-        )
-    for proxy in trust_proxy or ():
-        try:
-            ip_address(proxy)
-        except ValueError:
-            raise InputError(
-                f"--trust-proxy {proxy!r} is no address: give a number such as 10.0.0.2."
-            ) from None
-    from workhold.web.guard import ServerLimits, usual_memory
+    port, most, proxies = words.port_number(), limits.asked(), words.proxies()
     from workhold.web.origins import checked_origin
-    from workhold.web.serve import is_for_others, run_server
+    from workhold.web.serve import run_server
 
-    most = (
-        usual_memory(figures["searches"])
-        if memory is None
-        else int(positive_number("--memory", memory)) << 20
-    )
-
-    def listening(address: str) -> None:
-        typer.echo(f"workhold is at {address} (Ctrl-C stops it)")
-        if is_for_others(host) and not ask_token:
-            typer.echo(OPEN_TO_ALL, err=True)
-        if open_:
-            import webbrowser
-
-            webbrowser.open(address)
-
-    origins = [checked_origin(one) for one in allow_origin or ()]
-    token = token_urlsafe(TOKEN_BYTES) if ask_token else None
-    limits = ServerLimits(memory_bytes=most, **figures)
-    run_server(host, at, limits, allow_host or (), trust_proxy or (), token, listening, prepare, origins)
+    origins = [checked_origin(one) for one in words.allow_origin or ()]
+    token = token_urlsafe(TOKEN_BYTES) if words.ask_token else None
+    names = words.allow_host or ()
+    run_server(words.host, port, most, names, proxies, token, words.announce, prepare, origins)
 
 
 def prepare() -> None:

@@ -10,6 +10,8 @@ from datetime import date
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from attrs import frozen
+
 from workhold.cli.commands import flag, option, print_remark
 from workhold.cli.outputs import STANDARD_OUTPUT, refuse_output
 from workhold.cli.support_words import stopped_words, supported_within
@@ -24,11 +26,8 @@ if TYPE_CHECKING:
     from workhold.presenting.assembly import Assembly
 
 __all__ = [
-    "BODY_THICKNESS",
-    "GLB",
     "PART_FILE",
-    "STEP",
-    "SUPPORTED",
+    "BodyWords",
     "asked_models",
     "chosen_of_file",
     "chosen_supports",
@@ -38,13 +37,6 @@ __all__ = [
     "write_bodies",
 ]
 
-GLB = option(None, "FILE", "Write it in three dimensions into this file, whose name ends in .glb.")
-STEP = option(None, "FILE", "The same as a STEP assembly, for CAD and CAM; its name ends in .step.")
-BODY_THICKNESS = option(
-    None,
-    "LENGTH",
-    "Height of the part in the GLB and STEP; that of its solid, or 10 mm, if not given.",
-)
 PART_FILE = option(
     None,
     "FILE",
@@ -52,11 +44,36 @@ PART_FILE = option(
     "not a prism.",
     "--part",
 )
-SUPPORTED = flag(
-    None,
-    "In the GLB and STEP also the best three supports under the part and a clamp on top, of the usual sizes.",
-    "--supports",
-)
+
+
+@frozen
+class BodyWords:
+    """The options of a set-up in three dimensions, as typed; None for those not given."""
+
+    glb: str | None = option(
+        None, "FILE", "Write it in three dimensions into this file, whose name ends in .glb."
+    )
+    step: str | None = option(
+        None, "FILE", "The same as a STEP assembly, for CAD and CAM; its name ends in .step."
+    )
+    supports: bool = flag(
+        None,
+        "In the GLB and STEP also the best three supports under the part and a clamp on top, of the usual sizes.",
+        "--supports",
+    )
+    thickness: str | None = option(
+        None,
+        "LENGTH",
+        "Height of the part in the GLB and STEP; that of its solid, or 10 mm, if not given.",
+    )
+    part: str | None = PART_FILE
+
+    def models(self, inputs: Sequence[str | None], force: bool) -> list[Path]:
+        """The files to write; refuses an option of them where there are none."""
+        of_files = {"thickness": self.thickness, "supports": self.supports, "part": self.part}
+        return asked_models(self.glb, self.step, (*inputs, self.part), force, **of_files)
+
+
 PAPER = (".pdf", ".svg", ".png")
 # So many of the best are asked for supports, a millisecond each.
 MOST_ASKED = 200

@@ -2,35 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from workhold.cli.commands import option, print_remark
+from attrs import frozen
+
+from workhold.cli.commands import option, print_remark, spread
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
 from workhold.cli.outputs import FORCE, JSON, asked_picture, print_json, write_picture
-from workhold.cli.search_options import FRICTION, JAW, JAW_FORCE, LOAD, LOADS_FILE, asked_loads
+from workhold.cli.search_options import LoadWords
 from workhold.cli.seat_command import by_hand_words, seating_words
-from workhold.cli.setup_sheets import (
-    BODY_THICKNESS,
-    GLB,
-    PART_FILE,
-    STEP,
-    SUPPORTED,
-    asked_models,
-    chosen_supports,
-    write_bodies,
-)
+from workhold.cli.setup_sheets import BodyWords, chosen_supports, write_bodies
 from workhold.cli.table import Table, print_tables
-from workhold.cli.values import (
-    length_unit,
-    optional_force,
-    optional_positive_length,
-    positive_number,
-    printed_unit,
-)
+from workhold.cli.values import length_unit, optional_positive_length, printed_unit
 from workhold.units import MILLIMETRE, Unit
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from workhold.fixels.toolkit import Toolkit
     from workhold.model.fixture import Fixture
     from workhold.model.result import Result
@@ -40,21 +29,51 @@ if TYPE_CHECKING:
 __all__ = ["load_tables", "show"]
 
 
+@frozen
+class ShowTask:
+    """A fixture to be shown.
+
+    Parameters
+    ----------
+    pressed_by : the loads, jaw force, jaw and friction that were typed, see ``LoadWords``.
+    picture, models : files to write, in two and in three dimensions.
+    part : the file of the part's own shape for the latter.
+    height : of the part in them, in mm.
+    on_supports : whether they show it on supports.
+    unit, printed : of lengths as typed, and as shown.
+    """
+
+    result: Result
+    rank: int
+    pressed_by: Mapping[str, Any]
+    picture: Path | None
+    models: Sequence[Path]
+    part: str | None
+    height: float | None
+    on_supports: bool
+    unit: Unit
+    printed: Unit
+    as_json: bool
+
+    @property
+    def fixture(self) -> Fixture:
+        return self.result[self.rank - 1]
+
+    @property
+    def closing(self) -> tuple[float | None, float]:
+        """The jaw force in N that was typed, and how stiff the jaw is."""
+        return self.pressed_by["jaw_force"], self.pressed_by["jaw"]
+
+
+@spread
 def show(
     result_file: ResultArgument,
     number: RankArgument,
+    *,
     draw: str | None = option(None, "FILE", "Draw it into this file, whose name ends in .svg or .png."),
-    glb: str | None = GLB,
-    step: str | None = STEP,
-    supports: bool = SUPPORTED,
-    thickness: str | None = BODY_THICKNESS,
-    part: str | None = PART_FILE,
+    bodies: BodyWords,
     force: bool = FORCE,
-    load: list[str] | None = LOAD,
-    loads: str | None = LOADS_FILE,
-    jaw_force: str | None = JAW_FORCE,
-    jaw: str = JAW,
-    friction: str | None = FRICTION,
+    words: LoadWords,
     unit: str | None = SHOWN_UNIT,
     json_: bool = JSON,
 ) -> None:
@@ -65,59 +84,99 @@ def show(
 
     Example: workhold show part.json 1 --draw setup.png --glb setup.glb
     """
-    from workhold.statics.loads import jaw_stiffness, load_cases
+    asked = parse(result_file, asked_rank(number), draw, bodies, force, words, unit, json_)
+    report(asked, ask(asked))
 
-    rank = asked_rank(number)
-    shown_unit = length_unit(unit)
-    closing_force = optional_force("--jaw-force", jaw_force)
-    coefficient = None if friction is None else positive_number("--friction", friction)
-    asked = asked_loads(load, loads, shown_unit)
-    picture = asked_picture(draw, (result_file, loads), force)
-    models = asked_models(
-        glb, step, (result_file, loads, part), force, thickness=thickness, supports=supports, part=part
-    )
-    height = optional_positive_length("--thickness", thickness, shown_unit)
-    stiffness = jaw_stiffness(jaw)
+
+def parse(
+    result_file: str,
+    rank: int,
+    draw: str | None,
+    bodies: BodyWords,
+    force: bool,
+    words: LoadWords,
+    unit: str | None,
+    as_json: bool,
+) -> ShowTask:
+    """Read what was typed, and the fixture."""
+    shown = length_unit(unit)
+    pressed_by = words.asked(shown)
+    picture = asked_picture(draw, (result_file, words.loads), force)
+    models = bodies.models((result_file, words.loads), force)
+    height = optional_positive_length("--thickness", bodies.thickness, shown)
     result = result_with(result_file, rank)
-    fixture, printed = result[rank - 1], printed_unit(unit, result.toolkit)
-    loads_asked = asked or result.query.loads
-    closed_with = result.query.jaw_force if closing_force is None else closing_force
-    cases = load_cases(
-        fixture, result.workpiece, result.toolkit, loads_asked, closed_with, coefficient, stiffness
+    printed = printed_unit(unit, result.toolkit)
+    return ShowTask(
+        result,
+        rank,
+        pressed_by,
+        picture,
+        models,
+        bodies.part,
+        height,
+        bodies.supports,
+        shown,
+        printed,
+        as_json,
     )
-    if not json_:
-        print_fixture(result, rank, cases, printed, (closing_force, stiffness))
+
+
+def ask(asked: ShowTask) -> tuple[LoadCase, ...]:
+    """Find what the loads do to the fixture."""
+    from workhold.statics.loads import load_cases
+
+    result, pressed_by = asked.result, asked.pressed_by
+    force, stiffness = asked.closing
+    closed_with = result.query.jaw_force if force is None else force
+    loads, friction = pressed_by["loads"] or result.query.loads, pressed_by["friction"]
+    return load_cases(
+        asked.fixture, result.workpiece, result.toolkit, loads, closed_with, friction, stiffness
+    )
+
+
+def report(asked: ShowTask, cases: Sequence[LoadCase]) -> None:
+    """Print the fixture, and write its picture and bodies."""
+    result, rank = asked.result, asked.rank
+    if not asked.as_json:
+        print_fixture(result, rank, cases, asked.printed, asked.closing)
     if not result.complete:
         print_remark("the search for this result was interrupted; there may be better fixtures.")
+    written = write(asked)
+    if not asked.as_json:
+        print_tables(*(f"Drawn in {path}." for path in written))
+        return
+    from workhold.presenting.data import fixture_data, load_case_data
+
+    print_json(
+        fixture=fixture_data(asked.fixture, result.toolkit, rank),
+        **passing_data(result, rank, *asked.closing),
+        **bending_data(result, rank, asked.closing[0]),
+        listed=len(result),
+        complete=bool(result.complete),
+        loads=[load_case_data(case) for case in cases],
+        written=[str(path) for path in written],
+    )
+
+
+def write(asked: ShowTask) -> list[Path]:
+    """Write the picture and the bodies that were asked for; returns their paths."""
+    result, rank, fixture, picture = asked.result, asked.rank, asked.fixture, asked.picture
     if picture is not None:
         from workhold.drawing.fixture_pictures import draw_fixture
         from workhold.drawing.path_drawn import planned_path
 
-        path = planned_path(result, rank - 1)
-        held = (fixture, result.workpiece, result.toolkit)
-        svg = draw_fixture(*held, title=f"Fixture {rank}", unit=printed, path=path)
-        write_picture(picture, svg)
-    if models:
+        held, path = (fixture, result.workpiece, result.toolkit), planned_path(result, rank - 1)
+        write_picture(picture, draw_fixture(*held, title=f"Fixture {rank}", unit=asked.printed, path=path))
+    if asked.models:
         from workhold.presenting.assembly import Assembly, shape_in
 
-        shape = shape_in(part, result.workpiece)
-        chosen = chosen_supports(result, rank, height, asked or None, closing_force) if supports else None
-        write_bodies(Assembly.of(fixture, result, {"thickness": height}, chosen, shape), models, shown_unit)
-    written = [*([] if picture is None else [picture]), *models]
-    if json_:
-        from workhold.presenting.data import fixture_data, load_case_data
-
-        print_json(
-            fixture=fixture_data(fixture, result.toolkit, rank),
-            **passing_data(result, rank, closing_force, stiffness),
-            **bending_data(result, rank, closing_force),
-            listed=len(result),
-            complete=bool(result.complete),
-            loads=[load_case_data(case) for case in cases],
-            written=[str(path) for path in written],
-        )
-    else:
-        print_tables(*(f"Drawn in {path}." for path in written))
+        shape, chosen = shape_in(asked.part, result.workpiece), None
+        if asked.on_supports:
+            loads, force = asked.pressed_by["loads"] or None, asked.pressed_by["jaw_force"]
+            chosen = chosen_supports(result, rank, asked.height, loads, force)
+        assembly = Assembly.of(fixture, result, {"thickness": asked.height}, chosen, shape)
+        write_bodies(assembly, asked.models, asked.unit)
+    return [*([] if picture is None else [picture]), *asked.models]
 
 
 def print_fixture(

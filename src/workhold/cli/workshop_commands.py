@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from attrs import frozen
 
 from workhold.cli.commands import option, spread
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
@@ -32,7 +33,7 @@ from workhold.errors import InputError
 
 if TYPE_CHECKING:
     from workhold.family.copies import Packing
-    from workhold.model.dowels import Bolts
+    from workhold.model.dowels import Bolts, JawPlate
     from workhold.model.fixture import Fixture
     from workhold.model.result import Result
     from workhold.units import Unit
@@ -40,26 +41,50 @@ if TYPE_CHECKING:
 __all__ = ["copies", "drill"]
 
 
-def copies(
-    result_file: ResultArgument,
-    number: RankArgument,
+@frozen
+class CopiesWords:
+    """The options of a plate with copies of a fixture, as typed."""
+
     columns: str | None = option(
         None, "N", "Columns of holes of the plate; must be given where the result does not say."
-    ),
+    )
     rows: str | None = option(
         None, "N", "Rows of holes of the plate; must be given where the result does not say."
-    ),
+    )
     gap: str = option(
         None, "LENGTH", "Smallest distance between a part and anything of another copy.", default="1mm"
-    ),
-    time_limit: str = option(None, "SECONDS", "How long to prove that no more fit.", default="60"),
-    draw: str | None = option(
-        None, "FILE", "Draw the plate into this file, whose name ends in .svg or .png."
-    ),
-    force: bool = FORCE,
-    unit: str | None = SHOWN_UNIT,
-    json_: bool = JSON,
-) -> None:
+    )
+    time_limit: str = option(None, "SECONDS", "How long to prove that no more fit.", default="60")
+    draw: str | None = option(None, "FILE", "Draw the plate into this file, whose name ends in .svg or .png.")
+    force: bool = FORCE
+    unit: str | None = SHOWN_UNIT
+    json_: bool = JSON
+
+
+@frozen
+class CopiesTask:
+    """A plate to be filled with copies of a fixture.
+
+    Parameters
+    ----------
+    size : columns and rows of the plate.
+    gap : the least between the copies, in mm.
+    seconds : the time to prove that no more fit.
+    unit : of lengths shown.
+    """
+
+    result: Result
+    rank: int
+    size: tuple[int, int]
+    gap: float
+    seconds: float
+    picture: Path | None
+    words: CopiesWords
+    unit: Unit
+
+
+@spread
+def copies(result_file: ResultArgument, number: RankArgument, *, words: CopiesWords) -> None:
     """Report how many copies of fixture N a plate holds at once, and where each stands.
 
     The fixture is repeated by whole columns and rows, so that parts, pegs and clamps of the copies are clear
@@ -67,40 +92,60 @@ def copies(
 
     Example: workhold copies part.json 1 --columns 20 --rows 15 --draw plate.png
     """
-    rank = asked_rank(number)
-    shown = length_unit(unit)
-    asked = optional_count("--columns", columns), optional_count("--rows", rows)
-    apart = length_from_zero("--gap", gap, shown)
-    seconds = positive_number("--time-limit", time_limit)
-    picture = asked_picture(draw, (result_file,), force)
-    from workhold.family.copies import copies_of, draw_copies, packing_of
-    from workhold.fixels.making import refuse_many_holes
+    asked = parse_copies(result_file, asked_rank(number), words)
+    report_copies(asked, *ask_copies(asked))
 
+
+def parse_copies(result_file: str, rank: int, words: CopiesWords) -> CopiesTask:
+    """Read what was typed, and the fixture."""
+    shown = length_unit(words.unit)
+    size = optional_count("--columns", words.columns), optional_count("--rows", words.rows)
+    gap = length_from_zero("--gap", words.gap, shown)
+    seconds = positive_number("--time-limit", words.time_limit)
+    picture = asked_picture(words.draw, (result_file,), words.force)
     result = result_with(result_file, rank)
-    size = plate_size(result, asked)
-    refuse_many_holes(*size, result.toolkit.noun)
-    packing = packing_of(result[rank - 1], result.workpiece, result.toolkit, *size, apart, seconds)
+    return CopiesTask(result, rank, plate_size(result, size), gap, seconds, picture, words, shown)
+
+
+def ask_copies(asked: CopiesTask) -> tuple[list[Fixture], Packing]:
+    """Find the copies that fit on the plate, and how many can be proven to."""
+    from workhold.family.copies import copies_of, packing_of
+
+    result, rank = asked.result, asked.rank
+    held = result.workpiece, result.toolkit
+    packing = packing_of(result[rank - 1], *held, *asked.size, asked.gap, asked.seconds)
     row = result.table.take(slice(rank - 1, rank))
-    found = copies_of(row, result.toolkit, result.workpiece, packing)
-    if picture is not None:
-        write_picture(picture, draw_copies(found, result.workpiece, result.toolkit, size, unit=shown))
-    written = [] if draw is None else [draw]
-    if json_:
+    return copies_of(row, result.toolkit, result.workpiece, packing), packing
+
+
+def report_copies(asked: CopiesTask, found: list[Fixture], packing: Packing) -> None:
+    """Draw the plate, and print where the copies stand."""
+    result, draw = asked.result, asked.words.draw
+    if asked.picture is not None:
+        from workhold.family.copies import draw_copies
+
+        svg = draw_copies(found, result.workpiece, result.toolkit, asked.size, unit=asked.unit)
+        write_picture(asked.picture, svg)
+    if asked.words.json_:
         places = [{"columns": i, "rows": j} for i, j in packing.shifts]
+        written = [] if draw is None else [draw]
         print_json(copies=len(found), at_most=packing.at_most, shifts=places, written=written)
         return
-    print_copies(found, packing, result, size, shown)
-    if written:
+    print_copies(found, packing, result, asked.size, asked.unit)
+    if draw is not None:
         print_tables(f"Written to {draw}.")
 
 
 def plate_size(result: Result, asked: tuple[int | None, int | None]) -> tuple[int, int]:
     """Returns columns and rows of the plate: those asked for, or those of the result."""
+    from workhold.fixels.making import refuse_many_holes
+
     plate = result.toolkit.carriers[0]
     columns, rows = asked[0] or plate.columns, asked[1] or plate.rows
     if columns is None or rows is None:
         missing = "columns" if columns is None else "rows"
         raise InputError(f"how large the plate is, is not known: give --{missing}.")
+    refuse_many_holes(columns, rows, result.toolkit.noun)
     return columns, rows
 
 
@@ -127,6 +172,27 @@ PLATES = "The plates"
 ENDINGS = (".dxf", ".step", ".stp")
 
 
+@frozen
+class DrillWords:
+    """The options of the plates, as typed; None for those not given."""
+
+    bolts: str | None = option(
+        PLATES, "X,Y;X,Y", "Where bolts hold each plate, from the centre of its hole A1: 5,-12;5,112."
+    )
+    bolt_diameter: str | None = option(PLATES, "LENGTH", "Diameter of the holes for the bolts.")
+    hole_diameter: str | None = option(
+        PLATES,
+        "LENGTH",
+        "Diameter of the dowel holes; the middle of what --vise says, or that of the pegs, if not given.",
+    )
+    edge: str | None = option(
+        PLATES, "LENGTH", "From the outermost dowel holes to the plate's edges; half a pitch if not given."
+    )
+    thickness: str | None = option(
+        PLATES, "LENGTH", "Thickness of the plates in a .step file; 10 mm if not given."
+    )
+
+
 @spread
 def drill(
     *,
@@ -138,21 +204,7 @@ def drill(
     ],
     force: bool = FORCE,
     held_in: ToolkitWords,
-    bolts: str | None = option(
-        PLATES, "X,Y;X,Y", "Where bolts hold each plate, from the centre of its hole A1: 5,-12;5,112."
-    ),
-    bolt_diameter: str | None = option(PLATES, "LENGTH", "Diameter of the holes for the bolts."),
-    hole_diameter: str | None = option(
-        PLATES,
-        "LENGTH",
-        "Diameter of the dowel holes; the middle of what --vise says, or that of the pegs, if not given.",
-    ),
-    edge: str | None = option(
-        PLATES, "LENGTH", "From the outermost dowel holes to the plate's edges; half a pitch if not given."
-    ),
-    thickness: str | None = option(
-        PLATES, "LENGTH", "Thickness of the plates in a .step file; 10 mm if not given."
-    ),
+    words: DrillWords,
     unit: str | None = SHOWN_UNIT,
     json_: bool = JSON,
 ) -> None:
@@ -163,15 +215,20 @@ def drill(
     Example: workhold drill --vise plate-20mm --rows 6 --bolts '10,10;10,90' --bolt-diameter 6.6 -o plates.dxf
     """
     path, shown = Path(out), length_unit(unit)
-    ending = path.suffix.lower()
-    if ending not in ENDINGS:
+    if path.suffix.lower() not in ENDINGS:
         raise InputError(f"-o {path} names no drawing of plates: let the name end in .dxf or .step.")
-    bolted = asked_bolts(bolts, bolt_diameter, shown)
-    diameter = optional_positive_length("--hole-diameter", hole_diameter, shown)
-    distance = optional_positive_length("--edge", edge, shown)
-    thick = optional_positive_length("--thickness", thickness, shown)
+    thickness = optional_positive_length("--thickness", words.thickness, shown)
     refuse_output(path, (held_in.vise,), force)
-    toolkit, tolerance = held_in.asked(shown)
+    write_plates(path, asked_plates(held_in, words, shown), thickness)
+    print_written(json_, f"Written to {path}.", path)
+
+
+def asked_plates(held_in: ToolkitWords, words: DrillWords, unit: Unit) -> tuple[JawPlate, ...]:
+    """The plates of the vise that was typed; refuses one whose plates have no end."""
+    bolts = asked_bolts(words.bolts, words.bolt_diameter, unit)
+    diameter = optional_positive_length("--hole-diameter", words.hole_diameter, unit)
+    edge = optional_positive_length("--edge", words.edge, unit)
+    toolkit, tolerance = held_in.asked(unit)
     if any(carrier.rows is None or carrier.columns is None for carrier in toolkit.carriers):
         raise InputError(
             "how many columns and rows of holes the plates have is not given: add --columns and --rows."
@@ -180,19 +237,20 @@ def drill(
         diameter = sum(tolerance.fit.hole) / 2
     from workhold.model.dowels import jaw_plates
 
-    made = jaw_plates(toolkit, hole_diameter=diameter, edge=distance, bolts=bolted, unit=shown)
-    if ending == ".dxf":
+    return jaw_plates(toolkit, hole_diameter=diameter, edge=edge, bolts=bolts, unit=unit)
+
+
+def write_plates(path: Path, plates: tuple[JawPlate, ...], thickness: float | None) -> None:
+    from workhold.files.atomic import write_bytes
+
+    if path.suffix.lower() == ".dxf":
         from workhold.files.dxf.writer import plates_dxf
 
-        content = plates_dxf(made)
+        write_bytes(path, plates_dxf(plates))
     else:
         from workhold.files.step.writer import plates_step
 
-        content = plates_step(made, thick)
-    from workhold.files.atomic import write_bytes
-
-    write_bytes(path, content)
-    print_written(json_, f"Written to {path}.", path)
+        write_bytes(path, plates_step(plates, thickness))
 
 
 def asked_bolts(places: str | None, diameter: str | None, unit: Unit) -> Bolts | None:
