@@ -10,7 +10,7 @@ from fakes import fake_result
 from workhold import Fixture, InputError, Result, Vise, Workpiece, design, save, verify
 from workhold import open as open_result
 from workhold.model.fixture_table import FixtureTable
-from workhold.model.notes import ChosenSome
+from workhold.model.notes import ChosenOnly
 
 
 def test_a_result_is_a_sequence():
@@ -40,7 +40,7 @@ def test_some_fixtures_are_a_result_again(tmp_path):
     ]:
         assert isinstance(chosen, Result) and list(chosen) == there and chosen.found == result.found
         assert [fixture.rank for fixture in chosen] == list(range(1, len(there) + 1))
-        assert chosen.notes == (*result.notes, ChosenSome(sum(result.found.values()), len(there)))
+        assert chosen.notes == (*result.notes, ChosenOnly(sum(result.found.values()), len(there)))
     assert result[:] == result and result[1:4][1:].notes == result[2:4].notes
 
 

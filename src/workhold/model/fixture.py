@@ -404,7 +404,7 @@ class Fixture:
         path: str | Path,
         *,
         unit: str = "mm",
-        paper: Literal["", "a4", "letter"] = "",
+        paper: Literal["a4", "letter"] | None = None,
         day: date | None = None,
         part_name: str | None = None,
         dowel: str | None = None,
@@ -434,7 +434,7 @@ class Fixture:
         ----------
         path : of the file, whose ending says which of these it is.
         unit : of the lengths on paper, "mm" or "inch".
-        paper : "a4" or "letter"; "" is letter for lengths in inches, else A4.
+        paper : "a4" or "letter"; None is letter for lengths in inches, else A4.
         day : the date on the sheet; today if None.
         part_name : written instead of the part's own name.
         dowel : what the pegs are and how they fit their holes, in words; those of the tolerance if None.

@@ -20,7 +20,7 @@ __all__ = [
     "STAGES",
     "AskedFor",
     "BestOnly",
-    "ChosenSome",
+    "ChosenOnly",
     "PushedByHand",
     "Cut",
     "FittedOutline",
@@ -237,7 +237,7 @@ class KeptBest(Note):
 
 
 @frozen
-class ChosenSome(Note):
+class ChosenOnly(Note):
     """That somebody kept some of the fixtures found."""
 
     kind = "chosen"
@@ -380,7 +380,7 @@ KINDS: Mapping[str, type[Note]] = {
     for one in (
         AskedFor,
         BestOnly,
-        ChosenSome,
+        ChosenOnly,
         PushedByHand,
         Cut,
         FittedOutline,

@@ -14,7 +14,7 @@ from workhold.errors import InputError, quoted, refuse_kind
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture, Listed
 from workhold.model.fixture_table import BLOCK, FixtureTable, fixture_at, fixtures_of
-from workhold.model.notes import AskedFor, ChosenSome, Cut, FittedOutline, KeptBest, Note, as_notes
+from workhold.model.notes import AskedFor, ChosenOnly, Cut, FittedOutline, KeptBest, Note, as_notes
 from workhold.model.query import Query
 from workhold.model.search_report import Proof
 from workhold.model.seating import Seating
@@ -189,13 +189,13 @@ class Result:
         if len(chosen) == len(self):
             return self
         found = sum(self.found.values())
-        gone = [told(found, len(self)) for told in (ChosenSome, KeptBest, Cut)]
+        gone = [told(found, len(self)) for told in (ChosenOnly, KeptBest, Cut)]
         kept = (note for note in self.reasons if note not in gone)
         return evolve(
             self,
             table=self.table.take(chosen),
             seating=tuple(self.seating[row] for row in chosen if row < len(self.seating)),
-            notes=(*kept, ChosenSome(found, len(chosen))),
+            notes=(*kept, ChosenOnly(found, len(chosen))),
         )
 
     def where(self, condition: Callable[[Fixture], bool] | ArrayLike) -> Result:

@@ -19,7 +19,6 @@ from workhold.drawing.sheet_facts import placing_of
 from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
 from workhold.files.replacing import refuse_output
-from workhold.limits import real
 from workhold.listing.identity import entries
 from workhold.model.moved_setup import moved_on
 from workhold.model.setup import part_zero
@@ -30,6 +29,7 @@ from workhold.units import unit_named
 
 if TYPE_CHECKING:
     from workhold.model.fixture import Fixture
+    from workhold.model.requirements import Load
     from workhold.model.result import Result
     from workhold.model.support_triples import Supports
     from workhold.model.workpiece import Workpiece
@@ -125,7 +125,6 @@ MODEL_ENDINGS = (".dxf", ".step", ".stp", ".csv")
 PNG_WIDTH = 2400
 # What of a sheet's wishes a set-up for a CAM system has too.
 SIZES = ("thickness", "peg_length", "peg_height")
-NUMBERS = (*SIZES, "plate_thickness", "support_height", "jaw_force", "friction")
 
 
 def save_sheet(
@@ -133,7 +132,7 @@ def save_sheet(
     path: str | Path,
     *,
     unit: str = "mm",
-    clearance: float | None = None,
+    loads: Sequence[Load] | None = None,
     result_file: str | Path | None = None,
     supports: Supports | None = None,
     best: int = 1,
@@ -149,13 +148,10 @@ def save_sheet(
         raise InputError(
             "this fixture was changed since it was listed: take the sheet of the one in its result."
         )
-    for name in NUMBERS:
-        if asked.get(name) is not None:
-            real(asked[name], name.replace("_", " "))
     refuse_output(path, (result_file, part), overwrite)
     if result_file is not None:
         refuse_other_result(result_file, fixture)
-    settings = {**values_of(SheetQuestion(clearance=clearance, **asked)), "unit": unit_named(unit)}
+    settings = {**values_of(SheetQuestion(**asked)), "unit": unit_named(unit)}
     if supports is not None:
         if ending in MODEL_ENDINGS and ending not in STEP_ENDINGS:
             raise InputError(f"{path} has no supports: let the name end in .pdf, .svg, .png or .step.")
@@ -169,9 +165,9 @@ def save_sheet(
     if ending in MODEL_ENDINGS:
         write_model(path, listed.result, listed.row + 1, settings)
         return
-    settings["jaw"] = jaw_stiffness(settings.get("jaw", "screw"))
+    settings["jaw"] = jaw_stiffness(settings["jaw"])
     settings["day"] = settings["day"] or date.today()
-    settings |= {"number": listed.rank, "count": listed.count, "others": listed.others}
+    settings |= {"number": listed.rank, "count": listed.count, "others": listed.others, "loads": loads}
     write_paper(path, listed.result, listed.row + 1, result_file, settings)
 
 

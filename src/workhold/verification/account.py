@@ -42,7 +42,7 @@ from workhold.model.notes import (
     STAGES,
     AskedFor,
     BestOnly,
-    ChosenSome,
+    ChosenOnly,
     Cut,
     FittedOutline,
     KeptBest,
@@ -294,7 +294,7 @@ def may_be_said(note: Note, listing: Listing) -> bool:
             return query.has_seating_rules and is_as_seated(note, listing)
         case AskedFor(rules):
             return rules == query.restricted_by and not found
-        case KeptBest(every, kept) | ChosenSome(every, kept):
+        case KeptBest(every, kept) | ChosenOnly(every, kept):
             return (every, kept) == (found, listed) and found > listed
         case Cut(every, kept):
             return (every, kept) == (found, listed) and found > listed and not listing.complete

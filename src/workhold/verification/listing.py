@@ -31,7 +31,7 @@ from workhold.fixels.table import SILENT
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.clamps import ratios
 from workhold.model.fixture import Fixture, Pair, Peg
-from workhold.model.notes import ChosenSome, Note
+from workhold.model.notes import ChosenOnly, Note
 from workhold.model.pose import Pose
 from workhold.model.quality import figures_in
 from workhold.model.query import Query
@@ -211,7 +211,7 @@ class Listing:
     @property
     def is_chosen(self) -> bool:
         """Whether somebody chose what is listed, which says nothing of the others."""
-        return ChosenSome(sum(self.found.values()), len(self.fixtures)) in self.notes
+        return ChosenOnly(sum(self.found.values()), len(self.fixtures)) in self.notes
 
     @property
     def hardware(self) -> ToolkitRules:
