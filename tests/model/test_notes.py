@@ -76,4 +76,4 @@ def test_numbers_are_put_as_they_are_read() -> None:
 
 
 def test_every_kind_has_a_name_and_no_two_the_same() -> None:
-    assert all(kind.kind == name and attrs.has(kind) for name, kind in KINDS.items()) and len(KINDS) == 17
+    assert all(kind.kind == name and attrs.has(kind) for name, kind in KINDS.items()) and len(KINDS) == 18

@@ -60,7 +60,7 @@ def test_a_sheet_names_a_file_only_where_there_is_one(result_file: Path, tmp_pat
     ("path", "asked", "words"),
     [
         ("sheet.txt", {}, "names no kind of setup sheet"),
-        ("sheet.svg", {"paper": "a3"}, "the paper 'a3' is not known: choose a4 or letter"),
+        ("sheet.svg", {"paper": "a3"}, "the paper cannot be 'a3': choose a4 or letter"),
         ("sheet.svg", {"unit": "ell"}, "Unit 'ell' is not known"),
         ("sheet.svg", {"result_file": "none.json"}, "none.json cannot be read"),
         ("sheet.svg", {"jaw": "soft"}, "soft"),

@@ -154,7 +154,7 @@ def test_progress_rises_to_the_end(free: Result) -> None:
     ("options", "words"),
     [
         ({"types": ["III"]}, "type III is unknown"),
-        ({"contact_margin": -1.0}, "contact margin -1.0 is not a length"),
+        ({"contact_margin": -1.0}, "contact margin -1 is not a length"),
         ({"contact_margin": float("nan")}, "contact margin nan is not a length"),
         ({"best": 0}, "best 0 is not a positive whole number"),
         ({"threads": 0}, "threads 0 is not a positive whole number"),

@@ -41,7 +41,7 @@ def explained(vise: Vise, **asked: Any) -> Explanation:
     widget, margin = load("widget"), asked.pop("contact_margin", 0.0)
     restrictions = Restrictions(**asked)
     assert len(design(widget, vise, restrictions=restrictions, contact_margin=margin)) == 0
-    return explain(Query(widget, vise, None, margin, restrictions))
+    return explain(Query(widget, vise, restrictions=restrictions, contact_margin=margin))
 
 
 HOLES = "holes that the jaws do not have, or too near for the bodies"
@@ -236,7 +236,7 @@ def test_what_takes_the_last_fixture_together_is_left_out_together(
     vise: Vise, asked: dict[str, Any], margin: float, needed: tuple[str, ...]
 ) -> None:
     """Each of them alone takes all, so no single change helps; a margin that takes nothing is not named."""
-    explanation = explain(Query(PLAIN_PLATE, vise, None, margin, Restrictions(**asked)))
+    explanation = explain(Query(PLAIN_PLATE, vise, restrictions=Restrictions(**asked), contact_margin=margin))
     (item,) = explanation.helps
     assert set(item.rules) == set(explanation.taken_by) == set(needed)
     assert explanation.asked_words.endswith("together.")
@@ -246,7 +246,7 @@ def test_what_takes_the_last_fixture_together_is_left_out_together(
 
 def reasons(workpiece: Workpiece, toolkit: Any, margin: float = 0.0, **asked: Any) -> tuple[Note, ...]:
     """Why a search finds nothing, which a verification takes as what follows."""
-    result = answer(Query(workpiece, toolkit, None, margin, Restrictions(**asked)))
+    result = answer(Query(workpiece, toolkit, restrictions=Restrictions(**asked), contact_margin=margin))
     assert verify(result).faults == ()
     assert not any(result.found.values()) and result.complete
     return result.reasons

@@ -59,7 +59,7 @@ EDITS: list[tuple[Callable[[Data], object], str]] = [
     (lambda data: data["vise"].update(pitch=[8, "x"]), "vise.pitch.1 cannot be used"),
     (lambda data: data["vise"].update(peg_radius=5), "overlap in neighbouring holes"),
     (lambda data: data["vise"].pop("columns"), "the key vise.columns is missing"),
-    (lambda data: data.update(contact_margin=-1), "contact margin -1.0 is not a length"),
+    (lambda data: data.update(contact_margin=-1), "contact margin -1 is not a length"),
     (lambda data: data["fixtures"].append(3), "number 13 in fixtures: it is no fixture"),
     (lambda data: data["fixtures"][1].pop("pose"), "number 2 in fixtures: it has no pose"),
     (lambda data: data["fixtures"][1]["pegs"].pop(), "number 2 in fixtures: it does not have four pegs"),

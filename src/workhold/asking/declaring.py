@@ -123,6 +123,7 @@ class Declaration:
     most : the largest count that a server takes; None for no limit of its own.
     choices : the words that there are.
     section : of the command's help.
+    called : its name in sentences, where that is not the field's own.
     word : its name as an option, where that is not the field's own.
     spelled : the whole option, where that is another still.
     needs : the field without which it is not asked.
@@ -140,6 +141,7 @@ class Declaration:
     most: int | None = field(default=None, kw_only=True)
     choices: tuple[str, ...] = field(default=(), kw_only=True)
     section: str | None = field(default=None, kw_only=True)
+    called: str = field(default="", kw_only=True)
     word: str = field(default="", kw_only=True)
     spelled: str = field(default="", kw_only=True)
     needs: str = field(default="", kw_only=True)
@@ -163,7 +165,7 @@ class Declaration:
     @property
     def words(self) -> str:
         """The name in sentences."""
-        return self.name.replace("_", " ")
+        return self.called or self.name.replace("_", " ")
 
     @property
     def is_required(self) -> bool:

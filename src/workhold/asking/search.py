@@ -70,6 +70,7 @@ class SearchQuestion:
         "length",
         "List only fixtures whose location error is at most this.",
         PageLabel("Largest location error", "any"),
+        called="largest location error",
         section=RULING_OUT,
     )
     best: int | None = declare("count", "Keep only the best K.", section=SEARCH, most=10_000, metavar="K")

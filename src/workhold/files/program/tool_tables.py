@@ -50,6 +50,8 @@ CUTTING = (
 OTHERS = ("corner_radius", "flutes")
 FIELDS = ("name", "unit", "type", *LENGTHS, *CUTTING, *OTHERS)
 UNSURE = ("teeth", "point_angle")
+# What of them is no number.
+WORDS = {"material", "direction"}
 SHAPE = (
     "tool.{number} = {{diameter = 10, flute_length = 22, stickout = 40, holder_diameter = 40, "
     "holder_length = 50}}"
@@ -125,9 +127,9 @@ def cutting_of(fields: Mapping[str, Any], unit: Unit) -> CuttingData:
     given = {key: fields[key] for key in CUTTING if fields.get(key) is not None}
     if fields.get("flutes") is not None:
         given.setdefault("teeth", fields["flutes"])
-    for key in ("cut_depth", "cut_width"):
-        if key in given:
-            given[key] = unit.length(read_number(given[key]))
+    for key in given.keys() - WORDS:
+        number = read_number(given[key])
+        given[key] = unit.length(number) if key in ("cut_depth", "cut_width") else number
     if not given.keys() & {"cutting_force", "power", "material"}:
         given = {key: value for key, value in given.items() if key not in UNSURE or is_usable(key, value)}
     return CuttingData(**given)
