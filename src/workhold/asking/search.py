@@ -48,6 +48,7 @@ class RuledOut:
     touch: Any = declare(
         "faces",
         "Faces that every fixture must touch; not with two clamps.",
+        PageLabel("Must touch faces", "none"),
         default=(),
         section=RULING_OUT,
         typed="Faces that every fixture must touch, such as 3,7; not with two clamps.",
@@ -69,7 +70,7 @@ class SearchQuestion:
     max_location_error: float | None = declare(
         "length",
         "List only fixtures whose location error is at most this.",
-        PageLabel("Largest location error", "any"),
+        PageLabel("Error up to", "any"),
         called="largest location error",
         section=RULING_OUT,
     )

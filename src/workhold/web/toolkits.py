@@ -15,7 +15,7 @@ from typing import Any
 from attrs import asdict, frozen
 
 from workhold.asking.declaring import Choice, Declaration, declarations_of
-from workhold.asking.search import SearchQuestion
+from workhold.asking.search import RuledOut, SearchQuestion
 from workhold.asking.sheet import SheetQuestion
 from workhold.drawing.panel import arrangement_words
 from workhold.files.result.writer import toolkit_fields
@@ -116,7 +116,7 @@ class Described:
 
 def questions_answer() -> dict[str, list[dict[str, Any]]]:
     """What the page asks of a search and of a sheet, field by field, with the section that each is in."""
-    questions = {"search": SearchQuestion, "sheet": SheetQuestion}
+    questions = {"restrictions": RuledOut, "search": SearchQuestion, "sheet": SheetQuestion}
     return {
         name: [
             asdict(one) | {"section": row.section, "help": row.help, "needs": row.needs}

@@ -7,7 +7,7 @@ import { state, workpieceForm } from "./state.js";
 
 /** Keys of the state that a link carries. */
 const CARRIED = [
-  "toolkitName", "toolkit", "unit", "types", "listing", "every", "asked", "avoid", "zones", "angles", "tolerance", "loads", "ranking", "prefer",
+  "toolkitName", "toolkit", "unit", "types", "listing", "every", "asked", "ruledOut", "avoid", "zones", "angles", "tolerance", "loads", "ranking", "prefer",
   "list", "view", "force", "sheet", "cut", "supports", "programName",
 ];
 /** @typedef {{known: Object<string, any>, part: any, job: string|null, searched: boolean, rank: number|null, pinned: number|null}} Kept what restores a state */

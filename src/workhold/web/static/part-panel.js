@@ -127,7 +127,7 @@ export function resumeFile(read) {
 
 /** Show what a refused file holds, and where it is wrong. */
 async function refuse({ error, place, strokes, parts, asked }, chosen) {
-  change({ part: null, avoid: [], zones: [], view: "part" });
+  change({ part: null, avoid: [], ruledOut: {}, zones: [], view: "part" });
   say("");
   // Where nothing is wrong but the unit is open, the question says it all.
   const plain = asked.length === 1 && asked[0] === "unit";
@@ -212,7 +212,7 @@ export function usePart(part, { name = "", parts = [], strokes = [], gaps = [], 
   choice("builtin").value = name;
   const others = parts.length > 1 ? parts.filter((each) => each.number !== (chosen ?? 1)) : [];
   drawing.others = { parts: others, strokes: gaps.length ? strokes : [], take: (other) => answered({ part_number: other }), isChosen: chosen !== null };
-  change({ part, avoid: [], zones: [], cut: null, supports: { ...state.supports, below: [], above: [] }, force: null, loads: [], view: "part" });
+  change({ part, avoid: [], ruledOut: {}, zones: [], cut: null, supports: { ...state.supports, below: [], above: [] }, force: null, loads: [], view: "part" });
 }
 
 /** Offer the parts that come with the program. */

@@ -27,7 +27,8 @@ export const askedOf = (name) => questions[name] ?? [];
  * @param {Question[]} fields
  */
 export function askIn(place, key, fields) {
-  place.append(...fields.flatMap(makeFields));
+  // What is ticked comes last, in lines of its own.
+  place.append(...[false, true].flatMap((ticked) => fields.filter(({ form }) => (form === "flag") === ticked).flatMap(makeFields)));
   const read = () => {
     const values = { ...state[key] };
     for (const field of fields) {

@@ -41,6 +41,7 @@ export function rulesPanel(drawing, showPart) {
 /** Draw what else is asked, once the server has told what that is. */
 export function askInRules() {
   const isSeating = ({ section }) => section === "Seating";
+  askIn(byId("search-fields"), "ruledOut", askedOf("restrictions"));
   askIn(byId("search-fields"), "asked", askedOf("search").filter((field) => !isSeating(field)));
   askIn(byId("seating-fields"), "asked", askedOf("search").filter(isSeating));
 }

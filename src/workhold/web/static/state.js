@@ -8,7 +8,7 @@ import { askedOfSearch } from "./questions.js";
 
 /** Keys of the state that a search depends on. */
 export const SETTINGS = [
-  "part", "toolkit", "types", "listing", "every", "asked", "avoid", "zones", "angles", "tolerance", "loads", "ranking", "prefer", "program",
+  "part", "toolkit", "types", "listing", "every", "asked", "ruledOut", "avoid", "zones", "angles", "tolerance", "loads", "ranking", "prefer", "program",
 ];
 
 /**
@@ -22,6 +22,7 @@ export const SETTINGS = [
  * @property {"all"|null} listing of two clamps every pair of each seat; null is the best of each
  * @property {boolean} every whether all fixtures are wanted, however many there are
  * @property {Object<string, any>} asked what else is asked of the fixtures, by the server's names; lengths in mm
+ * @property {Object<string, any>} ruledOut what else is ruled out, by the server's names
  * @property {number[]} avoid faces not to touch
  * @property {number[][][]} zones loops of [x, y, bulge] in part coordinates
  * @property {number[][]} angles ranges in degrees
@@ -57,6 +58,7 @@ export const state = {
   listing: null,
   every: false,
   asked: {},
+  ruledOut: {},
   avoid: [],
   zones: [],
   angles: [],
@@ -122,7 +124,7 @@ export function request() {
     types: state.types,
     listing: state.listing,
     ...askedOfSearch(),
-    restrictions: { avoid: state.avoid, zones: state.zones, angles: state.angles },
+    restrictions: { avoid: state.avoid, zones: state.zones, angles: state.angles, ...state.ruledOut },
     ranking: state.ranking,
     prefer: state.ranking ? null : state.prefer,
     tolerance: state.tolerance,

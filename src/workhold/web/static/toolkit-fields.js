@@ -39,13 +39,13 @@ export function makeFields(field) {
     return [make("label", {}, field.label, make("select", { id }, ...options))];
   }
   if (field.form === "flag") return [make("label.check.wide", { title: field.help }, make("input", { type: "checkbox", id }), ` ${field.label}`)];
-  const mode = field.form === "count" ? "numeric" : ["holes", "rings", "text"].includes(field.form) ? "text" : "decimal";
+  const mode = field.form === "count" ? "numeric" : ["faces", "holes", "rings", "text"].includes(field.form) ? "text" : "decimal";
   const unit = ["length", "pitch", "place", "span", "rings"].includes(field.form) ? [" ", make("span.unit", {}, unitWord())] : [];
   if (field.form === "stress") unit.push(" ", make("span.pressure", {}, pressureWord()));
   if (field.form === "force") unit.push(" ", make("span.force-unit", {}, forceWord()));
   return idsOf(field).map((each, k) => {
     const label = PAIRS[field.form] ? `${field.label}${field.form === "span" ? "," : ""} ${PAIRS[field.form][k]}` : field.label;
-    return make("label", { title: field.help }, label, ...unit.map((part) => (typeof part === "string" ? part : part.cloneNode())),
+    return make("label", { title: field.help }, label, ...unit.map((part) => (typeof part === "string" ? part : part.cloneNode(true))),
       make("input", { id: each, inputmode: mode, autocomplete: "off", placeholder: field.hint }));
   });
 }
@@ -68,6 +68,12 @@ export function readField(field, known) {
   if (field.form === "holes") {
     const names = input(id).value.split(/[\s,;]+/).filter(Boolean).map((name) => name.toUpperCase());
     return { value: names.length ? names : null, wrong: false };
+  }
+  if (field.form === "faces") {
+    const numbers = input(id).value.split(/[\s,;]+/).filter(Boolean).map(Number);
+    const wrong = !numbers.every((number) => Number.isInteger(number) && number >= 0);
+    input(id).setAttribute("aria-invalid", String(wrong));
+    return { value: numbers.length ? numbers : null, wrong };
   }
   if (field.form === "rings") {
     const rings = ringsOf(input(id).value, known);
@@ -134,7 +140,7 @@ export function writeField(field, value) {
   const values = ids.length > 1 ? (value ?? [null, null]) : [value];
   ids.forEach((each, k) => {
     if (input(each) === document.activeElement) return;
-    if (field.form === "holes") input(each).value = (value ?? []).join(", ");
+    if (["faces", "holes"].includes(field.form)) input(each).value = (value ?? []).join(", ");
     else if (field.form === "rings") input(each).value = ringsText(value);
     else if (["count", "text"].includes(field.form)) input(each).value = String(values[k] ?? "");
     else input(each).value = (UNITS[field.form] ?? [fieldLength])[0](values[k]);
