@@ -42,6 +42,11 @@ def main() -> None:
     parser.add_argument(
         "--budget", type=float, metavar="SECONDS", help="seconds for each row of the paper's algebra"
     )
+    parser.add_argument(
+        "--only",
+        metavar="MODULE",
+        help="one module of the benchmarks, such as large; the others keep their figures",
+    )
     options = parser.parse_args()
     for key, value in machine().items():
         sys.stdout.write(f"{key}: {value}\n")
@@ -68,6 +73,8 @@ def main() -> None:
         batch_estimate.run,
         batch_simulation.run,
     ):
+        if options.only not in (None, getattr(run, "__module__", None)):
+            continue
         sections.append(run(options.quick))
         if not options.quick:
             sections[-1].keep()

@@ -11,6 +11,8 @@ import re
 import sys
 from typing import Any
 
+from large import BEST
+from large_plot import draw_large
 from plot import drawn
 from report import FIGURES, ROOT, kept_figures
 
@@ -18,6 +20,7 @@ __all__ = ["write_page"]
 
 PAGE = ROOT / "docs" / "benchmarks.md"
 PLOT = FIGURES.with_name("time-against-contacts.svg")
+LARGE_PLOT = FIGURES.with_name("large-parts.svg")
 PLACE = re.compile(r"(<!-- figures: (\S+) -->\n).*?(<!-- end of figures -->)", flags=re.S)
 
 
@@ -27,6 +30,8 @@ def write_page() -> None:
     if {"table-one", "growth"} <= figures["sections"].keys():
         rows, growing = (figures["sections"][name]["data"] for name in ("table-one", "growth"))
         PLOT.write_text(drawn(rows["points"], growing["points"], growing["part"]), encoding="utf-8")
+    if (large := figures["sections"].get("large")) is not None:
+        LARGE_PLOT.write_text(draw_large(large["data"], BEST), encoding="utf-8")
     PAGE.write_text(filled(PAGE.read_text(encoding="utf-8"), figures), encoding="utf-8")
 
 

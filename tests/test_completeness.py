@@ -16,8 +16,7 @@ import pytest
 from workhold import Query, Result, Vise, Workpiece, answer, load, verify
 from workhold.algebra import answer_by_algebra
 from workhold.completeness import other_entries
-from workhold.files.result.notes import notes_entry
-from workhold.files.result.writer import write_result
+from workhold.files.result.writer import notes_entry, write_result
 from workhold.model.notes import KeptBest, Stopped
 from workhold.model.search_report import Proof, Undecided
 from workhold.search.seated import seated_answer

@@ -11,13 +11,15 @@ import os
 from collections.abc import Callable
 from functools import partial
 from math import ceil, inf, nan, sqrt
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from attrs import Attribute
-from numpy.typing import NDArray
 
 from workhold.errors import InputError, quoted
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 __all__ = [
     "MOST_BLOCKED",
@@ -117,6 +119,8 @@ def real_array(values: Any, name: str) -> NDArray[np.float64]:
     TypeError, ValueError, OverflowError
         For rows of unlike lengths, and what is no number otherwise.
     """
+    import numpy as np
+
     array = np.array(values)
     if array.ndim == 0:
         raise TypeError("one value is no array of numbers")

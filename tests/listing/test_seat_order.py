@@ -17,7 +17,7 @@ from cad_parts import cad_part
 from toolkit_results import NOTCHED, part
 from workhold import Load, Plate, Query, Restrictions, Result, Tolerance, answer, verify
 from workhold.conventions import SAME_PLACE, SAME_POSE
-from workhold.files.result.notes import notes_entry
+from workhold.files.result.writer import notes_entry
 from workhold.geometry.symmetry import rotated
 from workhold.kernels.chord.intervals import share_one_line
 from workhold.kernels.contact import record

@@ -16,7 +16,7 @@ import workhold
 from workhold import Query, Result, Vise
 from workhold.cli import outputs
 from workhold.cli.ending import Interrupted
-from workhold.files.result.notes import notes_entry
+from workhold.files.result.writer import notes_entry
 from workhold.listing import collector, runs
 from workhold.listing.collector import ResultCollector
 from workhold.listing.results import MEASURED

@@ -30,7 +30,7 @@ from workhold import (
     circle_zone,
     design,
 )
-from workhold.files.result.notes import notes_entry
+from workhold.files.result.writer import notes_entry
 from workhold.listing.results import joined_ways
 from workhold.model.notes import STAGES, LeftUndecided, NoFixture
 from workhold.model.quality import FIGURE_RANKING

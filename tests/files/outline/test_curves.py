@@ -24,7 +24,7 @@ from workhold import Tolerance, Workpiece
 from workhold.drawing.part_pictures import first_parameter
 from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece
-from workhold.files.result.notes import notes_entry
+from workhold.files.result.writer import notes_entry
 from workhold.geometry.segment import Arc
 from workhold.model.notes import FittedOutline
 

@@ -38,12 +38,7 @@ from workhold.model.notes import (
 )
 from workhold.model.query import Query
 
-__all__ = ["note_faults", "notes_entry", "read_notes"]
-
-
-def notes_entry(notes: Sequence[Note]) -> dict[str, Any]:
-    """Notes as they are written: their sentences, and their data in the same order."""
-    return {"notes": [note.words for note in notes], "note_data": [note.data for note in notes]}
+__all__ = ["note_faults", "read_notes"]
 
 
 def read_notes(head: Head, query: Query) -> tuple[Note, ...]:

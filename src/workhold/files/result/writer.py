@@ -11,7 +11,7 @@ and quality have twelve significant digits. :mod:`workhold.files.result.reader` 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,6 @@ from workhold.asking.declaring import declarations_of
 from workhold.asking.search import SearchQuestion
 from workhold.files.atomic import text_file
 from workhold.files.result.fixture_text import as_written, fixture_lines, rounded_degrees
-from workhold.files.result.notes import notes_entry
 from workhold.fixels.carrier import Holes
 from workhold.fixels.kinds import USUAL
 from workhold.fixels.pegs import Flat
@@ -30,6 +29,7 @@ from workhold.fixels.support_hardware import HARDWARE, PinLimits, SupportPads, T
 from workhold.fixels.table import SILENT
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture_table import FixtureTable
+from workhold.model.notes import Note
 from workhold.model.program import Program
 from workhold.model.quality import PROGRAM_CLEARANCE
 from workhold.model.query import Query
@@ -148,6 +148,11 @@ def head(result: Result, with_pieces: bool = True) -> dict[str, Any]:
         **error_entry(result),
         "statistics": {name: int(count) for name, count in result.statistics.items()},
     } | ({} if result.proof is None else {"proof": proof_entry(result.proof)})
+
+
+def notes_entry(notes: Sequence[Note]) -> dict[str, Any]:
+    """Notes as they are written: their sentences, and their data in the same order."""
+    return {"notes": [note.words for note in notes], "note_data": [note.data for note in notes]}
 
 
 def error_entry(result: Result) -> dict[str, float]:
