@@ -28,6 +28,7 @@ MARKS = [
     if isinstance(value := getattr(questions, name), str) and value != questions.START
 ]
 FLAG = re.compile(r"(?<![\w-])--[a-z]")
+OF_OPTIONS = {"spelled", "typed"}
 # Serving is a command alone, and pip's own option is no word of ours.
 # The report of many parts is written by a command, and has the command for each sheet.
 OWN = ("web/serve.py", "files/step/library.py", "batch/report.py")
@@ -37,14 +38,19 @@ TWO_SQUARES = b"""<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="4
 
 @pytest.mark.thorough
 def test_nothing_but_the_command_line_names_a_flag() -> None:
-    """No text outside the commands holds one, but for descriptions of code."""
+    """No text outside the commands holds one, but for descriptions of code and what a declaration says of its option."""
     for path in SOURCE.rglob("*.py"):
         place = path.relative_to(SOURCE).as_posix()
         # A file of the data is a program that stands by itself, with a command line of its own.
         if place.startswith(("cli/", "data/")) or place in OWN:
             continue
         tree = ast.parse(path.read_text(encoding="utf-8"))
-        described = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+        described = {
+            id(part)
+            for node in ast.walk(tree)
+            if isinstance(node, ast.Expr) or (isinstance(node, ast.keyword) and node.arg in OF_OPTIONS)
+            for part in ast.walk(node.value)
+        }
         for node in ast.walk(tree):
             if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in described:
                 assert not FLAG.search(node.value), f"{place}:{node.lineno}: {node.value}"

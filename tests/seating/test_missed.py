@@ -54,7 +54,7 @@ def test_it_is_named_and_tells_what_is_known(
     monkeypatch.setattr(solver_module, "equilibria", missing(first, result.toolkit))
     made = workhold.design(WEDGE, result.toolkit, seating=2, best=2, rank_by=FIGURE_RANKING)
     assert len(made.seating) == 2 and made.complete
-    told, kept = (made.seating[made[:].index(one)] for one in (first, other))
+    told, kept = (made.seating[list(made).index(one)] for one in (first, other))
     assert (told.capture_opening, told.lowest_pass, told.way_out, told.placing) == (0.0, None, 0.0, None)
     assert (
         any(NOT_FOUND in one for one in told.unsettled) and told.is_hardly_caught and not told.catches(1e-6)
