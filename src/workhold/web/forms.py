@@ -49,8 +49,11 @@ __all__ = [
 
 MOST_NAMES, MOST_TOOLKITS = 500, 60
 # What a comparison of toolkits asks as well, and what a search in one asks besides.
-OF_SEARCHES = declarations_of(SearchQuestion, (RULING_OUT, LOADS, RANKING))
-OF_ONE = declarations_of(SearchQuestion, (SEARCH, SEATING))
+EVERYWHERE = (RULING_OUT, LOADS, RANKING)
+OF_SEARCHES = tuple(
+    row for row in declarations_of(SearchQuestion) if row.section in EVERYWHERE or row.name == "listing"
+)
+OF_ONE = tuple(row for row in declarations_of(SearchQuestion, (SEARCH, SEATING)) if row not in OF_SEARCHES)
 
 DirectionPair = Annotated[list[Name], Field(min_length=2, max_length=2)]
 
@@ -200,7 +203,7 @@ class SearchForm(Form):
             loads,
             program,
             peg_height=height,
-            **given_in(self, OF_SEARCHES),
+            **given_in(self, OF_SEARCHES) | ({"listing": None} if toolkit.closes_at_once else {}),
         )
 
 
@@ -216,11 +219,8 @@ class JobForm(SearchForm):
 
     def queries(self, most_segments: int) -> tuple[tuple[str, Query], ...]:
         """The query, which has no name."""
-        toolkit = self.toolkit.toolkit()
-        asked = given_in(self, OF_ONE)
-        if toolkit.closes_at_once:
-            asked["listing"] = None
-        return (("", evolve(self.query(toolkit, most_segments), **asked)),)
+        query = self.query(self.toolkit.toolkit(), most_segments)
+        return (("", evolve(query, **given_in(self, OF_ONE))),)
 
 
 class ExploreForm(SearchForm):

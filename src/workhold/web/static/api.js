@@ -47,12 +47,13 @@ export async function ask(path, options = {}) {
 /**
  * A file of the server and what it is to be called.
  * @param {string} path
+ * @param {RequestInit} [options]
  * @returns {Promise<{content: Blob, name: string}>}
  */
-export async function fetched(path) {
+export async function fetched(path, options = {}) {
   let response;
   try {
-    response = await fetch(path);
+    response = await fetch(path, options);
   } catch {
     throw new ApiError(SILENT, 0);
   }

@@ -149,16 +149,16 @@ export class FixtureList {
 
   /** Show the small picture of a row, as soon as it has come. */
   async showSmall(cell, row) {
-    const { job, revision } = this.rows;
+    const { job, revision, ending } = this.rows;
     if (cell.drawn && isSame(cell.drawn, row)) row.small ??= cell.drawn.small;
     else cell.picture.replaceChildren();
     if (!row.small) {
       await new Promise((resolve) => setTimeout(resolve, STAYS));
       if (cell.row !== row) return;
       try {
-        row.small = await (await fetched(downloadPath(job, row.rank, "small.svg", { revision }))).content.text();
+        row.small = await (await fetched(downloadPath(job, row.rank, "small.svg", { revision }), { signal: ending.signal })).content.text();
       } catch (error) {
-        if (!(error instanceof ApiError)) throw error;
+        if (!(error instanceof ApiError) && error.name !== "AbortError") throw error;
       }
     }
     // Where the list has changed meanwhile there is none: other rows come, with pictures of their own.

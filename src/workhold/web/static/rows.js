@@ -30,6 +30,8 @@ export class Rows {
     /** @type {Map<number, Promise<void>>} */
     this.asked = new Map();
     this.left = false;
+    /** Ends what is fetched for these rows once they are left. */
+    this.ending = new AbortController();
   }
 
   /** The address of some rows. */
@@ -48,6 +50,15 @@ export class Rows {
     const rows = this.pages.get(page);
     if (!rows) this.fetch(page);
     return rows?.[index - page * PAGE];
+  }
+
+  /** The place of the fixture of a rank, among the rows that have come; -1 where it is not one of them. @param {number} rank */
+  placeOf(rank) {
+    for (const [page, rows] of this.pages) {
+      const place = rows.findIndex((row) => row.rank === rank);
+      if (place >= 0) return page * PAGE + place;
+    }
+    return -1;
   }
 
   /** A row as soon as it has come; undefined when there is none. */
@@ -93,5 +104,6 @@ export class Rows {
   /** No answer is wanted any more. */
   leave() {
     this.left = true;
+    this.ending.abort();
   }
 }

@@ -37,8 +37,10 @@ export function leave() {
   events?.close();
   events = null;
   const old = state.job?.job;
-  if (old && !state.sides?.kept.some((side) => side?.job === old)) forget(old);
+  const isKept = state.sides?.kept.some((side) => side?.job === old);
+  // First nothing more is asked of it.
   change({ job: null, selected: null, pinned: null, index: -1 });
+  if (old && !isKept) forget(old);
 }
 
 /** Search with the settings as they are; while a part is being read, as soon as it is. */

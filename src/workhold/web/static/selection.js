@@ -46,8 +46,7 @@ export async function step(by) {
  * @param {number} rank
  */
 export async function selectRank(rank) {
-  const plain = state.list.sort === "rank" && !state.list.descending && !state.list.type && !state.list.face && !state.list.angle;
-  await select(rank, plain ? rank - 1 : -1);
+  await select(rank, rows?.placeOf(rank) ?? -1);
 }
 
 /**
