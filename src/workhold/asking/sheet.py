@@ -83,9 +83,10 @@ class SheetQuestion:
     )
     machine_position: Sequence[float] | None = declare(
         "place",
-        "Where the machine stands over hole A1 of the fixed jaw: gives the lines G10 L2 and G68.",
+        "Where the machine stands over the first hole: gives the lines G10 L2 and G68.",
         PageLabel("Machine over the first hole,", "not known"),
         section=ON_PAPER,
+        typed="Where the machine stands over hole A1 of the fixed jaw: gives the lines G10 L2 and G68.",
     )
     thickness: float | None = declare(
         "length",
@@ -97,7 +98,11 @@ class SheetQuestion:
         "length", "Length of the pegs.", PageLabel("Pegs’ length", LINE), section=BODIES
     )
     peg_height: float | None = declare(
-        "length", "How far the pegs stand out of the jaws.", PageLabel("Standing out", LINE), section=BODIES
+        "length",
+        "How far the pegs stand out.",
+        PageLabel("Standing out", LINE),
+        section=BODIES,
+        typed="How far the pegs stand out of the jaws.",
     )
     dowel: str | None = declare(
         "text",
