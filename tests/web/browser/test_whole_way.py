@@ -267,7 +267,7 @@ def test_the_whole_way_works_below_a_path(server: RunningServer, browser: Any) -
         walk.page.click("#search")
         walk.seen("#list .row:not(.coming)", SEARCH_PATIENCE)
         walk.page.wait_for_selector('body[data-search="done"]', timeout=SEARCH_PATIENCE)
-        sheet = walk.page.get_attribute("#take-sheet", "href")
+        sheet = walk.page.wait_for_selector("#take-sheet[href]").get_attribute("href")
         context.close()
     assert walk.troubles == [] and failed == []
     assert sheet is not None and not sheet.startswith("/")
