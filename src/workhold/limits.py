@@ -13,12 +13,11 @@ from functools import partial
 from math import ceil, inf, nan, sqrt
 from typing import TYPE_CHECKING, Any
 
-from attrs import Attribute
-
 from workhold.errors import InputError, quoted
 
 if TYPE_CHECKING:
     import numpy as np
+    from attrs import Attribute
     from numpy.typing import NDArray
 
 __all__ = [
