@@ -16,7 +16,9 @@ LENGTH = Declaration("margin", "length", "A length.", least="0")
 
 
 @pytest.mark.parametrize(("typed", "force"), [("0", 0.0), (" 0 ", 0.0), ("1.5kN", 1500.0), (None, None)])
-def test_a_force_may_be_none_at_all_where_that_means_something(typed: str | None, force: float | None) -> None:
+def test_a_force_may_be_none_at_all_where_that_means_something(
+    typed: str | None, force: float | None
+) -> None:
     assert read_words([FORCE], SimpleNamespace(cutting_force=typed), MILLIMETRE) == {"cutting_force": force}
 
 

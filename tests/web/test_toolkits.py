@@ -195,3 +195,11 @@ def test_each_carrier_has_its_own_pegs(name: str) -> None:
         carrier = toolkit.carrier(peg.carrier)
         assert told[number]["peg_radius"] == carrier.peg_radius
         assert (number in row["flush"]) == (carrier.contact is WALL_END)
+
+
+def test_a_listing_is_of_two_clamps_alone() -> None:
+    """Another toolkit, which the page may have been changed to meanwhile, is asked without one."""
+    asked = request(listing="all")
+    assert JobForm.model_validate(asked).queries(1000)[0][1].listing is None
+    plate = {"kind": "translating-clamp", "pitch": [20, 20], "peg_radius": 3, "clamps": 2}
+    assert JobForm.model_validate(asked | {"toolkit": plate}).queries(1000)[0][1].listing == "all"
