@@ -226,7 +226,7 @@ async def fixtures(
     revision, result = job.revision, job.result
     if result is None:
         # So that what cannot be sorted by is refused even then.
-        selection.indices(EMPTY, job.asked.query.toolkit)
+        selection.indices(EMPTY, job.asked.toolkit)
         return {"total": 0, "unfit": 0, "revision": revision, "rows": []}
     found = await asyncio.to_thread(job.chosen, selection, result)
     page = found.index[offset : offset + limit]

@@ -16,6 +16,7 @@ import numpy as np
 from attrs import evolve, frozen
 
 from workhold.conventions import SAME_POSE
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.notes import Many, Note
 from workhold.model.query import Query
@@ -48,17 +49,20 @@ class AskedQueries:
     ----------
     sealed : the pickled queries.
     count : how many they are.
-    arrangements : of the toolkit of the first, as plain data.
+    toolkit : of the first.
+    arrangements : of this toolkit's fixtures, as plain data.
     """
 
     sealed: bytes
     count: int
+    toolkit: Toolkit
     arrangements: list[dict[str, str]]
 
     @classmethod
     def of(cls, queries: tuple[NamedQuery, ...]) -> AskedQueries:
-        arrangements = arrangements_answer(queries[0][1].toolkit)
-        return cls(pickle.dumps(queries, pickle.HIGHEST_PROTOCOL), len(queries), arrangements)
+        toolkit = queries[0][1].toolkit
+        sealed = pickle.dumps(queries, pickle.HIGHEST_PROTOCOL)
+        return cls(sealed, len(queries), toolkit, arrangements_answer(toolkit))
 
     @property
     def queries(self) -> tuple[NamedQuery, ...]:
