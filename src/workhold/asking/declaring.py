@@ -14,7 +14,6 @@ from math import isfinite
 from typing import Any, Literal
 
 from attrs import Attribute, evolve, field, fields, frozen
-from attrs import Converter as AttrsConverter
 
 from workhold.errors import InputError
 from workhold.limits import counting_number, real, refuse_long, refuse_strong
@@ -33,13 +32,11 @@ __all__ = [
     "values_of",
 ]
 
-# What a value looks like: a whole number; lengths, one or two for x and y, or the least and the most; a
-# flat's distance with or
-# without half its width; the heights between which something touches; a place; a point; a force in N; a
-# power in kW; a plain number; a stress in MPa;
-# one of several words; whether something is so; text; a day; and lists of names of holes, of directions or
-# pairs of them, of
-# rings about points, of numbers of faces, of zones, of ranges of angles, and of names.
+# What a value looks like: a whole number; lengths, one or two for x and y, or the least and the most; a flat's
+# distance with or without half its width; the heights between which something touches; a place; a point; a
+# force in N; a power in kW; a plain number; a stress in MPa; one of several words; whether something is so; text;
+# a day; and lists of names of holes, of directions or pairs of them, of rings about points, of numbers of faces,
+# of zones, of ranges of angles, and of names.
 Form = Literal[
     "count", "length", "pitch", "span", "flat", "heights", "place", "point", "force", "power", "number",
     "stress", "choice", "flag", "text", "day", "holes", "directions", "rings", "faces", "zones", "angles", "names",
@@ -219,13 +216,17 @@ def declare(
 def check_fields(question: type, those: list[Attribute[Any]]) -> list[Attribute[Any]]:
     """Let the constructor of a question check its declared fields: a field transformer of attrs."""
     return [
-        one if KEY not in one.metadata or one.converter is not None else one.evolve(converter=checker_of(one))
+        one.evolve(converter=partial(Declaration.checked, declaration_of(one)))
+        if KEY in one.metadata and one.converter is None
+        else one
         for one in those
     ]
 
 
-def checker_of(one: Attribute[Any]) -> Any:
-    return AttrsConverter(partial(Declaration.checked, evolve(one.metadata[KEY], name=one.name)))
+def declaration_of(one: Attribute[Any]) -> Declaration:
+    """Returns the declaration of a field, by the name that the field has."""
+    said: Declaration = one.metadata[KEY]
+    return evolve(said, name=one.name)
 
 
 def declarations_of(question: type, sections: Iterable[str | None] | None = None) -> tuple[Declaration, ...]:
@@ -237,7 +238,7 @@ def declarations_of(question: type, sections: Iterable[str | None] | None = None
     >>> [row.option for row in declarations_of(SearchQuestion, ["Seating"])]
     ['--seating', '--opening', '--foolproof']
     """
-    rows = (evolve(one.metadata[KEY], name=one.name) for one in fields(question) if KEY in one.metadata)
+    rows = (declaration_of(one) for one in fields(question) if KEY in one.metadata)
     wanted = None if sections is None else set(sections)
     return tuple(row for row in rows if wanted is None or row.section in wanted)
 
