@@ -55,11 +55,10 @@ def floor_seconds(part: str, peg_radius: float, tests: int) -> dict[str, Any]:
     """Task: seconds of so many closure tests, the fastest of five runs, and the part of them that close."""
     from numba import njit
 
-    from workhold.kernels.base.compiling import WITHOUT_COUNTS, lean_compiler
+    from workhold.kernels.base.compiling import OPTIONS
     from workhold.kernels.contact.rules import minors
 
-    # Compiled as the kernels are: one of them may be called from no other code.
-    @njit(**WITHOUT_COUNTS, **lean_compiler("OuterCompiler"))
+    @njit(**OPTIONS)
     def closing(points: Array, normals: Array, length: float, tests: int, out: Array) -> int:
         """How many of so many contacts close, taken in turn from those stored; ``out`` (4,) is room for minors."""
         count, k = 0, 0
@@ -87,7 +86,7 @@ def floor(design: Design, tests: int) -> dict[str, Any]:
     """The floor of a design, in a process of its own."""
     # Compiled on use: the loop of tests is compiled with a kernel in it, which a library built beforehand does not offer.
     task = "floor.floor_seconds", design.part, design.peg_radius, tests
-    outcome: dict[str, Any] = measured(*task, WORKHOLD_KERNELS="numba")
+    outcome: dict[str, Any] = measured(*task, WORKHOLD_KERNELS="callable")
     return outcome
 
 

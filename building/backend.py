@@ -1,16 +1,18 @@
 """The package's build: setuptools', with the kernels compiled into the wheel (PEP 517).
 
-A wheel holds one library of all kernels, ``workhold/kernels/kernels.<platform>.so``, and fits every Python 3 on machines of
-that kind. An editable installation compiles its kernels on first use. ``WORKHOLD_WHEEL=pure`` builds a wheel without the
-library, for machines without a linker; it needs numba (``workhold[numba]``). ``WORKHOLD_WHEEL=built`` takes the library
-that was compiled before into ``src/workhold/kernels``, where there is no compiler: the library calls nothing but
-``malloc`` and ``libm``, so that one of Linux fits every C library.
+A wheel holds one library for each room of kernels, ``workhold/kernels/kernels-<room>-<hash>.<platform>.so``, and fits
+every Python 3 on machines of that kind. An editable installation compiles its kernels on first use.
+``WORKHOLD_WHEEL=pure`` builds a wheel without the libraries, for machines without a linker; it needs numba
+(``workhold[numba]``). ``WORKHOLD_WHEEL=built`` takes the libraries that were compiled before into
+``src/workhold/kernels``, where there is no compiler: they call nothing but the C library's mathematics, so that
+those of Linux fit every C library.
 """
 
 from __future__ import annotations
 
 import os
 import sys
+from pathlib import Path
 from sysconfig import get_platform
 from typing import Any
 
@@ -24,7 +26,17 @@ from setuptools.build_meta import (
     prepare_metadata_for_build_wheel,
 )
 
-from compile_kernels import SOURCES, build, is_built
+SOURCES = Path(__file__).resolve().parents[1] / "src"
+sys.path.insert(0, str(SOURCES))
+
+from workhold.errors import InputError  # noqa: E402 -- found by the line above
+from workhold.kernels.base.libraries import (  # noqa: E402
+    KERNELS,
+    ROOMS,
+    build_libraries,
+    is_in,
+    source_hash,
+)
 
 __all__ = [
     "build_editable",
@@ -40,17 +52,30 @@ __all__ = [
 COMPILER = ["numba>=0.61", "numpy>=2.0"]
 
 
-KERNELS = SOURCES / "workhold" / "kernels"
-
-
 def is_asked(what: str) -> bool:
     """Whether a wheel of some other kind is asked for: ``pure`` or ``built``."""
     return os.environ.get("WORKHOLD_WHEEL") == what
 
 
 def needed() -> list[str]:
-    """What a wheel with the library needs besides setuptools: the compiler, or NumPy to look at what was compiled."""
-    return [COMPILER[-1]] if is_asked("built") else COMPILER
+    """Return what a wheel with the libraries needs besides setuptools: the compiler, where they are to be compiled."""
+    return [] if is_asked("built") else COMPILER
+
+
+def are_built() -> bool:
+    """Return whether the package has the libraries of these sources."""
+    return all(is_in(KERNELS, room) for room in ROOMS)
+
+
+def compile_kernels() -> None:
+    """Compile what is missing into the package, and remove the libraries of other sources."""
+    for path in KERNELS.glob("kernels-*"):
+        if source_hash() not in path.name:
+            path.unlink()
+    try:
+        build_libraries(ROOMS, KERNELS)
+    except InputError as error:
+        sys.exit(str(error))
 
 
 def get_requires_for_build_wheel(config_settings: Any = None) -> list[str]:
@@ -67,11 +92,11 @@ def build_wheel(
     """Builds a wheel with the kernels of these sources in it."""
     if is_asked("pure"):
         return build_meta.build_wheel(wheel_directory, config_settings, metadata_directory)
-    if is_asked("built") and not is_built(KERNELS):
+    if is_asked("built") and not are_built():
         sys.exit(
-            "The library of kernels does not fit these sources: compile it, or leave WORKHOLD_WHEEL out."
+            "The libraries of kernels do not fit these sources: compile them, or leave WORKHOLD_WHEEL out."
         )
-    build(KERNELS)
+    compile_kernels()
     platform = get_platform().replace("-", "_").replace(".", "_")
     settings = {**(config_settings or {}), "--build-option": [f"--plat-name={platform}", "--python-tag=py3"]}
     return build_meta.build_wheel(wheel_directory, settings, metadata_directory)

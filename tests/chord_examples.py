@@ -13,13 +13,26 @@ from strategies import random_row
 from workhold.kernels.base.tables import CURVE_REALS, FROM, TANGENT_FROM, TANGENT_TO, TO
 from workhold.kernels.chord.coincidences import NONE, coincidence
 from workhold.kernels.chord.evaluation import chord, write_curve
-from workhold.kernels.chord.intervals import chord_intervals
+from workhold.kernels.chord.intervals import ALIVE, MOST_EVENTS, MOST_RANGES, write_chord_intervals
+from workhold.kernels.curves.sliding_pairs import MOST_SLIDES, write_sliding_pairs
 
 Array = NDArray[np.float64]
 
 KINDS = ("line", "arc", "circle")
 PAIRS = [(a, b) for a in KINDS for b in KINDS]
 TURN = 2 * pi
+
+
+def chord_intervals(a: Array, b: Array, d: float) -> Array:
+    """All ranges of direction (N, 5) of a chord, see ``write_chord_intervals``."""
+    events, out = np.empty((MOST_EVENTS, ALIVE + 1)), np.empty((MOST_RANGES, 5))
+    return out[: write_chord_intervals(a, b, d, events, out)]
+
+
+def sliding_pairs_between(a: Array, b: Array, d: float) -> Array:
+    """Sliding pairs (N, 3) of a chord, see ``write_sliding_pairs``."""
+    out = np.empty((MOST_SLIDES, 3))
+    return out[: write_sliding_pairs(a, b, d, out)]
 
 
 def arc_row(

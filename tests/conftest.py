@@ -7,9 +7,9 @@ from __future__ import annotations
 import gc
 import os
 import shutil
-import subprocess
 import sys
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +21,12 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # Commands that tests run have buffered streams, and keep the bytecode of what they import, as a user's do.
 os.environ.pop("PYTHONUNBUFFERED", None)
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
+from workhold.errors import InputError
+from workhold.kernels.base.libraries import ROOMS, build_libraries, is_built, library_folder
+
+# Numba keeps the inner kernels that tests call; its own folders would keep those of sources long replaced.
+os.environ["NUMBA_CACHE_DIR"] = str(library_folder() / "inner")
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -50,7 +56,6 @@ HypothesisProvider._local_constants = Constants()  # type: ignore[assignment]
 CHROMIUM = (
     shutil.which("chromium-headless-shell") or shutil.which("chromium") or shutil.which("chromium-browser")
 )
-PREPARE = "import sys; from workhold.kernels.preparing import prepared; list(prepared(*sys.argv[1:]))"
 # Rooms of which ``make test`` runs nothing: a browser, FreeCAD, STEP files, many processes, a report of hundreds of figures.
 THOROUGH_ROOMS = [
     Path(__file__).parent.joinpath(*room.split("/"))
@@ -58,24 +63,19 @@ THOROUGH_ROOMS = [
 ]
 # What the cases of a law are marked with that are left out, by the marker that says one in how many stays.
 LEFT_TO = {"sampled": pytest.mark.prove, "thinned": pytest.mark.thorough}
-# Parts of the kernels that take about as long to compile.
-SHARES = (("crossings", "matrices", "seats"), ("distances", "others", "clamps", "curves"))
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Compile the kernels in two processes: on a first run each that shares the tests would compile all of them."""
+    """Compile the kernels once: on a first run each process that shares the tests would compile all of them."""
     if (
         hasattr(config, "workerinput")
         or not config.getoption("numprocesses", None)
         or config.getoption("collectonly")
     ):
         return
-    from workhold.kernels.base.compiling import is_first_run
-
-    if is_first_run():
-        # What cannot be compiled is told by the first test that needs it.
-        for process in [subprocess.Popen([sys.executable, "-c", PREPARE, *share]) for share in SHARES]:
-            process.wait()
+    # What cannot be compiled is told by the first test that needs it.
+    with suppress(InputError):
+        build_libraries([room for room in ROOMS if not is_built((room,))])
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import hypot
+from math import cos, hypot, sin
 from random import Random
 
 import numba
@@ -13,11 +13,10 @@ from numpy.typing import NDArray
 from chord_examples import KINDS, random_chord
 from strategies import random_row
 from workhold.contact.curves import CurveTable, LatticeSteps, curve_table
-from workhold.kernels.base.tables import COLUMN_STEP, LENGTH, PIECE_LENGTH, ROW_STEP
+from workhold.kernels.base.tables import COLUMN_STEP, EDGE_LENGTH, LENGTH, PIECE_LENGTH, ROW_STEP
 from workhold.kernels.chord.evaluation import HEIGHT, POSITION
-from workhold.kernels.curves.piece_bounds import kept_edges
-from workhold.kernels.curves.pieces import cell_pieces
-from workhold.kernels.curves.roots import MOST_ROOTS, STACK_DEPTH, STACK_LENGTH, crossings, value_at
+from workhold.kernels.curves.pieces import write_pieces
+from workhold.kernels.curves.roots import MOST_ROOTS, STACK_DEPTH, STACK_LENGTH, crossings, value_turned
 
 Array = NDArray[np.float64]
 
@@ -75,12 +74,13 @@ def pieces_of(features: Array, table: CurveTable, low: float, high: float, mode:
     """All pieces of a table's curves in a cell."""
     members = np.arange(len(table))
     pitch = pitch_of(table) if len(table) else 1.0
-    kept = kept_edges(len(members))
-    room = np.empty((1, PIECE_LENGTH))
-    pieces, count = cell_pieces(
-        low, high, members, features, table.curves, pitch, 0.0, mode, kept, np.inf, room
+    kept, edges = np.full((len(members), EDGE_LENGTH + 1), np.nan), np.empty((2, EDGE_LENGTH))
+    pieces = np.empty((4096, PIECE_LENGTH))
+    count = write_pieces(
+        low, high, members, features, table.curves, pitch, 0.0, mode, np.inf, kept, edges, pieces
     )
-    return pieces[:count]
+    assert count >= 0
+    return pieces[:count].copy()
 
 
 def cross(first, second, features, table, mode, offset, period, flat=0.0, kernel=crossings) -> Array:
@@ -96,7 +96,9 @@ def sampled(psis, curve, features, curves, mode):
     """Values and slopes of a curve at many orientations, and bounds of their errors, shape (N, 4)."""
     out = np.empty((psis.shape[0], 4))
     for k in range(psis.shape[0]):
-        out[k, 0], out[k, 1], out[k, 2], out[k, 3] = value_at(psis[k], curve, features, curves, mode)
+        psi = psis[k]
+        point = value_turned(psi, cos(psi), sin(psi), curve, features, curves, mode)
+        out[k, 0], out[k, 1], out[k, 2], out[k, 3] = point
     return out
 
 

@@ -16,7 +16,8 @@ from packaging.requirements import Requirement
 from packaging.specifiers import SpecifierSet
 
 import backend
-import compile_kernels
+from workhold.errors import InputError
+from workhold.kernels.base.libraries import library_name
 from workhold.version import __version__
 
 ROOT = Path(__file__).parent.parent
@@ -121,7 +122,7 @@ def test_cibuildwheel_takes_the_settings(platform: str) -> None:
 def made(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """What a build of a wheel does: the folder that kernels are compiled into, then what setuptools is asked."""
     done: list[Any] = []
-    monkeypatch.setattr(backend, "build", done.append)
+    monkeypatch.setattr(backend, "build_libraries", lambda rooms, folder: done.append(folder))
     monkeypatch.setattr(backend.build_meta, "build_wheel", lambda *words: done.append(words[1]))
     monkeypatch.delenv("WORKHOLD_WHEEL", raising=False)
     return done
@@ -150,20 +151,32 @@ def test_a_wheel_of_what_was_built_needs_no_compiler(
     """And is refused where the library is of other sources."""
     monkeypatch.setenv("WORKHOLD_WHEEL", "built")
     needed = " ".join(backend.get_requires_for_build_wheel())
-    assert "numba" not in needed and "numpy" in needed
-    monkeypatch.setattr(backend, "is_built", lambda folder: False)
+    assert "numba" not in needed
+    monkeypatch.setattr(backend, "are_built", lambda: False)
     with pytest.raises(SystemExit, match="does not fit these sources"):
         backend.build_wheel("dist")
     assert made == []
-    monkeypatch.setattr(backend, "is_built", lambda folder: True)
+    monkeypatch.setattr(backend, "are_built", lambda: True)
     backend.build_wheel("dist")
     assert len(made) == 2
 
 
-def test_no_library_and_a_broken_one_do_not_fit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from workhold.kernels.base.built import library_name
+def test_libraries_of_other_sources_are_removed(
+    made: list[Any], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Those of these sources stay."""
+    monkeypatch.setattr(backend, "KERNELS", tmp_path)
+    ours = tmp_path / library_name("base", "so")
+    for path in (ours, tmp_path / "kernels-base-0123.linux_x86_64.so"):
+        path.touch()
+    backend.compile_kernels()
+    assert [*tmp_path.iterdir()] == [ours] and made == [tmp_path]
 
-    monkeypatch.setenv("WORKHOLD_KERNELS", "")
-    assert not compile_kernels.is_built(tmp_path)
-    (tmp_path / library_name()).write_bytes(b"no library")
-    assert not compile_kernels.is_built(tmp_path)
+
+def test_kernels_that_cannot_be_compiled_end_the_build_in_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(rooms: Any, folder: Any) -> None:
+        raise InputError("The kernels could not be compiled: no linker")
+
+    monkeypatch.setattr(backend, "build_libraries", fail)
+    with pytest.raises(SystemExit, match="could not be compiled: no linker"):
+        backend.compile_kernels()

@@ -14,8 +14,7 @@ from typer.testing import CliRunner
 
 from workhold.cli import installed_commands
 from workhold.cli.main import app
-from workhold.errors import InputError
-from workhold.kernels.base import compiling
+from workhold.kernels.base import libraries
 from workhold.version import __version__
 
 HAVE = {"pyarrow": "26.0", "scipy": "1.2", "numba": "0.68.1", "cadquery-ocp-novtk": "8.0.1"}
@@ -58,7 +57,7 @@ def findings() -> dict[str, tuple[str, str | None]]:
 
 def test_every_extra_is_looked_at(installation: None, monkeypatch: pytest.MonkeyPatch) -> None:
     """A version that is too old, a library that does not load, and one that is missing each have a remedy."""
-    monkeypatch.setattr(compiling, "LIBRARY", None)
+    monkeypatch.setattr(libraries, "is_in", lambda folder, room: False)
     found = findings()
     assert found["numba"] == ("numba 0.68.1", None)
     assert found["batch"] == ("scipy 1.2, older than 1.13", "pip install 'scipy>=1.13'")
@@ -90,14 +89,10 @@ def test_what_is_missing_is_red_on_a_terminal(installation: None) -> None:
 
 
 def test_kernels_that_are_missing_have_a_remedy(installation: None, monkeypatch: pytest.MonkeyPatch) -> None:
-    """As the program would say it of itself where there is neither a library nor numba."""
-
-    class Missing:
-        def __getattr__(self, name: str) -> object:
-            raise InputError("no kernels; install workhold[numba].")
-
-    monkeypatch.setitem(sys.modules, "workhold.kernels.base.compiling", Missing())
-    assert findings()["kernels"] == ("missing", "no kernels; install workhold[numba].")
+    """Where there are neither libraries nor numba to make them with."""
+    monkeypatch.setattr(libraries, "is_in", lambda folder, room: False)
+    monkeypatch.setattr(installed_commands, "find_spec", lambda name: None)
+    assert findings()["kernels"] == ("missing", "pip install numba")
 
 
 def test_the_python_that_is_looked_at_is_named() -> None:
@@ -109,23 +104,23 @@ def test_the_python_that_is_looked_at_is_named() -> None:
 
 def test_nothing_is_to_add_where_all_is_there(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(installed_commands, "extras", lambda is_built: iter(()))
-    monkeypatch.setattr(compiling, "LIBRARY", object())
+    monkeypatch.setattr(libraries, "is_in", lambda folder, room: True)
     assert "To add" not in CliRunner().invoke(app, ["doctor"]).stdout
 
 
 def test_kernels_say_where_they_come_from(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, installation: None
 ) -> None:
-    monkeypatch.setattr(compiling, "LIBRARY", object())
+    monkeypatch.setattr(libraries, "is_in", lambda folder, room: True)
     assert findings()["kernels"] == ("compiled in the package", None)
     assert findings()["numba"] == ("not needed here", None)
-    monkeypatch.setattr(compiling, "LIBRARY", None)
-    monkeypatch.setattr(compiling, "cache_folder", lambda: tmp_path)
-    monkeypatch.setattr(compiling, "is_first_run", lambda: True)
+    monkeypatch.setattr(libraries, "is_in", lambda folder, room: False)
+    monkeypatch.setattr(libraries, "cache_folder", lambda: tmp_path)
+    monkeypatch.setattr(libraries, "is_built", lambda: False)
     assert findings()["kernels"] == (f"to be compiled on the first run, kept in {tmp_path}", None)
-    monkeypatch.setattr(compiling, "is_first_run", lambda: False)
+    monkeypatch.setattr(libraries, "is_built", lambda: True)
     assert findings()["kernels"] == (f"compiled on this machine, kept in {tmp_path}", None)
-    monkeypatch.setattr(compiling, "cache_folder", lambda: None)
+    monkeypatch.setattr(libraries, "cache_folder", lambda: None)
     state, remedy = findings()["kernels"]
     assert state.startswith("compiled anew in every process") and "WORKHOLD_CACHE_DIR" in str(remedy)
 

@@ -82,7 +82,9 @@ def limited(size: int) -> Callable[[], None]:
 )
 def test_too_little_memory_is_one_sentence(megabytes: int, sentence: str) -> None:
     """Where the libraries would end the process by a signal, or with a complaint of their own."""
-    done = features("widget", limited(megabytes * 10**6), WORKHOLD_KERNELS="numba")
+    done = features(
+        "widget", limited(megabytes * 10**6), WORKHOLD_KERNELS="cache", WORKHOLD_CACHE_DIR="/nowhere"
+    )
     assert (done.returncode, done.stdout, done.stderr) == (2, "", f"workhold: error: {sentence}\n")
 
 

@@ -38,7 +38,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, searched: Any) -> Pa
     (tmp_path / "v.toml").write_text('unit = "mm"\npitch = 10\ncolumns = 2\npeg_radius = 2\n')
     (tmp_path / "l.toml").write_text("[[load]]\nforce = 1\nat = [1, 2]\n")
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("workhold.kernels.base.compiling.is_first_run", lambda: False)
+    monkeypatch.setattr("workhold.kernels.base.libraries.is_built", lambda rooms=(): True)
     return tmp_path
 
 

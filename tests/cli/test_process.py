@@ -31,8 +31,8 @@ def answer(query, *, cancel, **options):
     {behaviour}
 
 # What would have to be compiled is no part of what is tested.
-import workhold.kernels.base.compiling as compiling
-compiling.is_first_run = lambda: False
+import workhold.kernels.base.libraries as libraries
+libraries.is_built = lambda rooms=(): True
 module = types.ModuleType("workhold.search.design")
 module.answer = answer
 sys.modules["workhold.search.design"] = module

@@ -7,13 +7,13 @@ from math import cos, sin, tan, tau
 import numpy as np
 import pytest
 
-from chord_examples import arc_row, line_row, overshoot, solutions
+from chord_examples import arc_row, chord_intervals, line_row, overshoot, solutions
 from workhold import Plate, Query, Vise, Workpiece, count_contacts, load
 from workhold.contact.curves import curve_table, loosened
 from workhold.contact.problem import Problem
 from workhold.conventions import LOOSE
 from workhold.kernels.base.tables import BRANCH, FIRST_STRETCH, FROM, HEAD, LENGTH, SHIFT, TAIL, TO
-from workhold.kernels.chord.intervals import NARROW, chord_intervals
+from workhold.kernels.chord.intervals import NARROW
 from workhold.search.toolkit_search import lattice_steps
 
 

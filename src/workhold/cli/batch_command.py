@@ -263,7 +263,7 @@ def ask(asked: BatchTask) -> BatchAnswer:
     from workhold.batch.durations import Measured
     from workhold.batch.run import BatchRun, run_batch
     from workhold.batch.store import FolderStore, store_at
-    from workhold.cli.warming import compile_on_first_run, compile_seating
+    from workhold.cli.warming import compile_kernels, compile_seating
 
     records = asked.place.records
     store = FolderStore(asked.folder / RECORDS) if records is None else store_at(records)
@@ -272,7 +272,7 @@ def ask(asked: BatchTask) -> BatchAnswer:
     with ask_to_stop("what is done is kept, tables and report are written") as stop:
         keep_what_is_found()
         if asked.place.cluster is None:
-            compile_on_first_run(stop)
+            compile_kernels(stop)
             if any(is_seated(held) for request in asked.requests for held in request.held_in):
                 compile_seating(stop)
         with batch_progress() as progress, asked.place.queue(progress, store) as queue:

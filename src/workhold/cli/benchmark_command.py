@@ -169,13 +169,13 @@ def make_sets(asked: BenchmarkTask, chosen: Sequence[SetEntry]) -> list[MadeSet]
     names = ["manifest.json", "check.py", *(f"{one.name}.json" for one in chosen)]
     refuse_output_folder(folder, names, (), words.force)
     from workhold.benchmark.making import load_arrow, made_sets, write_common
-    from workhold.cli.warming import compile_on_first_run
+    from workhold.cli.warming import compile_kernels
 
     if words.parquet:
         load_arrow()
     write_common(chosen, folder)
     with ask_to_stop("the sets that are done are kept") as cancel:
-        compile_on_first_run(cancel)
+        compile_kernels(cancel)
         with progress_bar("Making sets", "fixtures") as progress:
             made = made_sets(
                 chosen, folder, parquet=words.parquet, threads=asked.threads, progress=progress, cancel=cancel
@@ -221,14 +221,14 @@ def compare(asked: BenchmarkTask) -> list[ComparedFile]:
     from workhold.benchmark.catalogue import set_named
     from workhold.benchmark.making import compared_entry
     from workhold.benchmark.matching import read_entry
-    from workhold.cli.warming import compile_on_first_run
+    from workhold.cli.warming import compile_kernels
 
     entries = [read_entry(Path(name), words.set_) for name in files]
     for entry in entries:
         set_named(entry.set_name)
     done: list[ComparedFile] = []
     with ask_to_stop("what is compared is printed") as cancel:
-        compile_on_first_run(cancel)
+        compile_kernels(cancel)
         with progress_bar("Comparing", "files") as progress:
             for number, (name, entry) in enumerate(zip(files, entries, strict=True), 1):
                 outcome = compared_entry(entry, asked.tolerance, words.symmetric, asked.threads, cancel)

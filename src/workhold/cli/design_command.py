@@ -43,7 +43,6 @@ from workhold.errors import InputError
 if TYPE_CHECKING:
     from threading import Event
 
-    from workhold.cli.warming import SecondProcess
     from workhold.files.part.loaded import Loaded
     from workhold.model.query import Query
     from workhold.model.result import Result
@@ -192,7 +191,6 @@ class DesignTask:
     every : whether all fixtures are listed, however many.
     thickness : of the part in mm, where supports are wanted.
     unit : of lengths shown.
-    compiling : on a first run what compiles beside the reading; None where nothing does.
     """
 
     query: Query
@@ -203,8 +201,6 @@ class DesignTask:
     thickness: float | None
     unit: Unit
     output: Output
-    is_first_run: bool
-    compiling: SecondProcess | None
 
 
 @frozen
@@ -271,15 +267,9 @@ def parse(
     type_ = choice("--type", searched.type_, (*toolkit.types, EVERY_TYPE))
     from workhold.files.part.load import refuse_unsure_numbers
     from workhold.geometry.segment import Box
-    from workhold.kernels.base.compiling import is_first_run
     from workhold.model.query import Query
     from workhold.model.requirements import far_loads
 
-    first_run, compiling = is_first_run(), None
-    if first_run and engine == "curves":
-        from workhold.cli.warming import begin_compiling
-
-        compiling = begin_compiling()
     loaded = machined.reading(part, reading).load(part, toolkit.heights, toolkit.peg_diameter)
     refuse_unsure_numbers(loaded, asked["restrictions"].avoid, CALLED)
     workpiece = loaded.workpiece
@@ -291,21 +281,19 @@ def parse(
     for remark in far_loads(query.loads, Box(*workpiece.bounds)):
         print_remark(remark)
     unit = printed_unit(reading.unit, toolkit)
-    return DesignTask(
-        query, loaded, searched.every, threads, engine, high, unit, output, first_run, compiling
-    )
+    return DesignTask(query, loaded, searched.every, threads, engine, high, unit, output)
 
 
 def ask(asked: DesignTask) -> DesignAnswer:
     """Search, and write the result file, which a search of very many fixtures does by itself."""
     query, engine, output, estimated = asked.query, asked.engine, asked.output, None
-    start = perf_counter()
+    start, is_first_run = perf_counter(), False
     # What was found is decided for a moment more (``proof.deciding``); the rest of it is left.
     with ask_to_stop("what was found is kept as far as it is soon proven") as cancel:
-        if asked.is_first_run and engine == "curves":
+        if engine == "curves":
             from workhold.cli.warming import compile_kernels
 
-            compile_kernels(cancel, asked.compiling)
+            is_first_run = compile_kernels(cancel)
         if query.seating is not None and query.toolkit.closes_at_once:
             from workhold.cli.warming import compile_seating
 
@@ -320,7 +308,7 @@ def ask(asked: DesignTask) -> DesignAnswer:
             )
     if output.out is not None and streamed is None:
         result = write_found(result, output.out, output.form)
-    compiled = ", compiling on this first run included" if asked.is_first_run else ""
+    compiled = ", compiling on this first run included" if is_first_run else ""
     return DesignAnswer(result, estimated, f"{perf_counter() - start:.1f} s{compiled}")
 
 

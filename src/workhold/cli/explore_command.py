@@ -158,12 +158,12 @@ def refuse_unknown_faces(numbers: Sequence[int], loaded: Collection[Loaded]) -> 
 
 def ask(asked: ExploreTask) -> list[Explored]:
     """Try the toolkits, as many as are done before a Ctrl-C."""
-    from workhold.cli.warming import compile_on_first_run
+    from workhold.cli.warming import compile_kernels
     from workhold.search.design import explore as try_all
 
     found: list[Explored] = []
     with ask_to_stop("what was tried so far is kept") as cancel:
-        compile_on_first_run(cancel)
+        compile_kernels(cancel)
         with search_progress() as progress:
             for item in try_all(asked.queries, cancel):
                 found.append(item)

@@ -234,13 +234,11 @@ def parse(
 
 def ask(asked: FamilyTask) -> FamilyAnswer:
     """Look for the patterns that hold the parts, and for the plan."""
-    from workhold.cli.warming import compile_on_first_run
-    from workhold.kernels.base.compiling import is_first_run
+    from workhold.cli.warming import compile_kernels
 
     start = perf_counter()
-    compiled = ", compiling on this first run included" if is_first_run() else ""
     with ask_to_stop("nothing is found yet") as cancel:
-        compile_on_first_run(cancel)
+        compiled = ", compiling on this first run included" if compile_kernels(cancel) else ""
     if cancel.is_set():
         raise typer.Exit(INTERRUPTED)
     from workhold.family.family import family_of

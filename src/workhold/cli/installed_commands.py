@@ -99,19 +99,19 @@ def table(findings: list[InstallationRow]) -> Table:
 def kernels() -> InstallationRow:
     """Where the compiled arithmetic comes from: the package, or numba and its cache on disk."""
     use = "The arithmetic of every search."
-    try:
-        from workhold.kernels.base.compiling import LIBRARY, cache_folder, is_first_run
-    except InputError as error:
-        return InstallationRow("kernels", "missing", use, str(error))
-    if LIBRARY is not None:
+    from workhold.kernels.base.libraries import KERNELS, ROOMS, cache_folder, is_built, is_in
+
+    if all(is_in(KERNELS, room) for room in ROOMS):
         return InstallationRow("kernels", BUILT, use)
+    if find_spec("numba") is None:
+        return InstallationRow("kernels", "missing", use, "pip install numba")
     folder = cache_folder()
     if folder is None:
         remedy = "set WORKHOLD_CACHE_DIR to a folder that can be written."
         return InstallationRow(
             "kernels", "compiled anew in every process: no folder can be written", use, remedy
         )
-    state = "to be compiled on the first run" if is_first_run() else "compiled on this machine"
+    state = "compiled on this machine" if is_built() else "to be compiled on the first run"
     return InstallationRow("kernels", f"{state}, kept in {folder}", use)
 
 

@@ -174,11 +174,11 @@ def report(asked: VerifyTask, answer: VerifyAnswer) -> None:
 
 
 def compared(outcome: Verification, listing: Listing, workers: int | None) -> Verification:
-    from workhold.cli.warming import compile_on_first_run
+    from workhold.cli.warming import compile_kernels
     from workhold.completeness import completed
 
     with ask_to_stop("nothing is compared") as cancel:
-        compile_on_first_run(cancel)
+        compile_kernels(cancel)
         with search_progress() as progress:
             return completed(outcome, listing, threads=workers, progress=progress, cancel=cancel)
 

@@ -40,7 +40,7 @@ OPEN_TO_ALL = (
 )
 # Processes that search: each takes a hundred megabytes before it begins.
 MOST_SEARCHES = 256
-FIRST_RUN = "workhold: compiling for this machine, which takes half a minute or so the first time."
+FIRST_RUN = "workhold: compiling for this machine, which takes a minute or two the first time."
 
 
 def limit(default: str | None, metavar: str, variable: str, help: str) -> Any:
@@ -162,15 +162,13 @@ def serve(*, words: ServerWords, limits: LimitWords) -> None:
 
 
 def prepare() -> None:
-    """Compiles the kernels on a first run, before workers would do so one after the other."""
-    from workhold.cli.warming import compile_kernels, compile_seating, is_seating_compiled
-    from workhold.kernels.base.compiling import is_first_run
+    """Compile the kernels on a first run, before workers would do so one after the other."""
+    from workhold.cli.warming import compile_kernels, compile_seating
+    from workhold.kernels.base.libraries import ROOMS, is_built
 
-    first_run = is_first_run()
-    if first_run or not is_seating_compiled():
+    if not is_built(ROOMS):
         typer.echo(FIRST_RUN, err=True)
-    if first_run:
-        compile_kernels(Event())
+    compile_kernels(Event())
     compile_seating(Event())
 
 

@@ -13,6 +13,7 @@ from attrs import define
 from numpy.typing import NDArray
 
 from workhold.conventions import LOOSE
+from workhold.kernels.base.capacity import Capacity
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS
 from workhold.kernels.base.tables import (
     CENTER,
@@ -28,11 +29,12 @@ from workhold.kernels.base.tables import (
     SlidingPairs,
 )
 from workhold.kernels.chord.coincidences import are_concentric
-from workhold.kernels.curves.table import tail_curves
+from workhold.kernels.curves.table import make_curve_space, write_tail_curves
 
 __all__ = ["ANY_TURN", "CurveTable", "LatticeSteps", "center_numbers", "curve_table", "joined", "loosened"]
 
 # Rules nothing out.
+CURVE_CAPACITY = Capacity(256)
 EVERYWHERE = NearSpots(np.zeros(1, np.int64), np.zeros((0, 0), np.int8), np.zeros((0, 0, 0), np.int8))
 ANY_TURN = np.zeros((0, 2))
 
@@ -127,7 +129,22 @@ def curve_table(
 
     def curves_from(tail: int) -> tuple[NDArray[Any], ...]:
         few = steps if cancel is None or not cancel.is_set() else steps.none
-        return tail_curves(tail, rows, centers, few.lengths, few.starts, few.steps, few.angles, near, within)
+        given = tail, rows, centers, few.lengths, few.starts, few.steps, few.angles, near, within
+
+        def write(size: int) -> tuple[NDArray[Any], ...] | None:
+            space = make_curve_space(size)
+            count, pair_count, stretch_count = write_tail_curves(*given, space)
+            if count < 0:
+                return None
+            return (
+                space.integers[:count].copy(),
+                space.reals[:count].copy(),
+                space.pair_integers[:pair_count].copy(),
+                space.pair_reals[:pair_count].copy(),
+                space.stretches[:stretch_count].copy(),
+            )
+
+        return CURVE_CAPACITY.give(write)
 
     parts = made_by_threads(curves_from, range(len(rows)) if tails is None else tails, threads)
     before = 0

@@ -31,6 +31,7 @@ from workhold.geometry.segment import Line, Point, distance_to_segment
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS, SEGMENT_LENGTH, SIGN, X, Y
 from workhold.kernels.base.tables import NearSpots, Precision
 from workhold.kernels.contact.location_bounds import (
+    MOST_WAITING,
     SPOT_COUNT,
     SPOT_FIRST,
     SPOT_LENGTH,
@@ -150,13 +151,15 @@ class LocatorSpots:
         count, counts = int(self.starts[-1]), np.zeros(2, np.int64)
         kept = count if count <= MOST_TRIPLED else 0
         near = NearSpots(self.starts, np.zeros((count, count), np.int8), np.zeros((kept,) * 3, np.int8))
-        join_near_spots(self.spots, self.roots, most, self.precision, near, counts)
+        waiting = np.empty((MOST_WAITING, 3), np.int64)
+        join_near_spots(self.spots, self.roots, most, self.precision, near, counts, waiting, np.empty((4, 3)))
         return near, counts
 
     @property
     def first(self) -> float:
         """The limit to begin with, in mm."""
-        return FIRST_TIMES * float(least_middle_error(self.spots, self.roots, self.precision))
+        least = least_middle_error(self.spots, self.roots, self.precision, np.empty((4, 3)))
+        return FIRST_TIMES * least
 
 
 def precision_of(problem: Problem) -> Precision:

@@ -9,7 +9,7 @@ simultaneous contacts is the measure of how much there is to search (paper, sect
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Sequence
-from functools import partial
+from functools import cached_property, partial
 from itertools import pairwise
 from math import hypot, inf, pi, tau
 from threading import Event
@@ -31,6 +31,7 @@ from workhold.contact.curves import (
 from workhold.contact.problem import Frame, Problem
 from workhold.conventions import ANGLE_HAIR, GAP_SLACK, MARGIN_SLACK, PARALLEL, WEAK_CLOSURE
 from workhold.fixels.toolkit import Arrangement, Carrier, Toolkit
+from workhold.kernels.base.compiling import hand_over
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, SEGMENT_LENGTH
 from workhold.kernels.base.tables import (
     DIRECTION,
@@ -38,10 +39,12 @@ from workhold.kernels.base.tables import (
     ORIENTATION,
     STEP_LENGTH,
     TAIL,
+    Curves,
     Features,
     Limits,
     NearSpots,
     Precision,
+    SlidingPairs,
 )
 from workhold.kernels.contact.record import RECORD_LENGTH
 from workhold.kernels.curves.block_work import CONTACTS, CROSSED, PAIRS, STATISTICS, STOPPED
@@ -53,6 +56,7 @@ from workhold.listing.collector import Needed
 from workhold.model.first_choice import FACTORS
 from workhold.model.query import Query
 from workhold.model.workpiece import Workpiece
+from workhold.search.block_memory import BlockMemory
 from workhold.search.cells import (
     FIRST_ORIENTATION,
     Block,
@@ -67,7 +71,7 @@ __all__ = ["LEAST_BLOCKS", "ToolkitSearch", "contacts_of", "count_contacts", "la
 Array = NDArray[np.float64]
 
 # The kernel of crossings for each arrangement of pegs, and how long it takes, relative to others.
-KERNELS: dict[tuple[int, ...], tuple[Callable[..., Array], float]] = {
+KERNELS: dict[tuple[int, ...], tuple[Callable[..., int], float]] = {
     (2, 2): (two_and_two_cells, 1.0),
     (3, 1): (three_and_one_cells, 0.5),
 }
@@ -248,6 +252,7 @@ class ToolkitSearch:
     most_listed: int = 0
     every: int = 1
     stats: list[NDArray[np.int64]] = field(factory=list, init=False)
+    memory: BlockMemory = field(factory=BlockMemory, init=False)
 
     @classmethod
     def of(
@@ -285,9 +290,24 @@ class ToolkitSearch:
 
     @property
     def features(self) -> Features:
-        """The features as the kernels take them."""
+        """The features for the kernels."""
         problem = self.problem
         return Features(self.loose, problem.rows, problem.standing, problem.moving, self.precision, self.near)
+
+    @cached_property
+    def handed_features(self) -> Features:
+        """The features as blocks hand them over, thousands of times."""
+        return hand_over(self.features)
+
+    @cached_property
+    def handed_curves(self) -> Curves:
+        """The curves of the table as blocks hand them over."""
+        return hand_over(self.table.curves)
+
+    @cached_property
+    def handed_sliding_pairs(self) -> SlidingPairs:
+        """The sliding pairs of the table as blocks hand them over."""
+        return hand_over(self.table.sliding_pairs)
 
     @property
     def totals(self) -> NDArray[np.int64]:
@@ -401,7 +421,7 @@ class ToolkitSearch:
         parts = [
             partial(
                 self.run,
-                partial(sliding_fixtures, standing, sliding_pairs[cell], self.table.sliding_pairs),
+                partial(sliding_fixtures, standing, sliding_pairs[cell], self.handed_sliding_pairs),
                 float(edges[cell]),
                 float(edges[cell + 1]),
                 stats,
@@ -429,18 +449,19 @@ class ToolkitSearch:
             counts[STOPPED] = 1
 
     def run(
-        self, kernel: Callable[..., Array], low: float, high: float, stats: NDArray[np.int64], needed: Needed
+        self, kernel: Callable[..., int], low: float, high: float, stats: NDArray[np.int64], needed: Needed
     ) -> Array:
         """Runs a kernel with the curves of some orientations, for fixtures that reach what is needed."""
         most = min(self.precision.most, needed.error)
-        features = self.features
+        features = self.handed_features
         if most < self.precision.most and len(self.precision.probes):
-            features = features._replace(precision=with_limit(self.precision, most))
+            features = features._replace(precision=with_limit(features.precision, most))
         limits = self.limits_from(needed.margin, features.precision.most)
         members = members_of_cell(self.table, low, high)
         if self.every > 1:
             members = members[one_in(members, self.every)]
-        return kernel(members, features, self.table.curves, self.frame.lattice, limits, self.counting, stats)
+        curves, lattice = self.handed_curves, self.frame.lattice
+        return self.memory.run(kernel, members, stats, features, curves, lattice, limits, self.counting)
 
     def limits_from(self, margin: float, most: float) -> Limits:
         """The limits with a closure margin to reach, and a largest effective error.

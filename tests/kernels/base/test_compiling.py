@@ -1,166 +1,219 @@
-"""The cache of compiled kernels is never stale and never in the way."""
+"""Kernels are called with what their annotations say, and refuse all else."""
 
 from __future__ import annotations
 
-import os
-import shutil
-import subprocess
+import pickle
+import re
 import sys
+from math import pi
 from pathlib import Path
+from struct import Struct
+from threading import Thread
+from typing import Any, NamedTuple
 
+import numpy as np
 import pytest
 
 import workhold
-from workhold.kernels.base import built, compiling
+from workhold.kernels.base import compiling, distance
+from workhold.kernels.base.compiling import Handed, Kernel, Matrix, Vector, hand_over, letters, taker
+from workhold.kernels.base.libraries import ROOMS
+from workhold.kernels.base.tables import Features, Setting
 
-# What compiling takes of the kernels' base.
-BASE = ("__init__", "built", "compiling", "feature", "lean", "storing")
-PROGRAM = """
-import numpy as np
-from workhold.kernels.base.distance import outline_distance
-print(outline_distance(3.0, 4.0, np.array([[0.0, 0, 0, 1, 0, 1e-9, 0, 1, 0, 0]])))
-"""
+KERNELS = Path(workhold.__file__).parent / "kernels"
+SIDES = ((0, -10), (10, 0), (0, 10), (-10, 0))
+SQUARE = np.array([[0.0, x, y, -y / 10, x / 10, 10.0, 0.0, 1.0, 0.0, 0.0] for x, y in SIDES])
+POINTS = np.random.default_rng(1).uniform(-20.0, 20.0, (200, 2))
 
 
-def run(root: Path, cache: Path) -> float:
-    """Distance from (3, 4) to a point-like segment at (0, 0), by the package in a folder with a cache elsewhere."""
-    environment = os.environ | {"PYTHONPATH": str(root), "WORKHOLD_CACHE_DIR": str(cache)}
-    done = subprocess.run(
-        [sys.executable, "-c", PROGRAM], env=environment, cwd=root, capture_output=True, text=True, check=True
+class Pair(NamedTuple):
+    """A record of a number and an array."""
+
+    x: float
+    rows: Matrix
+
+
+def test_every_kernel_is_in_a_room_that_is_built() -> None:
+    """One that is not would be missing in all libraries."""
+    rooms = {
+        path.parent.name for path in KERNELS.rglob("*.py") if re.search("^@compiled$", path.read_text(), re.M)
+    }
+    assert rooms == set(ROOMS)
+
+
+def test_every_signature_is_one_of_words() -> None:
+    """Of numbers, arrays with so many dimensions, and records of them."""
+    for path in KERNELS.rglob("*.py"):
+        if re.search("^@compiled$", path.read_text(), re.M):
+            __import__(".".join(("workhold", *path.relative_to(KERNELS.parent).with_suffix("").parts)))
+    kernels = [kernel for room in Kernel.all.values() for kernel in room.values()]
+    assert len(kernels) > 50
+    for kernel in kernels:
+        assert kernel.words.size % 8 == 0 and len(kernel.takers) == len(kernel.arguments)
+        assert kernel.__doc__
+
+
+def test_nothing_private_of_numba_or_python_is_used() -> None:
+    """No inner module or option of numba, and no address of a Python object."""
+    private = re.compile(
+        r"numba\.core|numba\._|numba import _|\b_nrt\b|no_cpython_wrapper|pipeline_class|\bid\(|\._cache\b"
     )
-    return float(done.stdout)
+    for path in [*KERNELS.rglob("*.py"), KERNELS.parents[2] / "building" / "backend.py"]:
+        assert not private.search(path.read_text()), path
 
 
-@pytest.fixture
-def copy(tmp_path: Path) -> Path:
-    """A copy that a test may change."""
-    return copied(tmp_path)
+def test_answers_are_those_of_python() -> None:
+    """Numbers, truths and arrays that are written to: the functions themselves say what is right."""
+    out = np.empty(len(POINTS))
+    distance.write_outline_distances(POINTS, SQUARE, out)
+    assert out.tobytes() == distance.outline_distances(POINTS, SQUARE).tobytes()
+    assert distance.outline_distances(POINTS[:0], SQUARE).shape == (0,)
+    for (x, y), away in zip(POINTS, out, strict=True):
+        assert away == pytest.approx(
+            abs(max(abs(x), abs(y)) - 10)
+            if max(abs(x), abs(y)) < 10 or min(abs(x), abs(y)) <= 10
+            else np.hypot(abs(x) - 10, abs(y) - 10)
+        )
+        assert distance.is_inside(x, y, SQUARE) is (max(abs(x), abs(y)) < 10)
+        turned = distance.turns_around(x, y, SQUARE)
+        assert type(turned) is float and turned == pytest.approx(
+            2 * pi if max(abs(x), abs(y)) < 10 else 0.0, abs=1e-9
+        )
 
 
-def copied(folder: Path) -> Path:
-    """A folder with just enough of the package to compile the distance kernels."""
-    source = Path(workhold.__file__).parent
-    package = folder / "source" / "workhold"
-    room = package / "kernels" / "base"
-    room.mkdir(parents=True)
-    for name in (
-        "__init__.py",
-        "version.py",
-        "conventions.py",
-        "errors.py",
-        "limits.py",
-        *(f"kernels/{name}.py" for name in ("__init__", *(f"base/{base}" for base in BASE))),
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ((0.0, 0.0), "takes 3 arguments, not 2"),
+        ((0.0, 0.0, SQUARE, SQUARE), "takes 3 arguments, not 4"),
+        ((0.0, "0", SQUARE), "y must be float, not str"),
+        ((0.0, 0.0, SQUARE.tolist()), "rows must be a C-contiguous array of float64 with 2 dimensions"),
+        ((0.0, 0.0, SQUARE[0]), "rows must be"),
+        ((0.0, 0.0, SQUARE[:, ::2]), "rows must be"),
+        ((0.0, 0.0, np.asfortranarray(SQUARE)), "rows must be"),
+        ((0.0, 0.0, SQUARE.astype(np.float32)), "rows must be"),
+        ((0.0, 0.0, SQUARE.astype(np.int64)), "rows must be"),
+        ((0.0, 0.0, SQUARE.astype(">f8")), "rows must be"),
+        (
+            (0.0, 0.0, np.frombuffer(b"0" + SQUARE.tobytes(), np.float64, offset=1).reshape(SQUARE.shape)),
+            "rows must be",
+        ),
+        ((0.0, 0.0, Handed(SQUARE[0])), "rows must be"),
+        ((0.0, 0.0, Handed(SQUARE.astype(np.int64))), "rows must be"),
+        ((0.0, 0.0, None), "rows must be"),
+    ],
+)
+def test_what_a_kernel_was_not_compiled_for_is_refused(arguments: tuple[Any, ...], words: str) -> None:
+    with pytest.raises(TypeError, match="is_inside") as caught:
+        distance.is_inside(*arguments)
+    assert words in str(caught.value)
+
+
+def test_records_are_taken_apart_and_counted() -> None:
+    """A record is as many words as its fields are; one of another length, or of another kind, is refused."""
+    assert letters(Pair) == "dqqq" and letters(tuple[int, bool]) == "q?7x"
+    taken: list[Any] = []
+    taker(Pair, "given")(Pair(2, SQUARE), taken)
+    assert taken == [2, SQUARE.ctypes.data, 4, 10]
+    for value, words in (
+        ((1.0, SQUARE, SQUARE), "given must be a record of 2"),
+        (Pair(2, SQUARE[0]), "given.rows must be a C-contiguous array of float64 with 2 dimensions"),
+        (Pair("2", SQUARE), "given.x must be float, not str"),  # type: ignore[arg-type]
+        ([2, SQUARE], "given must be a record of 2, not list"),
     ):
-        shutil.copy(source / name, package / name)
-    text = (source / "kernels" / "base" / "distance.py").read_text()
-    head, callee = text.split("@inner\ndef segment_distance", 1)
-    callee, caller = callee.split("@inner\ndef outline_distance(", 1)
-    # The callee moves to a room of its own, so that the caller's file stays as it is when the callee changes.
-    (package / "kernels" / "other").mkdir()
-    (package / "kernels" / "other" / "callee.py").write_text(head + "@inner\ndef segment_distance" + callee)
-    bridge = "from workhold.kernels.other.callee import segment_distance\n\n\n@inner\ndef outline_distance("
-    (room / "distance.py").write_text(head + bridge + caller)
-    return folder / "source"
+        with pytest.raises(TypeError, match=re.escape(words)):
+            taker(Pair, "given")(value, [])
 
 
-@pytest.fixture(scope="module")
-def filled(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
-    """A copy that stays as it is, and its cache, which holds what was compiled."""
-    folder = tmp_path_factory.mktemp("filled")
-    run(copied(folder), folder / "cache")
-    return folder / "source", folder / "cache"
+def test_truths_and_numbers_are_words() -> None:
+    """Of numpy, too; what is true is 1."""
+    for kind, values in (
+        (bool, (True, np.True_, False)),
+        (int, (-3, np.int64(-3))),
+        (float, (2, 2.5, np.float64(2), np.int64(2))),
+    ):
+        for value in values:
+            taken: list[Any] = []
+            taker(kind, "x")(value, taken)
+            packed = Struct("=" + letters(kind)).pack(*taken)
+            assert len(packed) == 8
+            assert Struct("=d" if kind is float else "=q").unpack(packed) == (value,)
+    for kind, value in ((int, 2.0), (bool, 1), (float, "1")):
+        with pytest.raises(TypeError, match="x must be"):
+            taker(kind, "x")(value, [])
+
+
+def test_what_is_handed_over_once_is_the_same_words() -> None:
+    """Records in records too; what is no array stays."""
+    inner = hand_over((1, Pair(2.0, SQUARE)))
+    (number, (x, rows)) = inner
+    assert (number, x) == (1, 2.0) and isinstance(inner[1], Pair) and isinstance(rows, Handed)
+    taken: list[Any] = []
+    taker(tuple[int, Pair], "given")(inner, taken)
+    assert taken == [1, 2.0, SQUARE.ctypes.data, 4, 10]
+    # What is held by it stays where it is.
+    assert rows.array is SQUARE
+
+
+class Own(np.ndarray[Any, Any]):
+    """Arrays of a class of their own, as those that are mapped from a file are."""
+
+
+def read_only(array: Any) -> Any:
+    """The same that may not be written to."""
+    array = array.view()
+    array.flags.writeable = False
+    return array
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        np.array,
+        read_only,
+        Handed,
+        lambda array: array.view(Own),
+        lambda array: array.astype(np.dtype(np.float64, metadata={"of": "its own"})),
+        lambda array: pickle.loads(pickle.dumps(array)),
+        lambda array: np.frombuffer(array.tobytes()).reshape(array.shape),
+        lambda array: np.concatenate([array, array])[4:],
+        lambda array: np.concatenate([array, array])[:4],
+    ],
+    ids=["array", "read only", "handed", "class", "element", "pickled", "of bytes", "end", "begin"],
+)
+def test_arrays_are_taken_however_they_were_made(make: Any) -> None:
+    """Where they are looked at, they are what they are."""
+    out = np.empty(len(POINTS))
+    distance.write_outline_distances(POINTS, make(SQUARE), out)
+    assert out.tobytes() == distance.outline_distances(POINTS, SQUARE).tobytes()
 
 
 @pytest.mark.thorough
-def test_a_changed_callee_gives_the_new_answer_though_its_caller_is_unchanged(copy, tmp_path):
-    """Numba alone would serve the caller's old code; the hash of all sources starts a new folder."""
-    cache = tmp_path / "cache"
-    assert run(copy, cache) == pytest.approx(5.0, abs=1e-8)
-    callee = copy / "workhold" / "kernels" / "other" / "callee.py"
-    changed = callee.read_text().replace("return hypot(beyond,", "return 10.0 * hypot(beyond,")
-    assert changed != callee.read_text()
-    callee.write_text(changed)
-    assert run(copy, cache) == pytest.approx(50.0, abs=1e-7)
-    assert len(list(cache.glob("kernels-*"))) == 2
-    assert all(list(folder.rglob("*.nbi")) for folder in cache.glob("kernels-*"))
+def test_the_interpreter_goes_on_while_a_kernel_runs() -> None:
+    """A thread that is never asked to let others run lets them run while it is inside of a kernel."""
+    many = np.zeros((500_000, 2))
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(1.0)
+    try:
+        # On a busy machine this thread may not get its turn before the kernel is done.
+        assert any(
+            counted_during(Thread(target=distance.outline_distances, args=(many, SQUARE))) for _ in range(20)
+        )
+    finally:
+        sys.setswitchinterval(before)
 
 
-@pytest.mark.thorough
-def test_a_cache_that_cannot_be_written_is_done_without(copy, tmp_path):
-    """Where the cache's name is that of a file, kernels are compiled anew and the answer is the same."""
-    blocked = tmp_path / "file"
-    blocked.write_text("not a folder")
-    assert run(copy, blocked) == pytest.approx(5.0, abs=1e-8)
-    assert blocked.read_text() == "not a folder"
+def counted_during(thread: Thread) -> int:
+    """How far one counts while a thread runs."""
+    counted = 0
+    thread.start()
+    while thread.is_alive():
+        counted += 1
+    return counted
 
 
-@pytest.mark.thorough
-@pytest.mark.parametrize("ending", ["nbi", "nbc"])
-@pytest.mark.parametrize("damage", [lambda old: b"", lambda old: old[: len(old) // 2]], ids=["empty", "half"])
-def test_a_damaged_cache_is_thrown_away_and_made_anew(filled, tmp_path, ending, damage):
-    """Empty, halved, zeroed and garbled files, as a loss of power leaves them: same answer, and whole files afterwards."""
-    (source, full), cache = filled, tmp_path / "cache"
-    shutil.copytree(full, cache)
-    whole = {path: path.read_bytes() for path in cache.rglob(f"*.{ending}")}
-    assert whole
-    for path, content in whole.items():
-        path.write_bytes(damage(content))
-    assert run(source, cache) == pytest.approx(5.0, abs=1e-8)
-    assert all(path.read_bytes() != damage(content) for path, content in whole.items())
-
-
-def test_a_process_that_belongs_to_no_user_does_without_a_cache(monkeypatch):
-    """Where no home folder can be told, nothing is stored and nothing fails."""
-    for name in ("WORKHOLD_CACHE_DIR", "XDG_CACHE_HOME", "HOME"):
-        monkeypatch.delenv(name, raising=False)
-
-    def nobody(path: Path) -> Path:
-        raise RuntimeError("Could not determine home directory.")
-
-    monkeypatch.setattr(Path, "expanduser", nobody)
-    assert compiling.cache_folder.__wrapped__() is None
-
-
-def test_the_hash_covers_every_kernel_file(tmp_path, monkeypatch):
-    """Any change of any source, and any new source, changes the hash; the same sources give the same hash."""
-    package = tmp_path / "kernels"
-    for name in ("base/compiling.py", "a.py", "other/b.py", "../conventions.py"):
-        (package / name).parent.mkdir(parents=True, exist_ok=True)
-        (package / name).write_text(f"# {name}")
-    monkeypatch.setattr(built, "KERNELS", package)
-    hashes = [built.source_hash(), built.source_hash()]
-    assert hashes[0] == hashes[1]
-    (package / "other" / "b.py").write_text("# b.py changed")
-    hashes.append(built.source_hash())
-    (package / "c.py").write_text("")
-    hashes.append(built.source_hash())
-    (package / "c.py").rename(package / "other" / "c.py")
-    hashes.append(built.source_hash())
-    (tmp_path / "conventions.py").write_text("# another number that decides")
-    hashes.append(built.source_hash())
-    assert len(set(hashes)) == 5
-
-
-def test_old_folders_are_dropped_and_the_newest_kept(tmp_path):
-    """Besides the current folder the three newest stay; other things in the cache are left alone."""
-    current = tmp_path / "kernels-current"
-    current.mkdir()
-    (tmp_path / "something else").mkdir()
-    for age in range(6):
-        folder = tmp_path / f"kernels-{age}"
-        folder.mkdir()
-        os.utime(folder, (1e9 - age, 1e9 - age))
-    compiling.drop_old_folders(current)
-    left = sorted(p.name for p in tmp_path.iterdir())
-    assert left == ["kernels-0", "kernels-1", "kernels-2", "kernels-current", "something else"]
-
-
-def test_the_cache_is_named_by_the_environment(monkeypatch, tmp_path):
-    """WORKHOLD_CACHE_DIR comes first, then XDG_CACHE_HOME, then the home folder."""
-    monkeypatch.setenv("WORKHOLD_CACHE_DIR", str(tmp_path / "own"))
-    assert compiling.user_cache() == tmp_path / "own"
-    monkeypatch.delenv("WORKHOLD_CACHE_DIR")
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    assert compiling.user_cache() == tmp_path / "workhold"
-    monkeypatch.delenv("XDG_CACHE_HOME")
-    assert compiling.user_cache() == Path("~/.cache/workhold").expanduser()
+def test_types_name_their_elements_and_dimensions() -> None:
+    assert compiling.element(Matrix) == np.float64 and compiling.dimensions(Matrix) == 2
+    assert compiling.dimensions(Vector) == 1 and compiling.element(compiling.ByteStack) == np.int8
+    assert [name for name, _ in compiling.fields(Pair) or ()] == ["x", "rows"]
+    assert compiling.fields(Features) and compiling.fields(Setting) and compiling.fields(float) is None

@@ -16,6 +16,7 @@ from chord_examples import (
     KINDS,
     SPECIAL,
     arc_row,
+    chord_intervals,
     curve_row,
     is_rounded_coincidence,
     line_row,
@@ -34,7 +35,6 @@ from workhold.kernels.chord.coincidences import (
     regular_radius,
 )
 from workhold.kernels.chord.evaluation import HEIGHT, POSITION, chord_state, curve_value, regular_error
-from workhold.kernels.chord.intervals import chord_intervals
 from workhold.kernels.curves.piece_bounds import chord_tail, tail_disc, tail_radius, value_disc
 
 kinds = st.tuples(st.sampled_from(KINDS), st.sampled_from(KINDS))

@@ -11,6 +11,7 @@ import pytest
 from chord_examples import (
     PAIRS,
     arc_row,
+    chord_intervals,
     line_row,
     off_carrier,
     overshoot,
@@ -21,7 +22,7 @@ from chord_examples import (
     turn_at,
 )
 from workhold.kernels.chord.evaluation import chord
-from workhold.kernels.chord.intervals import NARROW, chord_intervals, share_one_line
+from workhold.kernels.chord.intervals import NARROW, share_one_line
 
 
 def covering(ranges: np.ndarray, alphas: np.ndarray) -> np.ndarray:

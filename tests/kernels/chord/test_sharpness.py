@@ -13,6 +13,7 @@ from flint import arb
 
 from chord_examples import (
     any_ranges,
+    chord_intervals,
     coincident_arcs,
     coincident_line,
     curve_row,
@@ -84,7 +85,7 @@ def made_chord(
     """A chord of made features: features, length, branch, direction and its range."""
     while True:
         a, b, d = make(random)
-        ranges = intervals.chord_intervals(a, b, d)
+        ranges = chord_intervals(a, b, d)
         ranges = ranges[ranges[:, 1] - ranges[:, 0] > 1e-6]
         if len(ranges):
             low, high, branch = (float(v) for v in ranges[random.randrange(len(ranges))][:3])

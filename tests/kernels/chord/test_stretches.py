@@ -10,15 +10,23 @@ import pytest
 from flint import arb
 from hypothesis import given
 
-from chord_examples import SPECIAL, any_ranges, curve_row, is_rounded_coincidence, random_ranges, turn_at
+from chord_examples import (
+    SPECIAL,
+    any_ranges,
+    chord_intervals,
+    curve_row,
+    is_rounded_coincidence,
+    random_ranges,
+    turn_at,
+)
 from exact_chords import cross, dot, exact_chord, exact_speed, exactly
 from strategies import seeds
 from workhold.kernels.base.tables import BRANCH, COINCIDENCE, FROM, LENGTH, TO
 from workhold.kernels.chord.coincidences import NONE
-from workhold.kernels.chord.intervals import chord_intervals
 from workhold.kernels.chord.stretches import (
     ALONG_HIGH,
     ALONG_LOW,
+    DEPTH,
     LARGEST_CROSS,
     LEAST_CUBE,
     PART_A,
@@ -43,7 +51,9 @@ EXACT_TO = 1e-15
 
 def stretches_of(a, b, curve) -> tuple[np.ndarray, np.ndarray]:
     """Where the stretches of a curve begin, and the stretches: each where the one before it ends, parts likewise."""
-    out, count = add_stretches(np.empty((2, STRETCH_LENGTH)), 0, a, b, curve)
+    out = np.empty((4096, STRETCH_LENGTH))
+    count = add_stretches(out, 0, a, b, curve, np.empty(DEPTH))
+    assert add_stretches(out[: count - 1], 0, a, b, curve, np.empty(DEPTH)) == -1
     lows, at, k = np.empty(count), curve[FROM], 0
     while k < count:
         after = k + 1 + int(out[k, PARTS])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from itertools import pairwise
 from random import Random
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,8 +20,23 @@ from workhold.kernels.base.tables import (
     RIGHTWARD_LOW,
     X_STANDING,
 )
-from workhold.kernels.curves.piece_bounds import kept_edges
-from workhold.kernels.curves.pieces import cell_pieces
+from workhold.kernels.curves.pieces import write_pieces
+
+
+def written(*given: Any) -> np.ndarray:
+    """The pieces that a cell has."""
+    pieces = np.empty((4096, PIECE_LENGTH))
+    count = write_pieces(*given, np.empty((2, EDGE_LENGTH)), pieces)
+    assert count >= 0
+    return pieces[:count]
+
+
+def test_pieces_without_room_are_told() -> None:
+    """Rather than written past the end."""
+    features, table = random_table(Random(5))
+    members, kept = np.arange(len(table)), np.full((len(table), EDGE_LENGTH + 1), np.nan)
+    given = (-1.0, 1.0, members, features, table.curves, pitch_of(table), 0.0, HEIGHT, np.inf, kept)
+    assert write_pieces(*given, np.empty((2, EDGE_LENGTH)), np.empty((1, PIECE_LENGTH))) == -1
 
 
 def told(pieces: np.ndarray, mode: float) -> np.ndarray:
@@ -35,12 +51,11 @@ def test_neighbouring_cells_share_their_edges(mode: float) -> None:
     for width in (0.05, 0.7, 2.5):
         features, table = random_table(random)
         pitch, members = pitch_of(table), np.arange(len(table))
-        kept, room = kept_edges(len(members)), np.empty((1, PIECE_LENGTH))
+        kept = np.full((len(members), EDGE_LENGTH + 1), np.nan)
         for low, high in pairwise((-1.0 + width * np.arange(6)).tolist()):
             alone = pieces_of(features, table, low, high, mode)
-            given = (members, features, table.curves, pitch, 0.0, mode, kept, np.inf)
-            room, count = cell_pieces(low, high, *given, room)
-            shared = room[:count]
+            given = (members, features, table.curves, pitch, 0.0, mode, np.inf, kept)
+            shared = written(low, high, *given)
             np.testing.assert_array_equal(told(shared, mode), told(alone, mode))
             for curve in np.unique(alone[:, CURVE]).astype(int):
                 assert kept[curve, EDGE_LENGTH] in alone[alone[:, CURVE] == curve, HIGH]
@@ -53,12 +68,11 @@ def test_only_pieces_that_stand_too_far_right_are_left_out() -> None:
     for _ in range(12):
         features, table = random_table(random)
         pitch, members = pitch_of(table), np.arange(len(table))
-        kept, farthest, room = kept_edges(len(members)), random.uniform(-10, 10), np.empty((1, PIECE_LENGTH))
+        kept, farthest = np.full((len(members), EDGE_LENGTH + 1), np.nan), random.uniform(-10, 10)
         for low, high in pairwise((random.uniform(-4, 4) + 0.02 * np.arange(8)).tolist()):
             alone = pieces_of(features, table, low, high, POSITION)
-            given = (members, features, table.curves, pitch, 0.0, POSITION, kept, farthest)
-            room, count = cell_pieces(low, high, *given, room)
-            fewer = room[:count]
+            given = (members, features, table.curves, pitch, 0.0, POSITION, farthest, kept)
+            fewer = written(low, high, *given)
             is_far = alone[:, X_STANDING] > farthest
             left = fewer[fewer[:, X_STANDING] <= farthest]
             np.testing.assert_array_equal(told(left, POSITION), told(alone[~is_far], POSITION))
@@ -80,12 +94,11 @@ def test_an_edge_of_another_stretch_tells_nothing() -> None:
         pitch_of(table),
         0.0,
         POSITION,
-        kept,
         1000.0,
-        np.empty((1, PIECE_LENGTH)),
+        kept,
     )
-    room, count = cell_pieces(0.0, 0.05, *given)
-    assert count > 0
+    pieces = written(0.0, 0.05, *given)
+    assert len(pieces)
     np.testing.assert_array_equal(
-        told(room[:count], POSITION), told(pieces_of(features, table, 0.0, 0.05, POSITION), POSITION)
+        told(pieces, POSITION), told(pieces_of(features, table, 0.0, 0.05, POSITION), POSITION)
     )

@@ -23,6 +23,7 @@ from workhold.conventions import GAP_SLACK
 from workhold.kernels.base.tables import (
     CENTER,
     CURVE,
+    EDGE_LENGTH,
     HEAD,
     HIGH,
     LEFTWARD_LOW,
@@ -41,8 +42,8 @@ from workhold.kernels.contact.record import PEG_LENGTH, angle_of, place_peg
 from workhold.kernels.contact.rules import is_fixture, minors, outward_normal, share_a_carrier
 from workhold.kernels.curves.block_work import TRIPLE_ROWS, place_chord, place_triple
 from workhold.kernels.curves.moving_pegs import faces_away, height_range, may_close, row_meets, write_triple
-from workhold.kernels.curves.piece_bounds import HAIR, kept_edges
-from workhold.kernels.curves.pieces import cell_pieces
+from workhold.kernels.curves.piece_bounds import HAIR
+from workhold.kernels.curves.pieces import write_pieces
 from workhold.kernels.curves.roots import (
     MOST_ROOTS,
     ROOT_PSI,
@@ -96,12 +97,13 @@ def pieces_in(search: ToolkitSearch, low: float, high: float, mode: float) -> np
     table = search.table
     members = np.arange(len(table))
     pitch = search.frame.lattice.pitch_x
-    kept = kept_edges(len(members))
-    room = np.empty((1, PIECE_LENGTH))
-    pieces, count = cell_pieces(
-        low, high, members, search.loose, table.curves, pitch, 0.0, mode, kept, np.inf, room
+    kept, edges = np.full((len(members), EDGE_LENGTH + 1), np.nan), np.empty((2, EDGE_LENGTH))
+    pieces = np.empty((1 << 16, PIECE_LENGTH))
+    count = write_pieces(
+        low, high, members, search.loose, table.curves, pitch, 0.0, mode, np.inf, kept, edges, pieces
     )
-    return pieces[:count]
+    assert count >= 0
+    return pieces[:count].copy()
 
 
 @numba.njit

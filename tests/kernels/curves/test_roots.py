@@ -30,7 +30,7 @@ from workhold.kernels.base.tables import (
 )
 from workhold.kernels.chord.coincidences import NONE, coincidence
 from workhold.kernels.curves.piece_bounds import value_disc
-from workhold.kernels.curves.roots import MULTIPLE, ROOT_PSI, ROOT_RADIUS, crossings, value_at
+from workhold.kernels.curves.roots import MULTIPLE, ROOT_PSI, ROOT_RADIUS, crossings, value_turned
 
 
 def sample_places(low: float, high: float, count: int) -> np.ndarray:
@@ -398,7 +398,9 @@ def test_a_root_s_radius_holds_wherever_newtons_method_stops():
 
     def first_guess(low, high, f_low, f_high, one, two, features, curves, mode, target, start):
         psi = min(max(low + 0.1 * (high - low), low), high) if random.random() < 0.5 else start
-        value_one, value_two = (value_at(psi, curve, features, curves, mode)[0] for curve in (one, two))
+        value_one, value_two = (
+            value_turned(psi, cos(psi), sin(psi), curve, features, curves, mode)[0] for curve in (one, two)
+        )
         return psi, abs(value_two - value_one - target)
 
     early = changed(crossings, solve=first_guess)

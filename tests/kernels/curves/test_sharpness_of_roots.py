@@ -31,7 +31,7 @@ from workhold.kernels.base.tables import (
 from workhold.kernels.chord.stretches import STRETCH_LENGTH
 from workhold.kernels.contact.record import RECORD_LENGTH
 from workhold.kernels.curves import moving_pegs, roots, sliding_pairs
-from workhold.kernels.curves.block_work import STATISTICS, block_work
+from workhold.kernels.curves.block_work import STATISTICS, block_work, make_block_space
 from workhold.search.toolkit_search import ANY_ERROR
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
@@ -131,7 +131,8 @@ def moving_peg_off(name: str) -> Callable[[Random, Kernel], float]:
             np.zeros((0, STRETCH_LENGTH)),
         )
         given = features, curves, Lattice(1.0, 1.0, 0.0), limits(length, 0.0), False
-        work, out = block_work(*given, np.zeros(STATISTICS, np.int64)), np.zeros((16, RECORD_LENGTH))
+        work = block_work(*given, np.zeros(STATISTICS, np.int64), make_block_space(1, 1, 1))
+        out = np.zeros((16, RECORD_LENGTH))
         work.pegs[:] = 0.0
         form(out, 0, (0.0, 1.0, 0.0), reach, work)
         error, gap = told[:2]

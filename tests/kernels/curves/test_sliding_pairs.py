@@ -8,7 +8,7 @@ from random import Random
 import numpy as np
 import pytest
 
-from chord_examples import arc_row, line_row, off_carrier, overshoot
+from chord_examples import arc_row, line_row, off_carrier, overshoot, sliding_pairs_between
 from workhold.kernels.base.feature import point_at
 from workhold.kernels.base.tables import COLUMN_STEP, HEAD, ROW_STEP, TAIL, SlidingPairs
 from workhold.kernels.contact.record import (
@@ -20,7 +20,7 @@ from workhold.kernels.contact.record import (
     PEG_X,
     PEG_Y,
 )
-from workhold.kernels.curves.sliding_pairs import place_sliding_pair, placed_pair, sliding_pairs_between
+from workhold.kernels.curves.sliding_pairs import place_sliding_pair, placed_pair
 
 
 def random_sliding_pair(random: Random) -> tuple[np.ndarray, np.ndarray, float]:

@@ -120,7 +120,7 @@ def test_a_bound_that_is_wrong_is_found(monkeypatch: pytest.MonkeyPatch) -> None
     (fixture,) = decided(row)
     left, _, right = np.linalg.svd(in_doubles.jacobians(row, FEATURES, SETTING))
     frame = np.stack([left[0], right[0].T])
-    roots, space = np.empty((4, RECORD_LENGTH)), in_doubles.work_space()
+    roots, space = np.empty((4, RECORD_LENGTH)), in_doubles.make_newton_space()
     found = in_doubles.solutions_in.py_func(row[0], FEATURES, SETTING, frame, space, roots)
     assert found > 0 and (np.abs(roots[:found, PSI] - fixture) <= roots[:found, 17] + 1e-15).any()
     monkeypatch.setattr(in_doubles, "spread", still)

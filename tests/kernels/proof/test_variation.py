@@ -64,4 +64,7 @@ def test_pegs_in_a_row_along_a_rounded_top_are_dropped_at_once(monkeypatch: pyte
     left, _, right = np.linalg.svd(in_doubles.jacobians(row[None], features, SETTING)[0])
     frame, roots = np.stack([left, right.T]), np.empty((4, RECORD_LENGTH))
     monkeypatch.setattr(in_doubles, "MOST_PARTS", 2)
-    assert in_doubles.solutions_in.py_func(row, features, SETTING, frame, in_doubles.work_space(), roots) == 0
+    assert (
+        in_doubles.solutions_in.py_func(row, features, SETTING, frame, in_doubles.make_newton_space(), roots)
+        == 0
+    )

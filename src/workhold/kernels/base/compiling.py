@@ -1,219 +1,265 @@
-"""How kernels are compiled, and where the compiled code is kept.
+"""Mark the functions that are compiled, and call those that Python calls.
 
-Where the package was built with a library of all kernels, of exactly these sources, they come from there
-(``built``) and numba is not needed. Elsewhere numba compiles them on first use.
+Functions marked :func:`compiled` are called by Python, those marked :func:`inner` only by other kernels. A
+room of kernels (``base``, ``curves``, ``seating``, ...) is compiled into one shared library by
+:mod:`workhold.kernels.base.building`: with the package when a wheel is built, or once into the user's cache.
+Numba compiles them; it is not needed where the libraries are there.
 
-Numba's disk cache looks only at the file of the function it keeps, so a kernel that calls a changed kernel of
-another file would be served stale. The cache therefore lives in a folder named by a hash of all the package's
-sources: any change of any source starts a new folder. Where no folder can be written, kernels are compiled
-anew in every process.
+Annotations are the signatures: a kernel takes and returns numbers, and takes arrays and named tuples of them.
+It makes no array: whoever calls it makes room for what it writes.
+
+Glossary
+--------
+entry : the function of a library that reads the arguments of a kernel from words of eight bytes, calls the
+    kernel, and writes what it returns to the first of these words.
 """
 
 from __future__ import annotations
 
 import os
-import shutil
-import sys
-import tempfile
-from collections.abc import Callable, Sequence
-from functools import cache
-from hashlib import sha256
-from importlib.util import find_spec
-from pathlib import Path
-from typing import Any, TypeVar, cast
+from collections.abc import Callable, Iterator
+from ctypes import addressof, c_char
+from functools import cached_property, update_wrapper
+from inspect import signature
+from struct import Struct
+from typing import Annotated, Any, ClassVar, TypeVar, cast, get_args, get_origin, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
 
-from workhold.errors import InputError
-from workhold.kernels.base.built import KERNELS, Library, library_name, source_hash
-from workhold.limits import refuse_little_space
-
 Function = TypeVar("Function", bound=Callable[..., Any])
-# What kernels take: reals, whole numbers, and verdicts or flags.
+Record = TypeVar("Record", bound=tuple[Any, ...])
+# Arrays of real numbers, of whole numbers, and of verdicts or flags, of any number of dimensions.
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 ByteArray = NDArray[np.int8]
+# The same of one, two, three and four dimensions, as Python hands them over.
+Vector = Annotated[Array, 1]
+Matrix = Annotated[Array, 2]
+Stack = Annotated[Array, 3]
+Stacks = Annotated[Array, 4]
+IntVector = Annotated[IntArray, 1]
+IntMatrix = Annotated[IntArray, 2]
+ByteVector = Annotated[ByteArray, 1]
+ByteMatrix = Annotated[ByteArray, 2]
+ByteStack = Annotated[ByteArray, 3]
 
-FOLDERS_KEPT = 3
-# Bytes of address space: with less, numba and its compiler end the process by a signal or an own error.
-COMPILER_SPACE = 1_000_000_000
-# "numba" compiles on first use whatever was built; "building" besides neither reads nor keeps machine code;
-# "callable" makes kernels that only kernels call callable from Python as well, for tests, and takes longer.
+# What numba is told of all kernels: a division by zero gives an infinity or NaN, as in NumPy.
+OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True}
+# "building" while kernels are compiled into a library; "callable" where tests call inner kernels, too.
 MODE = os.environ.get("WORKHOLD_KERNELS", "")
-ALL_CALLABLE = MODE == "callable"
-# Options of numba for kernels that make arrays, for those that make none, and besides for all of them, which
-# no C calls, and for those that only kernels call.
-MAKING_ARRAYS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
-WITHOUT_COUNTS: dict[str, Any] = {**MAKING_ARRAYS, "_nrt": False}
-NO_CALLBACK: dict[str, Any] = {"no_cfunc_wrapper": True}
-ONLY_INNER: dict[str, Any] = {"no_cpython_wrapper": True, **NO_CALLBACK}
-# The numba whose inner parts ``lean`` builds on. Any other compiles in its own way, in twice the time.
-LEAN_NUMBA = "0.68."
-# The modules and kernels that two processes compile last for a search: where both are stored, all are.
-LAST_OF_SEARCH = ("canonical_form.contacts_of", "quality.figures")
-
-
-def built_library() -> Library | None:
-    """The library of kernels built from exactly these sources for this kind of machine, if there is one.
-
-    Raises
-    ------
-    InputError
-        When there is none, nor numba to compile them with, nor memory for it.
-    """
-    if MODE not in ("numba", "building", "callable"):
-        try:
-            library = Library(KERNELS / library_name())
-        except OSError:
-            pass
-        else:
-            if library.source_hash == source_hash():
-                return library
-    if find_spec("numba") is None:
-        raise InputError(
-            "This installation has no compiled kernels for this kind of machine, and no numba to compile "
-            "them with; "
-            "install workhold[numba]."
-        )
-    refuse_little_space(
-        COMPILER_SPACE, "compiling the kernels", "raise the limit, or install a wheel with compiled kernels"
-    )
-    return None
-
-
-LIBRARY = built_library()
-
-
-def cache_key() -> str:
-    """Hash of the sources, of where they are, and of the versions that compile them: the same code has the
-    same key."""
-    import numba
-
-    known = f"{sys.version} numba {numba.__version__} {KERNELS} {ALL_CALLABLE} {source_hash()}"
-    return sha256(known.encode()).hexdigest()[:20]
-
-
-def user_cache() -> Path:
-    """The folder for all of workhold's compiled code: ``$WORKHOLD_CACHE_DIR`` or ``workhold`` in the user's
-    cache."""
-    named = os.environ.get("WORKHOLD_CACHE_DIR")
-    if named:
-        return Path(named)
-    base = os.environ.get("XDG_CACHE_HOME")
-    return Path(base or Path("~/.cache").expanduser()) / "workhold"
-
-
-@cache
-def cache_folder() -> Path | None:
-    """The folder for the compiled code of exactly these sources, or None where nothing can be written or is
-    to be."""
-    if MODE == "building":
-        return None
-    try:
-        folder = user_cache() / f"kernels-{cache_key()}"
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            pass
-    except (OSError, RuntimeError):
-        return None
-    drop_old_folders(folder)
-    return folder
-
-
-def drop_old_folders(current: Path) -> None:
-    """Removes the compiled code of sources long replaced, keeping the newest few folders."""
-    try:
-        others = [p for p in current.parent.glob("kernels-*") if p != current]
-        others.sort(key=lambda p: p.stat().st_mtime, reverse=True)
-    except OSError:
-        return
-    for folder in others[FOLDERS_KEPT:]:
-        shutil.rmtree(folder, ignore_errors=True)
-
-
-def is_first_run() -> bool:
-    """Whether the search's kernels of these sources still have to be compiled (a matter of a quarter of a
-    minute or so)."""
-    return not are_stored(LAST_OF_SEARCH)
-
-
-def are_stored(kernels: Sequence[str]) -> bool:
-    """Whether kernels, named as "module.kernel", need not be compiled any more."""
-    if LIBRARY is not None:
-        return True
-    folder = cache_folder()
-    return folder is not None and set(kernels) <= {
-        path.name.partition("-")[0] for path in folder.rglob("*.nbi")
-    }
-
-
-def compiled(function: Function) -> Function:
-    """Compiles a kernel that Python calls on first use, without the interpreter lock, and keeps the machine
-    code on disk if possible; it makes and returns no array.
-
-    Division by zero gives an infinity or NaN, as in NumPy. Kernels avoid what is slow to compile: assignments
-    of slices, and long kernels that call other long kernels (every caller is optimized together with all it
-    calls).
-
-    A kernel counts no references to arrays, for its caller holds all it looks at. A count is an atomic
-    addition and every view of a row would take two: they were half of a search's time.
-    """
-    return called_by_python(function, WITHOUT_COUNTS)
-
-
-def compiled_making_arrays(function: Function) -> Function:
-    """Compiles a kernel like :func:`compiled`, but one that makes or returns arrays, and so counts references
-    to arrays: it makes room, and leaves loops to kernels that do not."""
-    return called_by_python(function, MAKING_ARRAYS)
+LETTERS = {int: "q", float: "d", bool: "?7x"}
+# Where kernels are compiled: all inner functions.
+INNER: list[Any] = []
 
 
 def inner(function: Function) -> Function:
-    """Compiles a kernel like :func:`compiled` that only kernels call: its code becomes part of theirs, and is
-    not kept or made callable itself."""
-    return called_by_kernels(function, WITHOUT_COUNTS)
+    """Mark a function that only kernels call; it stays a plain function but where kernels are compiled.
 
-
-def inner_making_arrays(function: Function) -> Function:
-    """Compiles a kernel like :func:`compiled_making_arrays` that only kernels call."""
-    return called_by_kernels(function, MAKING_ARRAYS)
-
-
-def called_by_python(function: Function, options: dict[str, Any]) -> Function:
-    """The kernel of the library, or one of numba whose machine code is kept on disk if possible."""
-    if LIBRARY is not None:
-        return cast(Function, LIBRARY.checked(function))
-    import numba
-
-    kernel: Any = numba.njit(**options, **NO_CALLBACK, **lean_compiler("OuterCompiler"))(function)
-    folder = cache_folder()
-    if folder is not None:
-        from workhold.kernels.base.storing import LateCache
-
-        kernel._cache = LateCache(function, folder)
-    return cast(Function, kernel)
-
-
-def called_by_kernels(function: Function, options: dict[str, Any]) -> Function:
-    """A kernel of numba that only kernels call; the function itself where they are in the library."""
-    if LIBRARY is not None:
-        return function
-    if ALL_CALLABLE:
-        return called_by_python(function, options)
-    import numba
-
-    return cast(Function, numba.njit(**options, **ONLY_INNER, **lean_compiler("InnerCompiler"))(function))
-
-
-def lean_compiler(name: str) -> dict[str, Any]:
-    """The option of numba that names one of the compilers of ``lean``, for the numba they were written for.
-
-    None for a wheel, which is built once: numba's own way gives code that is up to some per cent faster.
+    Kernels avoid what is slow to compile: assignments of slices, and long kernels that call other long ones.
     """
+    if MODE not in ("building", "callable"):
+        return function
     import numba
 
-    if MODE == "building" or not numba.__version__.startswith(LEAN_NUMBA):
-        return {}
-    from workhold.kernels.base import lean
+    INNER.append(numba.njit(**OPTIONS, cache=MODE == "callable")(function))
+    return cast(Function, INNER[-1])
 
-    return {"pipeline_class": getattr(lean, name)}
+
+def compiled(function: Function) -> Function:
+    """Mark a function that Python calls, without the interpreter's lock."""
+    return cast(Function, Kernel(function))
+
+
+class Kernel:
+    """A compiled function that Python calls.
+
+    Its library is loaded at the first call, and built before that where there is none.
+
+    Raises
+    ------
+    TypeError
+        At a call with anything else than the function's annotations say.
+    """
+
+    # All there are, by room and name.
+    all: ClassVar[dict[str, dict[str, Kernel]]] = {}
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        update_wrapper(self, function)
+        self.name, self.function = function.__name__, function
+        self.room = function.__module__.rpartition(".")[0].rpartition(".")[2]
+        Kernel.all.setdefault(self.room, {})[function.__name__] = self
+
+    @cached_property
+    def arguments(self) -> dict[str, Any]:
+        """The type of each argument, by its name."""
+        return {name: self.hints[name] for name in signature(self.function).parameters}
+
+    @cached_property
+    def hints(self) -> dict[str, Any]:
+        """The types that the function's annotations name."""
+        return get_type_hints(self.function, include_extras=True)
+
+    @cached_property
+    def results(self) -> tuple[type[Any], ...]:
+        """The types of the numbers that are returned."""
+        result = self.hints["return"]
+        if result is type(None):
+            return ()
+        return get_args(result) if get_origin(result) is tuple else (result,)
+
+    @cached_property
+    def takers(self) -> list[Callable[[Any, list[Any]], None]]:
+        """Functions that append the words of an argument to a list."""
+        return [taker(kind, f"{self.name}: {name}") for name, kind in self.arguments.items()]
+
+    @cached_property
+    def words(self) -> Struct:
+        """The layout of the words of a call."""
+        return Struct("=" + "".join(letters(kind) for kind in (*self.results, *self.arguments.values())))
+
+    @cached_property
+    def returned(self) -> Struct:
+        """The layout of the words of the result."""
+        return Struct("=" + "".join(letters(kind) for kind in self.results))
+
+    @cached_property
+    def entry(self) -> Callable[[int], None]:
+        """The entry of this kernel in the library of its room."""
+        from workhold.kernels.base.libraries import load_entry
+
+        return load_entry(self.room, self.name)
+
+    def __call__(self, *values: Any) -> Any:
+        if len(values) != len(self.takers):
+            raise TypeError(f"{self.name} takes {len(self.takers)} arguments, not {len(values)}.")
+        taken: list[Any] = [0] * len(self.results)
+        for take, value in zip(self.takers, values, strict=True):
+            take(value, taken)
+        words = bytearray(self.words.pack(*taken))
+        self.entry(addressof(c_char.from_buffer(words)))
+        found = self.returned.unpack_from(words)
+        return found if len(found) > 1 else found[0] if found else None
+
+
+def fields(record: Any) -> list[tuple[str, Any]] | None:
+    """Return names and types of the fields of a named tuple or a tuple, None for any other type."""
+    if get_origin(record) is tuple:
+        return [(str(number), kind) for number, kind in enumerate(get_args(record))]
+    return list(get_type_hints(record, include_extras=True).items()) if hasattr(record, "_fields") else None
+
+
+def letters(kind: Any) -> str:
+    """Return the letters of :mod:`struct` for the words of a type; an array is its address and its shape."""
+    if (parts := fields(kind)) is not None:
+        return "".join(letters(part) for _, part in parts)
+    return LETTERS[kind] if kind in LETTERS else "q" * (1 + dimensions(kind))
+
+
+def dimensions(kind: Any) -> int:
+    """Return how many dimensions an annotated array has."""
+    return int(get_args(kind)[1])
+
+
+def element(kind: Any) -> np.dtype[Any]:
+    """Return the type of the elements of an annotated array."""
+    return np.dtype(get_args(get_args(get_args(kind)[0])[1])[0])
+
+
+def taker(kind: Any, name: str) -> Callable[[Any, list[Any]], None]:
+    """Return a function that appends the words of an argument of a type to a list."""
+    if (parts := fields(kind)) is not None:
+        return record_taker([taker(part, f"{name}.{field}") for field, part in parts], name)
+    return number_taker(kind, name) if kind in LETTERS else array_taker(kind, name)
+
+
+def number_taker(kind: type[Any], name: str) -> Callable[[Any, list[Any]], None]:
+    """Return the taker of a number, see :func:`taker`."""
+    wanted = {int: (int, np.integer), float: (float, int, np.floating, np.integer), bool: (bool, np.bool_)}[
+        kind
+    ]
+
+    def take(value: Any, words: list[Any]) -> None:
+        if not isinstance(value, wanted):
+            raise TypeError(f"{name} must be {kind.__name__}, not {type(value).__name__}.")
+        words.append(value)
+
+    return take
+
+
+def array_taker(kind: Any, name: str) -> Callable[[Any, list[Any]], None]:
+    """Return the taker of an array, see :func:`taker`."""
+    wanted, count = element(kind), dimensions(kind)
+
+    def take(value: Any, words: list[Any]) -> None:
+        if isinstance(value, Handed) and value.ndim == count and value.dtype == wanted:
+            words += value.words
+            return
+        if not isinstance(value, np.ndarray) or value.ndim != count or value.dtype != wanted:
+            raise TypeError(f"{name} must be a C-contiguous array of {wanted} with {count} dimensions.")
+        words.append(find_address(value, name))
+        words += value.shape
+
+    return take
+
+
+def find_address(array: np.ndarray[Any, Any], name: str = "an array") -> int:
+    """Return where the elements of an array begin.
+
+    Raises
+    ------
+    TypeError
+        When they do not lie one after the other.
+    """
+    if not (array.flags.c_contiguous and array.flags.aligned):
+        raise TypeError(f"{name} must be a C-contiguous array of {array.dtype} with {array.ndim} dimensions.")
+    try:
+        return addressof(c_char.from_buffer(array.data))
+    except (TypeError, ValueError):
+        # What cannot be written to, and what is empty.
+        return int(array.ctypes.data)
+
+
+def record_taker(
+    takers: list[Callable[[Any, list[Any]], None]], name: str
+) -> Callable[[Any, list[Any]], None]:
+    """Return the taker of a named tuple or a tuple, see :func:`taker`."""
+
+    def take(value: Any, words: list[Any]) -> None:
+        if not isinstance(value, tuple) or len(value) != len(takers):
+            raise TypeError(f"{name} must be a record of {len(takers)}, not {type(value).__name__}.")
+        for take_part, part in zip(takers, value, strict=True):
+            take_part(part, words)
+
+    return take
+
+
+class Handed:
+    """An array whose address is looked up once, for calls that are many and short; see :func:`hand_over`."""
+
+    __slots__ = ("array", "dtype", "ndim", "words")
+
+    def __init__(self, array: np.ndarray[Any, Any]) -> None:
+        self.array, self.dtype, self.ndim = array, array.dtype, array.ndim
+        self.words: list[Any] = [find_address(array), *array.shape]
+
+
+def hand_over(record: Record) -> Record:
+    """Return a named tuple with the same fields, of which kernels know the addresses of all arrays."""
+    made = [
+        Handed(value)
+        if isinstance(value, np.ndarray)
+        else hand_over(value)
+        if isinstance(value, tuple)
+        else value
+        for value in record
+    ]
+    kind: Any = type(record)
+    return cast(Record, kind(*made) if hasattr(record, "_fields") else kind(made))
+
+
+def kernels_of(room: str) -> Iterator[Kernel]:
+    """Yield the kernels of a room, in the order of their names."""
+    for _, kernel in sorted(Kernel.all.get(room, {}).items()):
+        yield kernel

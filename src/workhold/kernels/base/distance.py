@@ -20,7 +20,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from workhold.kernels.base.compiling import Array, IntArray, compiled, compiled_making_arrays, inner
+from workhold.kernels.base.compiling import (
+    Array,
+    IntVector,
+    Matrix,
+    Vector,
+    compiled,
+    inner,
+)
 from workhold.kernels.base.feature import (
     AXIS_X,
     AXIS_Y,
@@ -61,13 +68,18 @@ def outline_distance(x: float, y: float, rows: Array) -> float:
     return best
 
 
-@compiled_making_arrays
 def outline_distances(points: Array, rows: Array) -> Array:
-    """Distances in mm from (M, 2) points to the nearest of (N, 10) segments, shape (M,)."""
+    """Return the distances in mm from (M, 2) points to the nearest of (N, 10) segments, shape (M,)."""
     out = np.empty(points.shape[0])
+    write_outline_distances(points, rows, out)
+    return out
+
+
+@compiled
+def write_outline_distances(points: Matrix, rows: Matrix, out: Vector) -> None:
+    """Write the distances of :func:`outline_distances` to (M,) numbers."""
     for k in range(points.shape[0]):
         out[k] = outline_distance(points[k, 0], points[k, 1], rows)
-    return out
 
 
 @inner
@@ -95,8 +107,15 @@ def winding_angle(x: float, y: float, row: Array) -> float:
 
 
 @compiled
-def turns_around(x: float, y: float, rows: Array) -> float:
-    """Angle in radians that (N, 10) segments, run along their directions, turn around a point not on them."""
+def turns_around(x: float, y: float, rows: Matrix) -> float:
+    """Return the angle in radians of :func:`turning_about`."""
+    return turning_about(x, y, rows)
+
+
+@inner
+def turning_about(x: float, y: float, rows: Array) -> float:
+    """Return the angle in radians that (N, 10) segments, run along their directions, turn around a point not
+    on them."""
     total = 0.0
     for k in range(rows.shape[0]):
         total += winding_angle(x, y, rows[k])
@@ -104,10 +123,10 @@ def turns_around(x: float, y: float, rows: Array) -> float:
 
 
 @compiled
-def is_inside(x: float, y: float, rows: Array) -> bool:
+def is_inside(x: float, y: float, rows: Matrix) -> bool:
     """Whether a point not on the outline lies in the material bounded by (N, 10) segments, material on the
     left."""
-    return turns_around(x, y, rows) > pi
+    return turning_about(x, y, rows) > pi
 
 
 # Two straight pieces whose directions have a smaller cross product meet at an end of one, if at all.
@@ -157,7 +176,7 @@ def piece_distance(start: Array, end: Array, row: Array) -> float:
 
 
 @compiled
-def piece_distances(starts: Array, ends: Array, rows: Array, distances: Array) -> None:
+def piece_distances(starts: Matrix, ends: Matrix, rows: Matrix, distances: Vector) -> None:
     """Distances in mm, which ``distances`` (M,) receives, from straight pieces, given by their ends (M, 2)
     each, to the nearest of (N, 10) segments."""
     for k in range(starts.shape[0]):
@@ -181,9 +200,9 @@ class SweptTree(NamedTuple):
     nodes : (2 L, 5) of each node x0, y0, x1, y1 and the largest radius; the first is none.
     """
 
-    rows: Array
-    radius: Array
-    nodes: Array
+    rows: Matrix
+    radius: Vector
+    nodes: Matrix
 
 
 @inner
@@ -196,12 +215,12 @@ def node_bound(x0: float, y0: float, x1: float, y1: float, node: Array) -> float
 
 @compiled
 def nearest_swept(
-    starts: Array,
-    ends: Array,
+    starts: Matrix,
+    ends: Matrix,
     tree: SweptTree,
-    waiting: IntArray,
-    least: Array,
-    which: IntArray,
+    waiting: IntVector,
+    least: Vector,
+    which: IntVector,
 ) -> None:
     """The least distance less radius in mm, and the piece it is to, from straight pieces to what is swept.
 

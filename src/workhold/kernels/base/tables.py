@@ -48,7 +48,14 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from workhold.kernels.base.compiling import Array, ByteArray, IntArray
+from workhold.kernels.base.compiling import (
+    ByteMatrix,
+    ByteStack,
+    IntMatrix,
+    IntVector,
+    Matrix,
+    Vector,
+)
 
 
 class Precision(NamedTuple):
@@ -66,10 +73,10 @@ class Precision(NamedTuple):
         error of interest at other orientations; infinite where all are.
     """
 
-    faces: IntArray
-    doubts: Array
-    gives: Array
-    probes: Array
+    faces: IntVector
+    doubts: Vector
+    gives: Vector
+    probes: Matrix
     peg: float
     face: float
     most: float
@@ -86,9 +93,9 @@ class NearSpots(NamedTuple):
     triples : (M, M, M) 1 for three that may, in any order; nothing where that is not kept.
     """
 
-    starts: IntArray
-    joined: ByteArray
-    triples: ByteArray
+    starts: IntVector
+    joined: ByteMatrix
+    triples: ByteStack
 
 
 class Features(NamedTuple):
@@ -104,8 +111,8 @@ class Features(NamedTuple):
     near : where three standing pegs may touch.
     """
 
-    loose: Array
-    rows: Array
+    loose: Matrix
+    rows: Matrix
     standing: tuple[int, int]
     moving: tuple[int, int]
     precision: Precision
@@ -176,16 +183,16 @@ class Curves(NamedTuple):
     """Chord curves: whole numbers (C, 7), reals (C, 16), and their stretches (S, 13), see
     ``chord.stretches``."""
 
-    integers: IntArray
-    reals: Array
-    stretches: Array
+    integers: IntMatrix
+    reals: Matrix
+    stretches: Matrix
 
 
 class SlidingPairs(NamedTuple):
     """Sliding pairs: whole numbers (P, 7) and reals (P, 5)."""
 
-    integers: IntArray
-    reals: Array
+    integers: IntMatrix
+    reals: Matrix
 
 
 LOW, HIGH, VALUE_LOW, SLOPE_LOW, VALUE_HIGH, SLOPE_HIGH = range(6)

@@ -36,7 +36,7 @@ from __future__ import annotations
 from math import atan2, cos, hypot, pi, sin, sqrt
 
 from workhold.conventions import EXACT, SAME_CENTER
-from workhold.kernels.base.compiling import Array, compiled, inner
+from workhold.kernels.base.compiling import Array, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y, is_shallow
 from workhold.kernels.base.interval import (
     TURN,
@@ -107,7 +107,7 @@ def touching_side(a: Array, b: Array, d: float) -> float:
     return -1.0 if abs(apart + d - a[RADIUS] - b[RADIUS]) <= CLOSER * EXACT else 0.0
 
 
-@compiled
+@inner
 def are_concentric(a: Array, b: Array) -> bool:
     """Whether two features are arcs of one centre."""
     return a[IS_ARC] != 0.0 and b[IS_ARC] != 0.0 and hypot(a[X] - b[X], a[Y] - b[Y]) <= SAME_CENTER

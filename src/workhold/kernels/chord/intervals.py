@@ -18,7 +18,7 @@ from math import acos, atan2, cos, hypot, pi, sin, sqrt
 import numpy as np
 
 from workhold.conventions import EXACT, PARALLEL, SQUARE
-from workhold.kernels.base.compiling import Array, inner, inner_making_arrays
+from workhold.kernels.base.compiling import Array, inner
 from workhold.kernels.base.feature import (
     AXIS_X,
     AXIS_Y,
@@ -43,6 +43,9 @@ from workhold.kernels.chord.evaluation import chord, parameter_on
 from workhold.kernels.chord.shallow import arcs_cosine, is_turned, tangent_off
 
 MOST_EVENTS = 16
+# The column of an event that says whether the branch exists behind it.
+ALIVE = 3
+MOST_RANGES = 2 * (MOST_EVENTS + 1)
 # Kinds of events: an end of a feature is reached (ranges are merged over it when the chord exists on both
 # sides), the chord is a tangency, or ranges are cut for another reason.
 END, TANGENCY, CUT = 0.0, 1.0, 2.0
@@ -307,29 +310,26 @@ def is_alive(
     return high > low and abs(c[2] * c[5] - c[3] * c[4]) < STEADY
 
 
-@inner_making_arrays
-def chord_intervals(a: Array, b: Array, d: float) -> Array:
-    """All ranges of direction of a chord of length d from feature a to feature b.
+@inner
+def write_chord_intervals(a: Array, b: Array, d: float, events: Array, out: Array) -> int:
+    """Write all ranges of direction of a chord of length d from feature a to feature b, and return how many
+    there are.
 
     Parameters
     ----------
     a, b : (8,) feature rows.
     d : length in mm, positive.
-
-    Returns
-    -------
-    (N, 5) array
-        Columns: lowest and highest alpha in radians (lowest in [0, 4 pi)), branch, and for both alphas a
-        bound of its error. It is in radians when the chord is a tangency there, 0 when it is not. Parallel
-        lines give none: their chords are sliding pairs. Nor do concentric arcs whose chord lies on a line
-        through the centre: their contacts share one line of action.
+    events : (MOST_EVENTS, 4) work space.
+    out : (MOST_RANGES, 5) receives the ranges. Columns: lowest and highest alpha in radians (lowest in
+        [0, 4 pi)), branch, and for both alphas a bound of its error. It is in radians when the chord is a
+        tangency there, 0 when it is not. Parallel lines give none: their chords are sliding pairs. Nor do
+        concentric arcs whose chord lies on a line through the centre: their contacts share one line of
+        action.
     """
     if are_parallel(a, b) or share_one_line(a, b, d):
-        return np.empty((0, 5))
-    events = np.empty((MOST_EVENTS, 3))
+        return 0
     count = collect_events(events, a, b, d)
     branches = 1 if a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0 else 2
-    out = np.empty((2 * (count + 1), 5))
     found = int(np.int64(0))
     for k in range(branches):
         branch = 1.0 if k == 0 else -1.0
@@ -339,23 +339,22 @@ def chord_intervals(a: Array, b: Array, d: float) -> Array:
                 out[found, 3], out[found, 4] = 0.0, 0.0
                 found += 1
             continue
-        found = branch_intervals(events, count, a, b, d, branch, out, found)
-    return out[:found]
+        found = write_branch_intervals(events, count, a, b, d, branch, out, found)
+    return found
 
 
-@inner_making_arrays
-def branch_intervals(
+@inner
+def write_branch_intervals(
     events: Array, count: int, a: Array, b: Array, d: float, branch: float, out: Array, found: int
 ) -> int:
-    """Writes the ranges of one branch to ``out`` from row ``found`` on, and returns the new number of
-    rows."""
-    alive = np.empty(count, np.bool_)
+    """Write the ranges of one branch to ``out`` from row ``found`` on, and return the new number of rows."""
     start = -1
     for i in range(count):
         low = events[i, 0]
         high = events[i + 1, 0] if i + 1 < count else events[0, 0] + TURN
-        alive[i] = is_alive(a, b, d, branch, low, high, events[i, 1], events[(i + 1) % count, 1])
-        if not alive[i]:
+        alive = is_alive(a, b, d, branch, low, high, events[i, 1], events[(i + 1) % count, 1])
+        events[i, ALIVE] = 1.0 if alive else 0.0
+        if not alive:
             start = i
     # Begin behind a gap, so that no range is split where the circle of directions is cut.
     first = (start + 1) % count
@@ -365,7 +364,7 @@ def branch_intervals(
         lap = TURN if first + step >= count else 0.0
         low = events[i, 0] + lap
         high = (events[i + 1, 0] if i + 1 < count else events[0, 0] + TURN) + lap
-        if not alive[i]:
+        if events[i, ALIVE] == 0.0:
             open_range = False
             continue
         if open_range and events[i, 1] == END:

@@ -41,10 +41,7 @@ from __future__ import annotations
 
 from math import atan2, hypot, inf
 
-import numpy as np
-
-from workhold.kernels.base.arrays import with_room
-from workhold.kernels.base.compiling import Array, inner, inner_making_arrays
+from workhold.kernels.base.compiling import Array, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y, is_shallow
 from workhold.kernels.base.interval import (
     Interval,
@@ -306,7 +303,7 @@ def write_stretch(row: Array, a: Array, b: Array, curve: Array, low: float, high
     return row[SPEED] <= max(4.0 * typical + 4.0 * curve[LENGTH], MOST_MOTION * curve[LENGTH] / (high - low))
 
 
-@inner_making_arrays
+@inner
 def add_parts(
     out: Array,
     count: int,
@@ -318,9 +315,9 @@ def add_parts(
     at_low: bool,
     error: float,
     sign: float,
-) -> tuple[Array, int]:
-    """Appends the parts of the last stretch, in order, which begins (``at_low``) or ends at a tangency known
-    to ``error``."""
+) -> int:
+    """Append the parts of the last stretch, in order, which begins (``at_low``) or ends at a tangency known
+    to ``error``, and return the new number of stretches, -1 when there is no room."""
     width, number = right - left, 1
     last = max(LAST_OF_LINE if a[IS_ARC] + b[IS_ARC] == 1.0 else LAST_OF_ARCS, 8.0 * error)
     while width > last:
@@ -329,7 +326,8 @@ def add_parts(
     out[count - 1, PARTS] = number
     low = left
     for k in range(number):
-        out = with_room(out, count)
+        if count == out.shape[0]:
+            return -1
         # The parts grow away from the tangency.
         high = (
             left + (right - left) * SHORTER ** -(number - 1.0 - k)
@@ -341,20 +339,21 @@ def add_parts(
         write_stretch(out[count], a, b, curve, low, high, sign)
         low = high
         count += 1
-    return out, count
+    return count
 
 
-@inner_making_arrays
-def add_stretches(out: Array, count: int, a: Array, b: Array, curve: Array) -> tuple[Array, int]:
-    """Appends the stretches of a curve, in order, to ``out`` (grown as needed)."""
+@inner
+def add_stretches(out: Array, count: int, a: Array, b: Array, curve: Array, stack: Array) -> int:
+    """Append the stretches of a curve, in order, to ``out``, and return their new number, -1 when there is no
+    room; ``stack`` is (DEPTH,) work space."""
     low, high = curve[FROM], curve[TO]
     c = chord(a, b, curve[LENGTH], (low + high) / 2.0, curve[BRANCH])
     sign = 1.0 if c[2] * c[5] - c[3] * c[4] > 0.0 else -1.0
-    stack = np.empty(DEPTH)
     depth = 0
     left, right = low, high
     while True:
-        out = with_room(out, count)
+        if count == out.shape[0]:
+            return -1
         width = right - left
         good = write_stretch(out[count], a, b, curve, left, right, sign)
         at_low = left == low and curve[TANGENT_FROM] > 0.0
@@ -363,7 +362,7 @@ def add_stretches(out: Array, count: int, a: Array, b: Array, curve: Array) -> t
             done = (good and width <= WIDEST) or width <= NARROWEST
         else:
             done = width <= BESIDE if at_low != at_high else width <= LAST
-        if not done and depth < DEPTH:
+        if not done and depth < stack.shape[0]:
             stack[depth] = right
             depth += 1
             if at_low and not at_high:
@@ -376,9 +375,9 @@ def add_stretches(out: Array, count: int, a: Array, b: Array, curve: Array) -> t
         count += 1
         if at_low != at_high:
             error = curve[TANGENT_FROM] if at_low else curve[TANGENT_TO]
-            out, count = add_parts(out, count, a, b, curve, left, right, at_low, error, sign)
-        if depth == 0:
-            return out, count
+            count = add_parts(out, count, a, b, curve, left, right, at_low, error, sign)
+        if depth == 0 or count < 0:
+            return count
         left = right
         depth -= 1
         right = stack[depth]

@@ -17,8 +17,17 @@ from typing import NamedTuple
 import numpy as np
 
 from workhold.conventions import GAP_SLACK, LEAST_CLOSURE, NO_REACTION
-from workhold.kernels.base.arrays import grown
-from workhold.kernels.base.compiling import Array, IntArray, compiled, compiled_making_arrays, inner
+from workhold.kernels.base.capacity import Capacity
+from workhold.kernels.base.compiling import (
+    Array,
+    IntArray,
+    IntMatrix,
+    IntVector,
+    Matrix,
+    Stack,
+    compiled,
+    inner,
+)
 
 # Columns of a clamp: what locators take up per unit of force on its face (3), its push per unit of its own
 # force, how far the former may be off, and the place of its tip in mm.
@@ -34,6 +43,7 @@ SEAT, KIND, CLAMPS, HOLES, COUNT, FREEDOM, MARGIN, OPEN = 0, 1, 2, 4, 6, 7, 8, 9
 PAIR_LENGTH = 10
 # Of pairs whose freedom (in degrees) and then margin differ by less, the first is taken.
 SAME_FREEDOM, SAME_MARGIN = 1e-4, 1e-9
+PAIR_CAPACITY = Capacity(64)
 ALONG_X = 2
 # Rounding of an entry, besides what it may be off.
 ROUNDING = 1e-14
@@ -49,10 +59,10 @@ class Clamps(NamedTuple):
     holes : (H, 5) in which they may be bolted, each clamp's nearest first.
     """
 
-    starts: IntArray
-    integers: IntArray
-    reals: Array
-    holes: Array
+    starts: IntVector
+    integers: IntMatrix
+    reals: Matrix
+    holes: Matrix
 
 
 class Hardware(NamedTuple):
@@ -66,7 +76,7 @@ class Hardware(NamedTuple):
     bolted : whether clamps stand in holes.
     """
 
-    kinds: IntArray
+    kinds: IntMatrix
     apart: float
     columns: float
     rows: float
@@ -293,9 +303,32 @@ def add_pairs(out: Array, count: int, half: bool, seat: ClampedSeat, every: bool
     return count
 
 
-@compiled_making_arrays
 def pairs_of(seats: IntArray, halves: IntArray, clamps: Clamps, hardware: Hardware, every: bool) -> Array:
-    """The pairs of clamps that close and have a place, seat by seat.
+    """Return the pairs of clamps that close and have a place, seat by seat: (N, 10) rows, see above.
+
+    Parameters are those of :func:`write_pairs`.
+    """
+
+    def write(rows: int) -> Array | None:
+        out = np.empty((rows, PAIR_LENGTH))
+        count = write_pairs(seats, halves, clamps, hardware, every, np.empty(4, np.int64), out)
+        return None if count < 0 else out[:count].copy()
+
+    return PAIR_CAPACITY.give(write)
+
+
+@compiled
+def write_pairs(
+    seats: IntMatrix,
+    halves: IntVector,
+    clamps: Clamps,
+    hardware: Hardware,
+    every: bool,
+    spread: IntVector,
+    out: Matrix,
+) -> int:
+    """Write the pairs of clamps that close and have a place, and return their number, -1 when there is no
+    room.
 
     Parameters
     ----------
@@ -303,28 +336,21 @@ def pairs_of(seats: IntArray, halves: IntArray, clamps: Clamps, hardware: Hardwa
     halves : (S,) 1 where the orientation is in the first half turn, else 0; less where the seat is left out.
     every : all pairs, or of each seat and kind the best, which is the one of the largest clamp freedom, then
         of the largest closure margin, then the first.
-
-    Returns
-    -------
-    (N, 10) rows, see above
+    spread : (4,) work space.
+    out : (N, 10) receives the pairs.
     """
-    out, spread = np.empty((64, PAIR_LENGTH)), np.empty(4, np.int64)
-    count, number = int(np.int64(0)), int(np.int64(0))
-    while number < seats.shape[0]:
-        if halves[number] < 0:
-            number += 1
-            continue
-        seat = ClampedSeat(number, seats[number], clamps, hardware, spread)
-        more = add_pairs(out, count, halves[number] != 0, seat, every)
-        if more < 0:
-            out = grown(out)
-            continue
-        count, number = more, number + 1
-    return out[:count].copy()
+    count = int(np.int64(0))
+    for number in range(seats.shape[0]):
+        if halves[number] >= 0:
+            seat = ClampedSeat(number, seats[number], clamps, hardware, spread)
+            count = add_pairs(out, count, halves[number] != 0, seat, every)
+            if count < 0:
+                break
+    return count
 
 
 @compiled
-def closures_of(clamps: Array, out: Array) -> None:
+def closures_of(clamps: Stack, out: Matrix) -> None:
     """Closure margins and clamp freedoms in degrees of N fixtures with two clamps.
 
     Parameters

@@ -21,7 +21,16 @@ from __future__ import annotations
 from math import cos, hypot, inf, nan, pi, sin
 
 from workhold.kernels.base.arrays import eliminate
-from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
+from workhold.kernels.base.compiling import (
+    Array,
+    IntMatrix,
+    IntVector,
+    Matrix,
+    Stack,
+    Vector,
+    compiled,
+    inner,
+)
 from workhold.kernels.base.feature import (
     AXIS_X,
     AXIS_Y,
@@ -50,21 +59,21 @@ def distance_to_edge(row: Array, s: float) -> float:
 
 @compiled
 def contact_matrices_of(
-    pegs: Array,
-    pose: Array,
-    moves: Array,
-    axes: Array,
-    faces: IntArray,
-    features: Array,
-    starts: IntArray,
-    center: Array,
+    pegs: Stack,
+    pose: Matrix,
+    moves: Matrix,
+    axes: Matrix,
+    faces: IntMatrix,
+    features: Matrix,
+    starts: IntVector,
+    center: Vector,
     length: float,
-    points: Array,
-    normals: Array,
-    ends: Array,
-    edges: Array,
-    inverses: Array,
-    matrix: Array,
+    points: Stack,
+    normals: Stack,
+    ends: Matrix,
+    edges: Matrix,
+    inverses: Stack,
+    matrix: Matrix,
 ) -> None:
     """Contacts of N fixtures and the inverses of their contact matrices.
 

@@ -25,8 +25,15 @@ from math import floor
 
 import numpy as np
 
-from workhold.kernels.base.arrays import grown
-from workhold.kernels.base.compiling import Array, ByteArray, IntArray, compiled_making_arrays, inner
+from workhold.kernels.base.compiling import (
+    Array,
+    ByteArray,
+    IntMatrix,
+    IntVector,
+    Matrix,
+    compiled,
+    inner,
+)
 from workhold.kernels.base.feature import IS_ARC, RADIUS
 from workhold.kernels.base.interval import TURN
 from workhold.kernels.base.tables import NearSpots, Precision
@@ -36,6 +43,8 @@ from workhold.kernels.contact.rules import outward_normal
 # Columns of a spot, a stretch of a feature: its normal, its moment about the centre over L, what contacts in
 # it may be off by for a location error of 1, its feature, the first of the spots that it is made of, and how
 # many these are (0: it is one of the finest, and has the number that stands for the first).
+# Parts of three spots wait in no more rows than this: each level adds seven, and has half as large spots.
+MOST_WAITING = 512
 SPOT_NX, SPOT_NY, SPOT_MOMENT, SPOT_GIVE, SPOT_FEATURE, SPOT_FIRST, SPOT_COUNT = range(7)
 SPOT_LENGTH = 7
 # Of a contact in place no more than these are known.
@@ -226,11 +235,18 @@ def mark_triple(triples: ByteArray, a: int, b: int, c: int) -> None:
     triples[c, a, b] = triples[c, b, a] = 1
 
 
-@compiled_making_arrays
+@compiled
 def join_near_spots(
-    spots: Array, roots: int, most: float, precision: Precision, near: NearSpots, counts: IntArray
+    spots: Matrix,
+    roots: int,
+    most: float,
+    precision: Precision,
+    near: NearSpots,
+    counts: IntVector,
+    stack: IntMatrix,
+    room: Matrix,
 ) -> None:
-    """Marks the spots that locators with no larger effective error may touch.
+    """Mark the spots that locators with no larger effective error may touch.
 
     Parameters
     ----------
@@ -238,8 +254,9 @@ def join_near_spots(
     most : effective error in mm.
     near : receives the marks, for the finest spots.
     counts : (2,) to which is added how many triples of spots were looked at, and how many were ruled out.
+    stack : (MOST_WAITING, 3) work space.
+    room : (4, 3) work space.
     """
-    stack, room = np.empty((64, 3), np.int64), np.empty((4, 3))
     joined, keeps_triples = near.joined, near.triples.shape[0] > 0
     for i in range(roots):
         for j in range(i, roots):
@@ -266,8 +283,6 @@ def join_near_spots(
                     for a in range(max(int(first[SPOT_COUNT]), 1)):
                         for b in range(max(int(second[SPOT_COUNT]), 1)):
                             for c in range(max(int(third[SPOT_COUNT]), 1)):
-                                if height == stack.shape[0]:
-                                    stack = grown(stack)
                                 stack[height, 0] = part_of(spots, one, a)
                                 stack[height, 1] = part_of(spots, two, b)
                                 stack[height, 2] = part_of(spots, three, c)
@@ -280,11 +295,11 @@ def part_of(spots: Array, spot: int, number: int) -> int:
     return int(spots[spot, SPOT_FIRST]) + number if spots[spot, SPOT_COUNT] > 0.0 else spot
 
 
-@compiled_making_arrays
-def least_middle_error(spots: Array, roots: int, precision: Precision) -> float:
-    """The least effective error in mm of three contacts in the middles of the first spots; infinite when no
-    three fix the pose."""
-    least, room = np.inf, np.empty((4, 3))
+@compiled
+def least_middle_error(spots: Matrix, roots: int, precision: Precision, room: Matrix) -> float:
+    """Return the least effective error in mm of three contacts in the middles of the first spots; infinite
+    when no three fix the pose. ``room`` is (4, 3) work space."""
+    least = np.inf
     for i in range(roots):
         for j in range(i, roots):
             for k in range(j, roots):

@@ -16,7 +16,16 @@ from math import hypot, inf, sqrt
 
 import numpy as np
 
-from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
+from workhold.kernels.base.compiling import (
+    Array,
+    IntArray,
+    IntMatrix,
+    Matrix,
+    Stack,
+    Vector,
+    compiled,
+    inner,
+)
 
 FORCE, POINT_X, POINT_Y, MOMENT, LOW_X, LOW_Y, HIGH_X, HIGH_Y, MIDDLE_X, MIDDLE_Y, HALF = range(11)
 LOAD_LENGTH = 11
@@ -256,19 +265,19 @@ def farthest_point(corners: Array, arcs: Array) -> float:
 
 @compiled
 def figures(
-    points: Array,
-    normals: Array,
-    ends: Array,
-    edges: Array,
-    inverses: Array,
-    faces: IntArray,
+    points: Stack,
+    normals: Stack,
+    ends: Matrix,
+    edges: Matrix,
+    inverses: Stack,
+    faces: IntMatrix,
     length: float,
-    tolerances: Array,
-    corners: Array,
-    arcs: Array,
-    loads: Array,
-    out: Array,
-    work: Array,
+    tolerances: Vector,
+    corners: Matrix,
+    arcs: Matrix,
+    loads: Matrix,
+    out: Matrix,
+    work: Matrix,
 ) -> None:
     """Closure margin, clamp amplification, wrench radius, location error, end distance, load reaction and
     edge distance of N fixtures.

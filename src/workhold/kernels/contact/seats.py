@@ -14,7 +14,15 @@ from __future__ import annotations
 
 from math import atan, cos, degrees, inf, pi, sin
 
-from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
+from workhold.kernels.base.compiling import (
+    Array,
+    IntMatrix,
+    IntVector,
+    Matrix,
+    Vector,
+    compiled,
+    inner,
+)
 from workhold.kernels.contact.clamp_pairs import closure_margin, pressed_range
 from workhold.kernels.contact.record import COLUMNS, PSI, ROWS, TAIL_X, TAIL_Y
 
@@ -27,7 +35,13 @@ FIRST, SECOND, THIRD = -4658895280553007687, -7723592293110705685, -296083668705
 
 @compiled
 def numbers_of_seats(
-    records: Array, turn: Array, pitch: Array, start: float, holes: IntArray, theta: Array, places: Array
+    records: Matrix,
+    turn: Vector,
+    pitch: Vector,
+    start: float,
+    holes: IntVector,
+    theta: Vector,
+    places: Vector,
 ) -> None:
     """What distinguishes the seats of contacts.
 
@@ -124,13 +138,13 @@ def widen(out: Array, one: Array, other: Array, work: Array, wants_margin: bool)
 
 @compiled
 def bounds_of_pairs(
-    starts: IntArray,
-    directions: IntArray,
-    forces: Array,
-    asked: IntArray,
+    starts: IntVector,
+    directions: IntVector,
+    forces: Matrix,
+    asked: IntMatrix,
     wants_margin: bool,
-    out: Array,
-    work: Array,
+    out: Matrix,
+    work: Matrix,
 ) -> None:
     """What no pair of clamps of seats exceeds.
 

@@ -1,8 +1,7 @@
 """What the kernels of one block of a search are given and work in, and how they list what they find.
 
-A work space is made once for a block, so that no inner kernel makes an array. Kernels that list fixtures go
-on until all is done or their output is full. They record where in their pairs they stopped in ``at``; what
-they began there is taken back, and begun anew when the caller has made room.
+Memory is made by the caller, once for many blocks. A kernel that lists fixtures and has no room for all of
+them says so, and is called again with more: :data:`NO_ROOM_FOR_RECORDS`, :data:`NO_ROOM_FOR_PIECES`.
 """
 
 from __future__ import annotations
@@ -12,12 +11,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from workhold.kernels.base.compiling import Array, IntArray, inner, inner_making_arrays
+from workhold.kernels.base.compiling import Array, IntArray, IntMatrix, IntVector, Matrix, Vector, inner
 from workhold.kernels.base.feature import IS_ARC, RADIUS
 from workhold.kernels.base.tables import (
     COLUMN_STEP,
+    EDGE_LENGTH,
     HEAD,
     LENGTH,
+    PIECE_LENGTH,
     ROW_STEP,
     SHIFT,
     TAIL,
@@ -34,6 +35,7 @@ from workhold.kernels.contact.record import (
     PEG_ROW,
     PEG_X,
     PEG_Y,
+    RECORD_LENGTH,
     Angle,
     place_peg,
     write_record,
@@ -48,24 +50,89 @@ PAIRS, CROSSED, CANDIDATES, CONTACTS = range(4)
 # Beside these is what another thread asks for: any number but 0 at STOPPED ends the work soon.
 STOPPED = 4
 STATISTICS = 5
+# What a kernel returns instead of a number of records where its memory did not suffice.
+NO_ROOM_FOR_RECORDS, NO_ROOM_FOR_PIECES = -1, -2
+# Columns of roles in ``two_and_two`` and of limbs in ``three_and_one``, and how many parts ``sliding_pairs``
+# cuts the range of a sliding pair to.
+ROLE_LENGTH, LIMB_LENGTH, SLIDE_PARTS = 8, 20, 8
 # Rows of what moving pegs need of three standing ones.
 TRIPLE_ROWS = 8
 # mm. A tail known no better than this is looked for on its other curve, too.
 BADLY = 1e-3
 
 
+class BlockSpace(NamedTuple):
+    """The memory that kernels of blocks work in, one after the other; see :func:`make_block_space`.
+
+    Parameters
+    ----------
+    stack, roots : see ``roots.crossings``.
+    pegs : (4, 6) places, see ``kernels.contact.record``.
+    contacts, null : see ``contact.rules.is_fixture``.
+    triple : see ``moving_pegs.write_triple``.
+    edges : (2, 14) ends of a piece.
+    out : (R, 19) receives the records.
+    pieces : (P, 24) the pieces of a cell.
+    standing, moving, unordered : (P, 8) roles, see ``two_and_two``.
+    limbs, unordered_limbs : (P, 20), see ``three_and_one``.
+    keys, order : (P,) of what is sorted.
+    kept : (M, 15), see ``piece_bounds.clear_edges``.
+    spots, slides : (M, 4) and (SLIDE_PARTS, 4), see ``sliding_pairs``.
+    """
+
+    stack: Matrix
+    roots: Matrix
+    pegs: Matrix
+    contacts: Matrix
+    null: Vector
+    triple: Matrix
+    edges: Matrix
+    out: Matrix
+    pieces: Matrix
+    standing: Matrix
+    moving: Matrix
+    unordered: Matrix
+    limbs: Matrix
+    unordered_limbs: Matrix
+    keys: Vector
+    order: IntVector
+    kept: Matrix
+    spots: IntMatrix
+    slides: IntMatrix
+
+
+def make_block_space(records: int, pieces: int, members: int) -> BlockSpace:
+    """Return memory for blocks with so many records, pieces in a cell, and curves."""
+    return BlockSpace(
+        stack=np.empty((STACK_DEPTH, STACK_LENGTH)),
+        roots=np.empty((MOST_ROOTS, 3)),
+        pegs=np.empty((4, PEG_LENGTH)),
+        contacts=np.empty((8, 2)),
+        null=np.empty(4),
+        triple=np.empty((TRIPLE_ROWS, 3)),
+        edges=np.empty((2, EDGE_LENGTH)),
+        out=np.empty((records, RECORD_LENGTH)),
+        pieces=np.empty((pieces, PIECE_LENGTH)),
+        standing=np.empty((pieces, ROLE_LENGTH)),
+        moving=np.empty((pieces, ROLE_LENGTH)),
+        unordered=np.empty((pieces, ROLE_LENGTH)),
+        limbs=np.empty((pieces, LIMB_LENGTH)),
+        unordered_limbs=np.empty((pieces, LIMB_LENGTH)),
+        keys=np.empty(pieces),
+        order=np.empty(pieces, np.int64),
+        kept=np.empty((members, EDGE_LENGTH + 1)),
+        spots=np.empty((members, 4), np.int64),
+        slides=np.empty((SLIDE_PARTS, 4), np.int64),
+    )
+
+
 class BlockWork(NamedTuple):
-    """What a block is given, and its work space.
+    """What a block is given, and the memory that it works in.
 
     Parameters
     ----------
     counting : count all simultaneous contacts instead of looking for fixtures only.
     stats : (5,) counts to add to.
-    at : (2,) where among its pairs a kernel stopped.
-    stack, roots : see ``roots.crossings``.
-    pegs : (4, 6) places, see ``kernels.contact.record``.
-    contacts, null : see ``contact.rules.is_fixture``.
-    triple : see ``moving_pegs.write_triple``.
     """
 
     features: Features
@@ -74,7 +141,6 @@ class BlockWork(NamedTuple):
     limits: Limits
     counting: bool
     stats: IntArray
-    at: IntArray
     stack: Array
     roots: Array
     pegs: Array
@@ -83,11 +149,17 @@ class BlockWork(NamedTuple):
     triple: Array
 
 
-@inner_making_arrays
+@inner
 def block_work(
-    features: Features, curves: Curves, lattice: Lattice, limits: Limits, counting: bool, stats: IntArray
+    features: Features,
+    curves: Curves,
+    lattice: Lattice,
+    limits: Limits,
+    counting: bool,
+    stats: IntArray,
+    space: BlockSpace,
 ) -> BlockWork:
-    """The work of a block with an empty work space."""
+    """Return the work of a block in some memory."""
     return BlockWork(
         features,
         curves,
@@ -95,13 +167,12 @@ def block_work(
         limits,
         counting,
         stats,
-        np.zeros(2, np.int64),
-        np.empty((STACK_DEPTH, STACK_LENGTH)),
-        np.empty((MOST_ROOTS, 3)),
-        np.empty((4, PEG_LENGTH)),
-        np.empty((8, 2)),
-        np.empty(4),
-        np.empty((TRIPLE_ROWS, 3)),
+        space.stack,
+        space.roots,
+        space.pegs,
+        space.contacts,
+        space.null,
+        space.triple,
     )
 
 
@@ -203,7 +274,7 @@ def add_listed(
 
     Returns
     -------
-    how many records there are, -1 when there is no room for another
+    how many records there are, or that there is no room for another
     """
     pegs, limits, stats = work.pegs, work.limits, work.stats
     verdict, separation = is_fixture(
@@ -217,6 +288,6 @@ def add_listed(
     if standing == 2.0 and is_far_off(angle, work):
         return count
     if count == out.shape[0]:
-        return -1
+        return NO_ROOM_FOR_RECORDS
     write_record(out[count], standing, pegs, angle[0], separation, reach)
     return count + 1

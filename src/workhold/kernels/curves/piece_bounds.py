@@ -28,12 +28,10 @@ angle at a rate of at most 1.
 
 from __future__ import annotations
 
-from math import cos, hypot, inf, isfinite, sin, sqrt
-
-import numpy as np
+from math import cos, hypot, inf, isfinite, nan, sin, sqrt
 
 from workhold.conventions import EXACT
-from workhold.kernels.base.compiling import Array, inner, inner_making_arrays
+from workhold.kernels.base.compiling import Array, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y, is_shallow
 from workhold.kernels.base.interval import TURN
 from workhold.kernels.base.tables import (
@@ -44,7 +42,6 @@ from workhold.kernels.base.tables import (
     EDGE_CENTER,
     EDGE_CENTER_ERROR,
     EDGE_ERROR,
-    EDGE_LENGTH,
     EDGE_SLOPE,
     EDGE_SLOPE_ERROR,
     EDGE_VALUE,
@@ -211,11 +208,13 @@ SAME = 2e-15
 HAIR = 1e-6
 
 
-@inner_making_arrays
-def kept_edges(count: int) -> Array:
-    """The (M, 15) last edges of so many curves, with psi behind them; as yet none. They serve neighbouring
-    cells, one after the other, in one mode."""
-    return np.full((count, EDGE_LENGTH + 1), np.nan)
+@inner
+def clear_edges(kept: Array) -> None:
+    """Begin the (M, 15) last edges of curves, with psi behind them; as yet there are none. They serve
+    neighbouring cells, one after the other, in one mode."""
+    for k in range(kept.shape[0]):
+        for n in range(kept.shape[1]):
+            kept[k, n] = nan
 
 
 @inner

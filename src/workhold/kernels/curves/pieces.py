@@ -17,8 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from workhold.kernels.base.arrays import grown
-from workhold.kernels.base.compiling import Array, IntArray, inner, inner_making_arrays
+from workhold.kernels.base.compiling import Array, IntArray, inner
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, local_size
 from workhold.kernels.base.interval import TURN
 from workhold.kernels.base.tables import (
@@ -206,26 +205,19 @@ def unwind(row: Array, a: Array, b: Array, curve: Array) -> None:
 def add_members(
     out: Array,
     count: int,
-    first: int,
     members: IntArray,
     features: Array,
     curves: Curves,
     cell: PieceCell,
     kept: Array,
-) -> tuple[int, int]:
-    """Appends the pieces of curves, from the ``first`` of the members on, as long as ``out`` has room for all
-    of a curve.
-
-    Returns
-    -------
-    (which of the members comes next, number of pieces)
-    """
+) -> int:
+    """Append the pieces of curves, and return their number, -1 when there may be no room for all of one."""
     integers, reals = curves.integers, curves.reals
-    for n in range(first, members.shape[0]):
+    for n in range(members.shape[0]):
         index = members[n]
         # A curve of nearly a turn may enter the cell at both of its ends.
         if count + 2 * (integers[index, END_STRETCH] - integers[index, FIRST_STRETCH]) > out.shape[0]:
-            return n, count
+            return -1
         base = reals[index, FROM] - reals[index, SHIFT]
         span = reals[index, TO] - reals[index, FROM]
         start = base + TURN * floor((cell.low - base) / TURN)
@@ -234,11 +226,11 @@ def add_members(
             left, right = max(low, cell.low), min(low + span, cell.high)
             if right - left > 0.0:
                 count = add_pieces(out, count, features, curves, index, left, right, low, cell, kept[n])
-    return members.shape[0], count
+    return count
 
 
-@inner_making_arrays
-def cell_pieces(
+@inner
+def write_pieces(
     cell_low: float,
     cell_high: float,
     members: IntArray,
@@ -247,11 +239,12 @@ def cell_pieces(
     pitch_x: float,
     least_margin: float,
     mode: float,
-    kept: Array,
     farthest: float,
-    room: Array,
-) -> tuple[Array, int]:
-    """Pieces of curves inside one cell.
+    kept: Array,
+    edges: Array,
+    out: Array,
+) -> int:
+    """Write the pieces of curves inside one cell, and return how many there are, -1 when there is no room.
 
     Parameters
     ----------
@@ -262,20 +255,13 @@ def cell_pieces(
     least_margin : the smallest closure margin of interest. Of four forces that sum to 1, none less than m,
         each is at least m / (1 - 3 m) of any other.
     mode : ``HEIGHT`` or ``POSITION``.
-    kept : of the members, see ``piece_bounds.kept_edges``.
     farthest : pieces may be left out whose rightmost peg stands farther right than this, in mm.
-    room : (R, 24) that may be written over.
-
-    Returns
-    -------
-    (that room, or more of it, which begins with the pieces in the order of the curves; their number)
+    kept : of the members, see ``piece_bounds.clear_edges``.
+    edges : (2, 14) work space.
+    out : (P, 24) receives the pieces in the order of the curves.
     """
     share = least_margin / (1.0 - 3.0 * least_margin)
-    cosine, sine, edges = cos(cell_high), sin(cell_high), np.empty((2, EDGE_LENGTH))
-    cell = PieceCell(cell_low, cell_high, cosine, sine, pitch_x, share, mode, farthest, edges)
-    done, count = 0, int(np.int64(0))
-    while True:
-        done, count = add_members(room, count, done, members, features, curves, cell, kept)
-        if done == members.shape[0]:
-            return room, count
-        room = grown(room)
+    cell = PieceCell(
+        cell_low, cell_high, cos(cell_high), sin(cell_high), pitch_x, share, mode, farthest, edges
+    )
+    return add_members(out, int(np.int64(0)), members, features, curves, cell, kept)

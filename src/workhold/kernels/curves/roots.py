@@ -14,6 +14,7 @@ its radius. So is every range where two curves run on top of each other.
 from __future__ import annotations
 
 from math import ceil, cos, floor, isfinite, isinf, sin
+from typing import NamedTuple
 
 import numpy as np
 
@@ -65,19 +66,11 @@ ROUNDINGS = 4.0 * 1.2e-16
 
 
 @inner
-def value_at(
-    psi: float, curve: int, features: Array, curves: Curves, mode: float
-) -> tuple[float, float, float, float]:
-    """Value and slope of a curve of the table at an orientation, and bounds of their errors (that of the
-    slope may be infinite)."""
-    return value_turned(psi, cos(psi), sin(psi), curve, features, curves, mode)
-
-
-@inner
 def value_turned(
     psi: float, cosine: float, sine: float, curve: int, features: Array, curves: Curves, mode: float
 ) -> tuple[float, float, float, float]:
-    """What ``value_at`` returns at an orientation of known cosine and sine, which two curves share."""
+    """Return value and slope of a curve of the table at an orientation, whose cosine and sine two curves
+    share, and bounds of their errors (that of the slope may be infinite)."""
     a, b = features[curves.integers[curve, TAIL]], features[curves.integers[curve, HEAD]]
     row = curves.reals[curve]
     state = chord_state(a, b, row, psi, cosine, sine)
@@ -206,13 +199,253 @@ def may_meet(first: Array, second: Array, offset: float, period: float) -> bool:
     return k <= last
 
 
+class CurvePoint(NamedTuple):
+    """A curve at one orientation: its value and slope, and bounds of their errors."""
+
+    value: float
+    slope: float
+    error: float
+    slope_error: float
+
+
+class Span(NamedTuple):
+    """A range of orientations, and both curves at its ends."""
+
+    low: float
+    high: float
+    one_low: CurvePoint
+    two_low: CurvePoint
+    one_high: CurvePoint
+    two_high: CurvePoint
+
+
+class Crossing(NamedTuple):
+    """What is asked of two pieces, see :func:`crossings`."""
+
+    first: Array
+    second: Array
+    one: int
+    two: int
+    features: Array
+    curves: Curves
+    mode: float
+    offset: float
+    period: float
+
+
+class Slopes(NamedTuple):
+    """Bounds of the slopes of both curves over a span."""
+
+    one_low: float
+    one_high: float
+    two_low: float
+    two_high: float
+
+
+@inner
+def write_point(row: Array, column: int, point: CurvePoint) -> None:
+    """Write a point to four columns of a row."""
+    row[column], row[column + 1] = point.value, point.slope
+    row[column + 2], row[column + 3] = point.error, point.slope_error
+
+
+@inner
+def read_point(row: Array, column: int) -> CurvePoint:
+    """Return the point in four columns of a row."""
+    return CurvePoint(row[column], row[column + 1], row[column + 2], row[column + 3])
+
+
+@inner
+def write_span(row: Array, span: Span) -> None:
+    """Write a span to a (18,) row of the stack."""
+    row[0], row[1] = span.low, span.high
+    write_point(row, 2, span.one_low)
+    write_point(row, 6, span.two_low)
+    write_point(row, 10, span.one_high)
+    write_point(row, 14, span.two_high)
+
+
+@inner
+def read_span(row: Array) -> Span:
+    """Return the span in a (18,) row of the stack."""
+    return Span(
+        row[0], row[1], read_point(row, 2), read_point(row, 6), read_point(row, 10), read_point(row, 14)
+    )
+
+
+@inner
+def point_at(
+    psi: float, cosine: float, sine: float, curve: int, features: Array, curves: Curves, mode: float
+) -> CurvePoint:
+    """Return a curve at an orientation of known cosine and sine."""
+    value, slope, error, slope_error = value_turned(psi, cosine, sine, curve, features, curves, mode)
+    return CurvePoint(value, slope, error, slope_error)
+
+
 @inner
 def is_inside(psi: float, end: float, slope: float) -> bool:
-    """Whether an orientation is not an end of a piece.
+    """Return whether an orientation is not an end of a piece.
 
     The end at a tangency, known to no better, counts within rounding.
     """
     return psi != end and not (isinf(slope) and abs(psi - end) <= SAME)
+
+
+@inner
+def point_of_piece(psi: float, piece: Array, at_low: bool, asked: Crossing) -> CurvePoint:
+    """Return a piece's curve at an orientation, which may be the low or the high end of the piece."""
+    end = piece[LOW] if at_low else piece[HIGH]
+    point = (
+        CurvePoint(piece[VALUE_LOW], piece[SLOPE_LOW], piece[VALUE_ERROR_LOW], piece[SLOPE_ERROR_LOW])
+        if at_low
+        else CurvePoint(
+            piece[VALUE_HIGH], piece[SLOPE_HIGH], piece[VALUE_ERROR_HIGH], piece[SLOPE_ERROR_HIGH]
+        )
+    )
+    if is_inside(psi, end, point.slope):
+        point = point_at(psi, cos(psi), sin(psi), int(piece[CURVE]), asked.features, asked.curves, asked.mode)
+    return point
+
+
+@inner
+def slopes_over(span: Span, first: Array, second: Array) -> Slopes:
+    """Return bounds of the slopes of two pieces over a span, errors included."""
+    width = span.high - span.low
+    one_low, one_high = slope_range(
+        span.one_low.slope,
+        span.one_high.slope,
+        first[SECOND_DERIVATIVE_LOW],
+        first[SECOND_DERIVATIVE_HIGH],
+        width,
+    )
+    two_low, two_high = slope_range(
+        span.two_low.slope,
+        span.two_high.slope,
+        second[SECOND_DERIVATIVE_LOW],
+        second[SECOND_DERIVATIVE_HIGH],
+        width,
+    )
+    one = max(span.one_low.slope_error, span.one_high.slope_error)
+    two = max(span.two_low.slope_error, span.two_high.slope_error)
+    return Slopes(one_low - one, one_high + one, two_low - two, two_high + two)
+
+
+@inner
+def write_monotone_roots(
+    span: Span, slopes: Slopes, error: float, asked: Crossing, roots: Array, found: int
+) -> int:
+    """Write the roots over a span in which f is monotone, after the first so many; return their new number,
+    -1 when they do not fit."""
+    f_low = span.two_low.value - span.one_low.value
+    f_high = span.two_high.value - span.one_high.value
+    lowest, highest = slopes.two_low - slopes.one_high, slopes.two_high - slopes.one_low
+    bottom, top = min(f_low, f_high) - error, max(f_low, f_high) + error
+    steepness = max(lowest, -highest)
+    k, last = targets(bottom, top, asked.offset, asked.period)
+    if last - k >= roots.shape[0] - found:
+        return -1
+    low, high = span.low, span.high
+    slope_low = span.two_low.slope - span.one_low.slope
+    slope_high = span.two_high.slope - span.one_high.slope
+    while k <= last:
+        target = asked.offset + k * asked.period
+        start = first_guess(low, high, f_low - target, f_high - target, slope_low, slope_high)
+        psi, rest = solve(
+            low,
+            high,
+            f_low,
+            f_high,
+            asked.one,
+            asked.two,
+            asked.features,
+            asked.curves,
+            asked.mode,
+            target,
+            start,
+        )
+        if psi in (low, high):
+            rest += error
+        roots[found, ROOT_PSI], roots[found, MULTIPLE] = psi, k
+        # The target itself is rounded.
+        reach = min((rest + ROUNDINGS * abs(asked.offset)) / steepness, high - low) + SAME
+        roots[found, ROOT_RADIUS] = reach
+        found += 1
+        k += 1
+    return found
+
+
+@inner
+def bounds_over(
+    span: Span, slopes: Slopes, error: float, splits: int, asked: Crossing
+) -> tuple[float, float, float]:
+    """Return bounds of f over a span, and the width in radians below which it is split no further."""
+    low, high, width = span.low, span.high, span.high - span.low
+    bottom1, top1 = value_bounds(
+        span.one_low.value, span.one_high.value, slopes.one_low, slopes.one_high, width
+    )
+    bottom2, top2 = value_bounds(
+        span.two_low.value, span.two_high.value, slopes.two_low, slopes.two_high, width
+    )
+    # Where a curve is steep, as beside a tangency, chords move far over the narrowest range.
+    steepest = max(max(-slopes.one_low, slopes.one_high), max(-slopes.two_low, slopes.two_high))
+    smallest = NARROWEST_DISC if steepest * width > FARTHEST else NARROWEST
+    # Where nothing is known of a curve's slopes, as beside a tangency, its chords themselves are bounded, and
+    # where so little is known that many splits have not helped.
+    blind1 = not (isfinite(bottom1) and isfinite(top1))
+    blind2 = not (isfinite(bottom2) and isfinite(top2))
+    if width <= WIDEST_DISC and (blind1 or splits >= MANY_SPLITS):
+        least, most = disc_bounds(low, high, asked.one, asked.features, asked.curves, asked.mode)
+        bottom1, top1 = (least, most) if blind1 else (max(bottom1, least), min(top1, most))
+    if width <= WIDEST_DISC and (blind2 or splits >= MANY_SPLITS):
+        least, most = disc_bounds(low, high, asked.two, asked.features, asked.curves, asked.mode)
+        bottom2, top2 = (least, most) if blind2 else (max(bottom2, least), min(top2, most))
+    if width <= WIDEST_DISC and (blind1 or blind2):
+        smallest = NARROWEST_DISC
+    bottom, top = bottom2 - top1 - error, top2 - bottom1 + error
+    lowest, highest = slopes.two_low - slopes.one_high, slopes.two_high - slopes.one_low
+    if isfinite(lowest) or isfinite(highest):
+        f_low = span.two_low.value - span.one_low.value
+        f_high = span.two_high.value - span.one_high.value
+        below, above = value_bounds(f_low, f_high, lowest, highest, width)
+        bottom, top = max(bottom, below - error), min(top, above + error)
+    return bottom, top, smallest
+
+
+@inner
+def is_vague(span: Span, slopes: Slopes, error: float) -> bool:
+    """Return whether errors are the larger part of what is known over a span, so that splitting gains
+    nothing."""
+    lowest, highest = slopes.two_low - slopes.one_high, slopes.two_high - slopes.one_low
+    one = max(span.one_low.slope_error, span.one_high.slope_error)
+    two = max(span.two_low.slope_error, span.two_high.slope_error)
+    doubt = 2.0 * (one + two)
+    return 2.0 * doubt >= highest - lowest and max(-lowest, highest) * (span.high - span.low) <= error
+
+
+@inner
+def write_wide_roots(span: Span, first: int, last: int, roots: Array, found: int) -> int:
+    """Write a root for each of some targets, with the whole span as its range; return as
+    :func:`write_monotone_roots` does."""
+    if last - first >= roots.shape[0] - found:
+        return -1
+    width = span.high - span.low
+    for k in range(first, last + 1):
+        roots[found, ROOT_PSI], roots[found, MULTIPLE] = span.low + width / 2.0, k
+        roots[found, ROOT_RADIUS] = width / 2.0 * (1.0 + 1e-15) + SAME
+        found += 1
+    return found
+
+
+@inner
+def middle_of(span: Span) -> float:
+    """Return where a span is split: nearer to an end at which a slope is infinite."""
+    low, high = span.low, span.high
+    width = high - low
+    if isinf(span.one_low.slope) or isinf(span.two_low.slope):
+        return low + width / 4.0
+    if isinf(span.one_high.slope) or isinf(span.two_high.slope):
+        return high - width / 4.0
+    return low + width / 2.0
 
 
 @inner
@@ -228,11 +461,11 @@ def crossings(
     stack: Array,
     roots: Array,
 ) -> int:
-    """All orientations in the common range of two pieces at which f may be a target.
+    """Write all orientations in the common range of two pieces at which f may be a target.
 
     Parameters
     ----------
-    first, second : (26,) pieces.
+    first, second : (24,) pieces.
     mode : which value of the curves is compared, see ``curve_value``.
     offset, period : targets are offset + k period for whole k; a period of 0 allows k = 0 only.
     flat : crossings at which the slope of f is no steeper than this are of no interest, and may be left out.
@@ -240,131 +473,71 @@ def crossings(
 
     Returns
     -------
-    number of roots written to ``roots``, or -1 when they do not fit
+    int
+        How many roots are written to ``roots``, or -1 when they do not fit.
     """
     low, high = max(first[LOW], second[LOW]), min(first[HIGH], second[HIGH])
     if not low < high:
         return 0
-    one, two = int(first[CURVE]), int(second[CURVE])
-    v1, s1, v2, s2 = first[VALUE_LOW], first[SLOPE_LOW], second[VALUE_LOW], second[SLOPE_LOW]
-    w1, t1, w2, t2 = first[VALUE_HIGH], first[SLOPE_HIGH], second[VALUE_HIGH], second[SLOPE_HIGH]
-    # Errors of values (e) and slopes (g) at the low end, and at the high end (c and q).
-    e1, g1 = first[VALUE_ERROR_LOW], first[SLOPE_ERROR_LOW]
-    e2, g2 = second[VALUE_ERROR_LOW], second[SLOPE_ERROR_LOW]
-    c1, q1 = first[VALUE_ERROR_HIGH], first[SLOPE_ERROR_HIGH]
-    c2, q2 = second[VALUE_ERROR_HIGH], second[SLOPE_ERROR_HIGH]
-    if is_inside(low, first[LOW], first[SLOPE_LOW]):
-        v1, s1, e1, g1 = value_at(low, one, features, curves, mode)
-    if is_inside(low, second[LOW], second[SLOPE_LOW]):
-        v2, s2, e2, g2 = value_at(low, two, features, curves, mode)
-    if is_inside(high, first[HIGH], first[SLOPE_HIGH]):
-        w1, t1, c1, q1 = value_at(high, one, features, curves, mode)
-    if is_inside(high, second[HIGH], second[SLOPE_HIGH]):
-        w2, t2, c2, q2 = value_at(high, two, features, curves, mode)
-    rounding = ROUNDINGS * (abs(v1) + abs(v2) + abs(w1) + abs(w2) + abs(offset))
-    found = 0
-    depth = 0
-    splits = 0
+    asked = Crossing(
+        first, second, int(first[CURVE]), int(second[CURVE]), features, curves, mode, offset, period
+    )
+    span = Span(
+        low,
+        high,
+        point_of_piece(low, first, True, asked),
+        point_of_piece(low, second, True, asked),
+        point_of_piece(high, first, False, asked),
+        point_of_piece(high, second, False, asked),
+    )
+    rounding = ROUNDINGS * (
+        abs(span.one_low.value)
+        + abs(span.two_low.value)
+        + abs(span.one_high.value)
+        + abs(span.two_high.value)
+        + abs(offset)
+    )
+    found = depth = splits = int(np.int64(0))
     while True:
-        width = high - low
-        low1, high1 = slope_range(s1, t1, first[SECOND_DERIVATIVE_LOW], first[SECOND_DERIVATIVE_HIGH], width)
-        low2, high2 = slope_range(
-            s2, t2, second[SECOND_DERIVATIVE_LOW], second[SECOND_DERIVATIVE_HIGH], width
+        slopes = slopes_over(span, first, second)
+        lowest, highest = slopes.two_low - slopes.one_high, slopes.two_high - slopes.one_low
+        error = (
+            max(span.one_low.error + span.two_low.error, span.one_high.error + span.two_high.error) + rounding
         )
-        low1, high1 = low1 - max(g1, q1), high1 + max(g1, q1)
-        low2, high2 = low2 - max(g2, q2), high2 + max(g2, q2)
-        lowest, highest = low2 - high1, high2 - low1
-        f_low, f_high = v2 - v1, w2 - w1
-        error = max(e1 + e2, c1 + c2) + rounding
-        done = max(-lowest, highest) <= flat
-        if done:
-            pass
-        elif lowest > 0.0 or highest < 0.0:
-            bottom, top = min(f_low, f_high) - error, max(f_low, f_high) + error
-            steepness = max(lowest, -highest)
-            k, last = targets(bottom, top, offset, period)
-            if last - k >= roots.shape[0] - found:
-                return -1
-            while k <= last:
-                target = offset + k * period
-                start = first_guess(low, high, f_low - target, f_high - target, s2 - s1, t2 - t1)
-                psi, rest = solve(low, high, f_low, f_high, one, two, features, curves, mode, target, start)
-                if psi in (low, high):
-                    rest += error
-                roots[found, ROOT_PSI], roots[found, MULTIPLE] = psi, k
-                # The target itself is rounded.
-                roots[found, ROOT_RADIUS] = min((rest + ROUNDINGS * abs(offset)) / steepness, width) + SAME
-                found += 1
-                k += 1
-            done = True
-        else:
-            bottom1, top1 = value_bounds(v1, w1, low1, high1, width)
-            bottom2, top2 = value_bounds(v2, w2, low2, high2, width)
-            # Where a curve is steep, as beside a tangency, chords move far over the narrowest range.
-            steep = max(max(-low1, high1), max(-low2, high2)) * width > FARTHEST
-            smallest = NARROWEST_DISC if steep else NARROWEST
-            # Where nothing is known of a curve's slopes, as beside a tangency, its chords themselves are
-            # bounded, and where so little is known that many splits have not helped.
-            blind1 = not (isfinite(bottom1) and isfinite(top1))
-            blind2 = not (isfinite(bottom2) and isfinite(top2))
-            if width <= WIDEST_DISC and (blind1 or splits >= MANY_SPLITS):
-                least, most = disc_bounds(low, high, one, features, curves, mode)
-                bottom1, top1 = (least, most) if blind1 else (max(bottom1, least), min(top1, most))
-            if width <= WIDEST_DISC and (blind2 or splits >= MANY_SPLITS):
-                least, most = disc_bounds(low, high, two, features, curves, mode)
-                bottom2, top2 = (least, most) if blind2 else (max(bottom2, least), min(top2, most))
-            if width <= WIDEST_DISC and (blind1 or blind2):
-                smallest = NARROWEST_DISC
-            # Where the errors are the larger part of what is known, splitting gains nothing.
-            doubt = 2.0 * (max(g1, q1) + max(g2, q2))
-            vague = 2.0 * doubt >= highest - lowest and max(-lowest, highest) * width <= error
-            bottom, top = bottom2 - top1 - error, top2 - bottom1 + error
-            if isfinite(lowest) or isfinite(highest):
-                below, above = value_bounds(f_low, f_high, lowest, highest, width)
-                bottom, top = max(bottom, below - error), min(top, above + error)
-            if isfinite(bottom) and isfinite(top):
-                k, last = targets(bottom, top, offset, period)
-                done = last < k
-                if not done and (
-                    width <= smallest or vague or splits >= MOST_SPLITS or depth >= stack.shape[0]
-                ):
-                    if last - k >= roots.shape[0] - found:
-                        return -1
-                    while k <= last:
-                        roots[found, ROOT_PSI], roots[found, MULTIPLE] = low + width / 2.0, k
-                        roots[found, ROOT_RADIUS] = width / 2.0 * (1.0 + 1e-15) + SAME
-                        found += 1
-                        k += 1
-                    done = True
-            elif depth >= stack.shape[0]:
+        done = True
+        if max(-lowest, highest) > flat:
+            if lowest > 0.0 or highest < 0.0:
+                found = write_monotone_roots(span, slopes, error, asked, roots, found)
+            else:
+                bottom, top, smallest = bounds_over(span, slopes, error, splits, asked)
+                is_full = depth >= stack.shape[0]
+                done = False
+                if isfinite(bottom) and isfinite(top):
+                    k, last = targets(bottom, top, offset, period)
+                    done = last < k
+                    if not done and (
+                        span.high - span.low <= smallest
+                        or is_vague(span, slopes, error)
+                        or splits >= MOST_SPLITS
+                        or is_full
+                    ):
+                        found = write_wide_roots(span, k, last, roots, found)
+                        done = True
+                elif is_full:
+                    return -1
+            if found < 0:
                 return -1
         if done:
             if depth == 0:
                 return found
             depth -= 1
-            item = stack[depth]
-            low, high = item[0], item[1]
-            v1, s1, v2, s2 = item[2], item[3], item[4], item[5]
-            w1, t1, w2, t2 = item[6], item[7], item[8], item[9]
-            e1, g1, e2, g2 = item[10], item[11], item[12], item[13]
-            c1, q1, c2, q2 = item[14], item[15], item[16], item[17]
+            span = read_span(stack[depth])
             continue
         splits += 1
-        middle = low + width / 2.0
-        if isinf(s1) or isinf(s2):
-            middle = low + width / 4.0
-        elif isinf(t1) or isinf(t2):
-            middle = high - width / 4.0
+        middle = middle_of(span)
         cosine, sine = cos(middle), sin(middle)
-        m1, n1, error1, spread1 = value_turned(middle, cosine, sine, one, features, curves, mode)
-        m2, n2, error2, spread2 = value_turned(middle, cosine, sine, two, features, curves, mode)
-        item = stack[depth]
-        item[0], item[1] = middle, high
-        item[2], item[3], item[4], item[5] = m1, n1, m2, n2
-        item[6], item[7], item[8], item[9] = w1, t1, w2, t2
-        item[10], item[11], item[12], item[13] = error1, spread1, error2, spread2
-        item[14], item[15], item[16], item[17] = c1, q1, c2, q2
+        one = point_at(middle, cosine, sine, asked.one, features, curves, mode)
+        two = point_at(middle, cosine, sine, asked.two, features, curves, mode)
+        write_span(stack[depth], Span(middle, span.high, one, two, span.one_high, span.two_high))
         depth += 1
-        high = middle
-        w1, t1, w2, t2 = m1, n1, m2, n2
-        c1, q1, c2, q2 = error1, spread1, error2, spread2
+        span = Span(span.low, middle, span.one_low, span.two_low, one, two)

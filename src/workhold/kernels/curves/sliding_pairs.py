@@ -17,14 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from workhold.conventions import PARALLEL, SQUARE
-from workhold.kernels.base.arrays import grown
-from workhold.kernels.base.compiling import (
-    Array,
-    IntArray,
-    compiled_making_arrays,
-    inner,
-    inner_making_arrays,
-)
+from workhold.kernels.base.compiling import Array, IntArray, IntVector, compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y, point_at
 from workhold.kernels.base.interval import TURN
 from workhold.kernels.base.tables import (
@@ -57,16 +50,15 @@ from workhold.kernels.contact.record import (
     PEG_ROW,
     PEG_X,
     PEG_Y,
-    RECORD_LENGTH,
     Angle,
     angle_of,
     place_peg,
 )
 from workhold.kernels.contact.rules import share_a_carrier
 from workhold.kernels.curves.block_work import (
-    CANDIDATES,
-    CONTACTS,
+    NO_ROOM_FOR_RECORDS,
     STOPPED,
+    BlockSpace,
     BlockWork,
     add_listed,
     block_work,
@@ -82,8 +74,8 @@ from workhold.kernels.curves.three_and_one import heads_share_a_line
 
 # Rounding of a sliding pair's orientation in radians.
 ROUNDING = 4e-15
-# The range of a sliding pair is looked at in so many parts.
-SLIDE_PARTS = 8
+# The most sliding pairs that two features have.
+MOST_SLIDES = 4
 
 
 @inner
@@ -134,23 +126,20 @@ def arc_sliding_pairs(a: Array, b: Array, d: float, out: Array) -> int:
     return count
 
 
-@inner_making_arrays
-def sliding_pairs_between(a: Array, b: Array, d: float) -> Array:
-    """Sliding pairs of a chord of length d from feature a to feature b.
+@inner
+def write_sliding_pairs(a: Array, b: Array, d: float, out: Array) -> int:
+    """Write the sliding pairs of a chord of length d from feature a to feature b, and return how many there
+    are.
 
-    Returns
-    -------
-    (N, 3) array
-        Columns: lowest and highest parameter of the tail on a, alpha in radians.
+    ``out`` is (MOST_SLIDES, 3). Columns: lowest and highest parameter of the tail on a, alpha in radians.
     """
-    out = np.empty((4, 3))
     count = 0
     if a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0:
         if abs(a[AXIS_X] * b[AXIS_Y] - a[AXIS_Y] * b[AXIS_X]) <= PARALLEL:
             count = line_sliding_pairs(a, b, d, out)
     elif a[IS_ARC] != 0.0 and b[IS_ARC] != 0.0:
         count = arc_sliding_pairs(a, b, d, out)
-    return out[:count]
+    return count
 
 
 @inner
@@ -395,12 +384,12 @@ def add_of_pair(
     slides: IntArray,
     work: BlockWork,
 ) -> int:
-    """Appends the fixtures of a sliding pair and the curves, from the member at ``work.at`` on (see
-    ``block_work``). Of three standing pegs the third is on a curve from the pair's tail.
+    """Append the fixtures of a sliding pair and the curves, and return the new number of records, -1 when
+    there is no room. Of three standing pegs the third is on a curve from the pair's tail.
 
     ``spots`` and ``slides`` are those of the members and of the pair, none where nothing is ruled out.
     """
-    at, stats, curves = work.at, work.stats, work.curves
+    stats, curves = work.stats, work.curves
     psi, whole = pair.angle[0], sliding_pairs.integers[pair.number]
     near, asks_spots = work.features.near, spots.shape[0] > 0
     first, end = int(np.int64(0)), members.shape[0]
@@ -408,7 +397,7 @@ def add_of_pair(
         # Curves are in the order of their tails.
         first = first_of_tail(members, curves.integers, whole[TAIL])
         end = first_of_tail(members, curves.integers, whole[TAIL] + 1)
-    for m in range(max(at[0], first), end):
+    for m in range(first, end):
         if stats[STOPPED] != 0:
             break
         curve = members[m]
@@ -421,58 +410,53 @@ def add_of_pair(
         if not exists or shares_a_line(curves.reals[curve], there):
             continue
         inside = pair.angle if there == psi else angle_of(there)
-        candidates, contacts = stats[CANDIDATES], stats[CONTACTS]
         if standing == 2:
-            more = add_lines(out, count, pair, curve, inside, sliding_pairs, work)
+            count = add_lines(out, count, pair, curve, inside, sliding_pairs, work)
         else:
-            more = add_third_peg(out, count, pair, curve, inside, sliding_pairs, work)
-        if more < 0:
-            at[0], stats[CANDIDATES], stats[CONTACTS] = m, candidates, contacts
-            return count
-        count = more
-    at[0] = members.shape[0]
+            count = add_third_peg(out, count, pair, curve, inside, sliding_pairs, work)
+        if count < 0:
+            break
     return count
 
 
-@compiled_making_arrays
+@compiled
 def sliding_fixtures(
     standing: int,
-    chosen: IntArray,
+    chosen: IntVector,
     sliding_pairs: SlidingPairs,
-    members: IntArray,
+    members: IntVector,
     features: Features,
     curves: Curves,
     lattice: Lattice,
     limits: Limits,
     counting: bool,
-    stats: IntArray,
-) -> Array:
-    """All fixtures that rest on one of the ``chosen`` sliding pairs and on curves of ``members``.
+    stats: IntVector,
+    space: BlockSpace,
+) -> int:
+    """Write all fixtures that rest on one of the ``chosen`` sliding pairs and on curves of ``members``.
 
     Parameters and result as for ``two_and_two_cells``. So many pegs, 2 or 3, are ``standing``; of three, two
     form the sliding pair from the shared tail.
     """
-    out, work = np.empty((16, RECORD_LENGTH)), block_work(features, curves, lattice, limits, counting, stats)
+    work = block_work(features, curves, lattice, limits, counting, stats, space)
     count, least, most = int(np.int64(0)), np.inf, -np.inf
     asks_spots = standing == 3 and features.near.joined.shape[0] > 0
-    spots, slides = (
-        np.empty((members.shape[0] if asks_spots else 0, 4), np.int64),
-        np.empty((SLIDE_PARTS, 4), np.int64),
-    )
+    spots = space.spots[: members.shape[0] if asks_spots else 0]
     if asks_spots:
-        for number in chosen:
-            pair = placed_pair(number, sliding_pairs, features.loose)
+        for k in range(chosen.shape[0]):
+            pair = placed_pair(chosen[k], sliding_pairs, features.loose)
             least, most = min(least, pair.angle[0] - pair.reach), max(most, pair.angle[0] + pair.reach)
         write_member_spots(members, (least + most) / 2.0, (most - least) / 2.0, features, curves, spots)
-    for number in chosen:
+    for k in range(chosen.shape[0]):
+        number = chosen[k]
         if standing == 3 and not is_among(sliding_pairs.integers[number, TAIL], features.standing):
             continue
-        pair, work.at[0] = placed_pair(number, sliding_pairs, features.loose), 0
+        pair = placed_pair(number, sliding_pairs, features.loose)
         if asks_spots:
-            write_slide_spots(pair, sliding_pairs, features, slides)
-        while True:
-            count = add_of_pair(out, count, pair, standing, sliding_pairs, members, spots, slides, work)
-            if work.at[0] == members.shape[0]:
-                break
-            out = grown(out)
-    return out[:count]
+            write_slide_spots(pair, sliding_pairs, features, space.slides)
+        count = add_of_pair(
+            space.out, count, pair, standing, sliding_pairs, members, spots, space.slides, work
+        )
+        if count < 0:
+            return NO_ROOM_FOR_RECORDS
+    return count

@@ -3,11 +3,20 @@
 from __future__ import annotations
 
 from math import ceil, cos, hypot, sin
+from typing import NamedTuple
 
 import numpy as np
 
-from workhold.kernels.base.arrays import with_room
-from workhold.kernels.base.compiling import Array, IntArray, compiled_making_arrays, inner
+from workhold.kernels.base.compiling import (
+    Array,
+    IntArray,
+    IntMatrix,
+    IntVector,
+    Matrix,
+    Vector,
+    compiled,
+    inner,
+)
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS, X, Y, point_at
 from workhold.kernels.base.interval import TURN
 from workhold.kernels.base.tables import (
@@ -36,11 +45,18 @@ from workhold.kernels.base.tables import (
     NearSpots,
 )
 from workhold.kernels.chord.evaluation import parameter_on, write_curve, write_shift
-from workhold.kernels.chord.intervals import NARROW, SLIVER, chord_intervals
-from workhold.kernels.chord.stretches import STRETCH_LENGTH, add_stretches
+from workhold.kernels.chord.intervals import (
+    ALIVE,
+    MOST_EVENTS,
+    MOST_RANGES,
+    NARROW,
+    SLIVER,
+    write_chord_intervals,
+)
+from workhold.kernels.chord.stretches import DEPTH, STRETCH_LENGTH, add_stretches
 from workhold.kernels.curves.near_spots import may_join
 from workhold.kernels.curves.piece_bounds import tail_disc
-from workhold.kernels.curves.sliding_pairs import sliding_pairs_between
+from workhold.kernels.curves.sliding_pairs import MOST_SLIDES, write_sliding_pairs
 
 # Rounding of distances in mm, generously counted.
 ROUNDING = 1e-9
@@ -150,20 +166,61 @@ def any_comes_within(curve: Array, angles: Array, first: int, end: int, within: 
     return found
 
 
-@compiled_making_arrays
-def tail_curves(
+class CurveSpace(NamedTuple):
+    """The memory that the curves of one tail are written to; see :func:`make_curve_space`.
+
+    Parameters
+    ----------
+    integers, reals : (C, 7) and (C, 16) receive the curves.
+    pair_integers, pair_reals : (C, 7) and (C, 5) receive the sliding pairs.
+    stretches : (C, 13) receive the curves' stretches.
+    curve : (16,) work space.
+    events, ranges, slides, stack : see ``intervals``, ``sliding_pairs`` and ``stretches``.
+    """
+
+    integers: IntMatrix
+    reals: Matrix
+    pair_integers: IntMatrix
+    pair_reals: Matrix
+    stretches: Matrix
+    curve: Vector
+    events: Matrix
+    ranges: Matrix
+    slides: Matrix
+    stack: Vector
+
+
+def make_curve_space(rows: int) -> CurveSpace:
+    """Return memory for so many curves, sliding pairs and stretches of one tail."""
+    return CurveSpace(
+        integers=np.empty((rows, CURVE_INTEGERS), np.int64),
+        reals=np.empty((rows, CURVE_REALS)),
+        pair_integers=np.empty((rows, CURVE_INTEGERS), np.int64),
+        pair_reals=np.empty((rows, SLIDING_PAIR_REALS)),
+        stretches=np.empty((rows, STRETCH_LENGTH)),
+        curve=np.empty(CURVE_REALS),
+        events=np.empty((MOST_EVENTS, ALIVE + 1)),
+        ranges=np.empty((MOST_RANGES, 5)),
+        slides=np.empty((MOST_SLIDES, 3)),
+        stack=np.empty(DEPTH),
+    )
+
+
+@compiled
+def write_tail_curves(
     tail: int,
-    features: Array,
-    centers: IntArray,
-    lengths: Array,
-    starts: IntArray,
-    steps: IntArray,
-    angles: Array,
+    features: Matrix,
+    centers: IntVector,
+    lengths: Vector,
+    starts: IntVector,
+    steps: IntMatrix,
+    angles: Vector,
     near: NearSpots,
-    within: Array,
-) -> tuple[IntArray, Array, IntArray, Array, Array]:
-    """All chords of interest whose tail is on one feature and whose head is on the same feature or one of a
-    higher number.
+    within: Matrix,
+    space: CurveSpace,
+) -> tuple[int, int, int]:
+    """Write all chords of interest whose tail is on one feature and whose head is on the same feature or one
+    of a higher number.
 
     Parameters
     ----------
@@ -179,15 +236,14 @@ def tail_curves(
 
     Returns
     -------
-    (integers, reals, sliding pair integers, sliding pair reals, stretches)
-        See ``base.tables``. The orientations of sliding pairs, alpha - shift, are still to be brought into
-        range by the caller, and the curves' stretches are counted from 0 for this tail.
+    (int, int, int)
+        How many curves, sliding pairs and stretches there are; the first is -1 where there is no room. The
+        orientations of sliding pairs, alpha - shift, are still to be brought into range by the caller, and
+        the curves' stretches are counted from 0 for this tail.
     """
-    integers, reals = np.empty((256, CURVE_INTEGERS), np.int64), np.empty((256, CURVE_REALS))
-    whole, sliding_pairs = np.empty((16, CURVE_INTEGERS), np.int64), np.empty((16, SLIDING_PAIR_REALS))
-    stretches = np.empty((64, STRETCH_LENGTH))
-    count = sliding_pair_count = stretch_count = int(np.int64(0))
-    curve = np.empty(CURVE_REALS)
+    integers, reals, ranges, sliding = space.integers, space.reals, space.ranges, space.slides
+    curve = space.curve
+    count = pair_count = stretch_count = int(np.int64(0))
     a = features[tail]
     for head in range(tail, features.shape[0]):
         b = features[head]
@@ -197,15 +253,13 @@ def tail_curves(
             d = lengths[length]
             if d > apart + play + ROUNDING or d < apart - play - ROUNDING:
                 continue
-            ranges = chord_intervals(a, b, d)
-            sliding = sliding_pairs_between(a, b, d)
             slides = 0
-            for k in range(sliding.shape[0]):
+            for k in range(write_sliding_pairs(a, b, d, sliding)):
                 if slides_near(a, b, (tail, head), near, sliding[k], d):
                     for column_of in range(3):
                         sliding[slides, column_of] = sliding[k, column_of]
                     slides += 1
-            for k in range(ranges.shape[0]):
+            for k in range(write_chord_intervals(a, b, d, space.events, ranges)):
                 write_curve(curve, a, b, d, ranges[k, 2], 0.0)
                 curve[FROM], curve[TO] = ranges[k, 0], ranges[k, 1]
                 curve[TANGENT_FROM], curve[TANGENT_TO] = ranges[k, 3], ranges[k, 4]
@@ -214,40 +268,71 @@ def tail_curves(
                 if not may_exist(a, b, curve) or not write_near_range(a, b, (tail, head), near, curve):
                     continue
                 first = stretch_count
-                stretches, stretch_count = add_stretches(stretches, stretch_count, a, b, curve)
+                stretch_count = add_stretches(space.stretches, stretch_count, a, b, curve, space.stack)
+                if stretch_count < 0:
+                    return -1, 0, 0
                 for step in range(starts[length], starts[length + 1]):
                     column, row = steps[step, 0], steps[step, 1]
                     if head == tail and (column < 0 or (column == 0 and row < 0)):
                         continue
                     if not comes_within(curve[NEAR_FROM], curve[NEAR_TO], angles[step], within):
                         continue
-                    integers, reals = with_room(integers, count), with_room(reals, count)
+                    if count == integers.shape[0]:
+                        return -1, 0, 0
                     write_step(integers[count], tail, head, column, row, center)
                     integers[count, FIRST_STRETCH], integers[count, END_STRETCH] = first, stretch_count
                     for k_of in range(CURVE_REALS):
                         reals[count, k_of] = curve[k_of]
                     write_shift(reals[count], angles[step])
                     count += 1
-            for step in range(starts[length], starts[length + 1]):
-                column, row = steps[step, 0], steps[step, 1]
-                if head == tail and (column < 0 or (column == 0 and row < 0)):
-                    continue
-                for k in range(slides):
-                    whole = with_room(whole, sliding_pair_count)
-                    sliding_pairs = with_room(sliding_pairs, sliding_pair_count)
-                    write_step(whole[sliding_pair_count], tail, head, column, row, center)
-                    for column_of in range(3):
-                        sliding_pairs[sliding_pair_count, column_of] = sliding[k, column_of]
-                    sliding_pairs[sliding_pair_count, STEP_LENGTH] = d
-                    sliding_pairs[sliding_pair_count, ORIENTATION] = sliding[k, DIRECTION] - angles[step]
-                    sliding_pair_count += 1
-    return (
-        integers[:count],
-        reals[:count],
-        whole[:sliding_pair_count],
-        sliding_pairs[:sliding_pair_count],
-        stretches[:stretch_count],
-    )
+            pair_count = write_steps_of_slides(
+                tail,
+                head,
+                center,
+                d,
+                starts[length],
+                starts[length + 1],
+                steps,
+                angles,
+                slides,
+                space,
+                pair_count,
+            )
+            if pair_count < 0:
+                return -1, 0, 0
+    return count, pair_count, stretch_count
+
+
+@inner
+def write_steps_of_slides(
+    tail: int,
+    head: int,
+    center: int,
+    d: float,
+    first: int,
+    end: int,
+    steps: IntArray,
+    angles: Array,
+    slides: int,
+    space: CurveSpace,
+    count: int,
+) -> int:
+    """Write the sliding pairs of two features for each step of one length, after the first so many; return
+    their new number, -1 when there is no room."""
+    for step in range(first, end):
+        column, row = steps[step, 0], steps[step, 1]
+        if head == tail and (column < 0 or (column == 0 and row < 0)):
+            continue
+        for k in range(slides):
+            if count == space.pair_integers.shape[0]:
+                return -1
+            write_step(space.pair_integers[count], tail, head, column, row, center)
+            pair = space.pair_reals[count]
+            for column_of in range(3):
+                pair[column_of] = space.slides[k, column_of]
+            pair[STEP_LENGTH], pair[ORIENTATION] = d, space.slides[k, DIRECTION] - angles[step]
+            count += 1
+    return count
 
 
 @inner

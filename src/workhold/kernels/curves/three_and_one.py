@@ -11,14 +11,8 @@ from math import cos, hypot, pi, sin
 import numpy as np
 
 from workhold.conventions import GAP_SLACK
-from workhold.kernels.base.arrays import grown, sort_rows
-from workhold.kernels.base.compiling import (
-    Array,
-    IntArray,
-    compiled_making_arrays,
-    inner,
-    inner_making_arrays,
-)
+from workhold.kernels.base.arrays import sort_rows
+from workhold.kernels.base.compiling import Array, IntArray, IntVector, Vector, compiled, inner
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, local_size
 from workhold.kernels.base.interval import TURN
 from workhold.kernels.base.tables import (
@@ -29,7 +23,6 @@ from workhold.kernels.base.tables import (
     HIGH,
     LENGTH,
     LOW,
-    PIECE_LENGTH,
     ROW_STEP,
     SHIFT,
     STEADY,
@@ -53,14 +46,15 @@ from workhold.kernels.contact.location_bounds import (
     most_allowed,
     write_spot,
 )
-from workhold.kernels.contact.record import RECORD_LENGTH, angle_of, write_given_up
+from workhold.kernels.contact.record import angle_of, write_given_up
 from workhold.kernels.contact.rules import share_a_carrier
 from workhold.kernels.curves.block_work import (
-    CANDIDATES,
-    CONTACTS,
     CROSSED,
+    NO_ROOM_FOR_PIECES,
+    NO_ROOM_FOR_RECORDS,
     PAIRS,
     STOPPED,
+    BlockSpace,
     BlockWork,
     block_work,
     is_among,
@@ -68,8 +62,8 @@ from workhold.kernels.curves.block_work import (
 )
 from workhold.kernels.curves.moving_pegs import add_moving_pegs, height_range
 from workhold.kernels.curves.near_spots import is_any_joined, may_be_three, spots_of
-from workhold.kernels.curves.piece_bounds import HAIR, kept_edges, tail_disc
-from workhold.kernels.curves.pieces import cell_pieces
+from workhold.kernels.curves.piece_bounds import HAIR, clear_edges, tail_disc
+from workhold.kernels.curves.pieces import write_pieces
 from workhold.kernels.curves.roots import ROOT_PSI, ROOT_RADIUS, crossings, may_meet
 
 # Columns of a limb, one of the two chords of a triple: what the pairing of pieces looks at.
@@ -77,7 +71,6 @@ LIMB_LOW, LIMB_HIGH, LIMB_VALUE_LEAST, LIMB_VALUE_MOST, LIMB_PIECE, LIMB_TAIL = 
 LIMB_TAIL_FIRST, LIMB_TAIL_END, LIMB_HEAD_FIRST, LIMB_HEAD_END = range(6, 10)
 # Both contacts as spots (``contact.location_bounds``).
 LIMB_TAIL_SPOT, LIMB_HEAD_SPOT = 10, 10 + CONTACT_LENGTH
-LIMB_LENGTH = LIMB_HEAD_SPOT + CONTACT_LENGTH
 # Radians from the seam of a circle, where no curve goes on, in which rounding may take a value past it.
 BESIDE_SEAM = 1e-3
 
@@ -163,16 +156,15 @@ def limbs_beyond(limb: Array, other: Array, precision: Precision, room: Array) -
     return least_error_in(tail, head, third, precision, room, most) > most
 
 
-@inner_making_arrays
-def sorted_limbs(limbs: Array) -> Array:
-    """Limbs (N, 20) with those of each tail in the order of their least values."""
-    out, first = np.empty(limbs.shape), int(np.int64(0))
-    keys, order = np.empty(limbs.shape[0]), np.empty(limbs.shape[0], np.int64)
+@inner
+def sort_limbs(limbs: Array, keys: Array, order: IntArray, out: Array) -> None:
+    """Write (N, 20) limbs to ``out`` with those of each tail in the order of their least values; ``keys`` and
+    ``order`` are (N,) work space."""
+    first = int(np.int64(0))
     for k in range(1, limbs.shape[0] + 1):
         if k == limbs.shape[0] or limbs[k, LIMB_TAIL] != limbs[first, LIMB_TAIL]:
             sort_rows(limbs[first:k], LIMB_VALUE_LEAST, 1.0, keys[first:k], order[first:k], out[first:k])
             first = k
-    return out
 
 
 @inner
@@ -203,24 +195,23 @@ def heads_share_a_line(one: IntArray, two: IntArray, features: Array, lattice: L
 
 @inner
 def add_limb_pairs(out: Array, count: int, limbs: Array, pieces: Array, work: BlockWork) -> int:
-    """Appends what comes of the pairs of (N, 20) limbs with a common tail, sorted, from the one at
-    ``work.at`` on (see ``block_work``)."""
-    at, stats, lattice, limits = work.at, work.stats, work.lattice, work.limits
+    """Append what comes of the pairs of (N, 20) limbs with a common tail, sorted, and return the new number of
+    records, -1 when there is no room."""
+    stats, lattice, limits = work.stats, work.lattice, work.limits
     loose, curves, integers = work.features.loose, work.curves, work.curves.integers
     near, asks_spots = work.features.near, work.features.near.joined.shape[0] > 0
-    end = at[0]
-    for i in range(at[0], limbs.shape[0]):
+    end = int(np.int64(0))
+    for i in range(limbs.shape[0]):
         if stats[STOPPED] != 0:
             break
         limb = limbs[i]
         tail = int(limb[LIMB_TAIL])
         while end < limbs.shape[0] and limbs[end, LIMB_TAIL] == limb[LIMB_TAIL]:
             end += 1
-        if at[1] == 0:
-            stats[PAIRS] += end - 1 - i
+        stats[PAIRS] += end - 1 - i
         circle = loose[tail, IS_ARC] != 0.0 and loose[tail, HALF_EXTENT] >= pi
         period = TURN if circle else 0.0
-        for ahead in range(at[1], end - 1 - i):
+        for ahead in range(end - 1 - i):
             other = limbs[i + 1 + ahead]
             if other[LIMB_VALUE_LEAST] > limb[LIMB_VALUE_MOST]:
                 # All that follow have larger values, too. Beside the seam of a circle these may be the same ones.
@@ -249,68 +240,74 @@ def add_limb_pairs(out: Array, count: int, limbs: Array, pieces: Array, work: Bl
                 continue
             if stats[STOPPED] != 0:
                 break
-            candidates, contacts = stats[CANDIDATES], stats[CONTACTS]
             number = crossings(
                 first, second, loose, curves, POSITION, 0.0, period, 0.0, work.stack, work.roots
             )
-            more = -1
             if number >= 0:
-                more = add_triples(out, count, number, one, two, work)
+                count = add_triples(out, count, number, one, two, work)
             elif count < out.shape[0]:
                 write_given_up(out[count], 3.0, first, second, integers)
-                more = count + 1
-            if more < 0:
-                at[0], at[1] = i, ahead
-                if ahead == 0:
-                    stats[PAIRS] -= end - 1 - i
-                stats[CANDIDATES], stats[CONTACTS] = candidates, contacts
+                count += 1
+            else:
+                count = NO_ROOM_FOR_RECORDS
+            if count < 0:
                 return count
             stats[CROSSED] += 1
-            count = more
-        at[1] = 0
-    at[0] = limbs.shape[0]
     return count
 
 
-@compiled_making_arrays
+@compiled
 def three_and_one_cells(
-    edges: Array,
-    members: IntArray,
+    edges: Vector,
+    members: IntVector,
     features: Features,
     curves: Curves,
     lattice: Lattice,
     limits: Limits,
     counting: bool,
-    stats: IntArray,
-) -> Array:
-    """All fixtures of three and one peg with psi in some neighbouring cells whose chords from the shared tail
-    are no sliding pairs.
+    stats: IntVector,
+    space: BlockSpace,
+) -> int:
+    """Write all fixtures of three and one peg with psi in some neighbouring cells whose chords from the
+    shared tail are no sliding pairs.
 
     Parameters and result as for ``two_and_two_cells``. The shared tail is on the feature of the lowest
     number, so that each triple of pegs shows up once. The curves, and so the pieces, are in the order of
     their tails.
     """
-    out = np.empty((64, RECORD_LENGTH))
     count = int(np.int64(0))
-    work = block_work(features, curves, lattice, limits, counting, stats)
-    kept, room = kept_edges(members.shape[0]), np.empty((64, PIECE_LENGTH))
-    loose, pitch_x = features.loose, lattice.pitch_x
+    work = block_work(features, curves, lattice, limits, counting, stats, space)
+    kept = space.kept[: members.shape[0]]
+    clear_edges(kept)
     for cell in range(edges.shape[0] - 1):
         if stats[STOPPED] != 0:
             break
         low, high, farthest = edges[cell], edges[cell + 1], np.inf
         if not counting:
             farthest = farthest_right(features, low, high) - limits.gap + GAP_SLACK + HAIR
-        room, number = cell_pieces(
-            low, high, members, loose, curves, pitch_x, 0.0, POSITION, kept, farthest, room
+        number = write_pieces(
+            low,
+            high,
+            members,
+            features.loose,
+            curves,
+            lattice.pitch_x,
+            0.0,
+            POSITION,
+            farthest,
+            kept,
+            space.edges,
+            space.pieces,
         )
-        pieces = room[:number]
-        limbs = np.empty((pieces.shape[0], LIMB_LENGTH))
-        limb_count = write_limbs(pieces, features, curves, farthest, limits.wrench_length, limbs)
-        limbs, work.at[0] = sorted_limbs(limbs[:limb_count]), 0
-        while True:
-            count = add_limb_pairs(out, count, limbs, pieces, work)
-            if work.at[0] == limb_count:
-                break
-            out = grown(out)
-    return out[:count]
+        if number < 0:
+            return NO_ROOM_FOR_PIECES
+        pieces = space.pieces[:number]
+        found = write_limbs(
+            pieces, features, curves, farthest, limits.wrench_length, space.unordered_limbs[:number]
+        )
+        limbs = space.limbs[:found]
+        sort_limbs(space.unordered_limbs[:found], space.keys[:found], space.order[:found], limbs)
+        count = add_limb_pairs(space.out, count, limbs, pieces, work)
+        if count < 0:
+            return NO_ROOM_FOR_RECORDS
+    return count

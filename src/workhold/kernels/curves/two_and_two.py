@@ -16,8 +16,8 @@ from math import ceil, floor
 import numpy as np
 
 from workhold.conventions import GAP_SLACK, LEAST_CLAMPING
-from workhold.kernels.base.arrays import grown, sort_rows
-from workhold.kernels.base.compiling import Array, IntArray, compiled_making_arrays, inner
+from workhold.kernels.base.arrays import sort_rows
+from workhold.kernels.base.compiling import Array, IntArray, IntVector, Vector, compiled, inner
 from workhold.kernels.base.tables import (
     ACROSS_LEAST,
     ACROSS_MOST,
@@ -26,12 +26,12 @@ from workhold.kernels.base.tables import (
     HIGH,
     LEFTWARD_LOW,
     LOW,
-    PIECE_LENGTH,
     RIGHTWARD_LOW,
     STEADY,
     TAIL,
     VALUE_LEAST,
     VALUE_MOST,
+    X_MOVING,
     X_STANDING,
     Curves,
     Features,
@@ -39,25 +39,27 @@ from workhold.kernels.base.tables import (
     Limits,
 )
 from workhold.kernels.chord.evaluation import HEIGHT
-from workhold.kernels.contact.record import RECORD_LENGTH, angle_of, write_given_up
+from workhold.kernels.contact.record import angle_of, write_given_up
 from workhold.kernels.curves.block_work import (
     CROSSED,
+    NO_ROOM_FOR_PIECES,
+    NO_ROOM_FOR_RECORDS,
     PAIRS,
     STOPPED,
+    BlockSpace,
     BlockWork,
     add_listed,
     block_work,
     is_among,
     place_chord,
 )
-from workhold.kernels.curves.piece_bounds import HAIR, kept_edges
-from workhold.kernels.curves.pieces import cell_pieces
+from workhold.kernels.curves.piece_bounds import HAIR, clear_edges
+from workhold.kernels.curves.pieces import write_pieces
 from workhold.kernels.curves.roots import MULTIPLE, ROOT_PSI, ROOT_RADIUS, crossings, may_meet
 
 # Columns of a role: what the pairing of pieces looks at, one row for each piece that may be on that carrier.
 ROLE_X, ROLE_FORCE_LOW, ROLE_FORCE_HIGH, ROLE_VALUE_LEAST = range(4)
 ROLE_VALUE_MOST, ROLE_LOW, ROLE_HIGH, ROLE_PIECE = range(4, 8)
-ROLE_LENGTH = 8
 
 
 @inner
@@ -142,25 +144,25 @@ def add_crossings(out: Array, count: int, number: int, one: int, two: int, work:
 
 @inner
 def add_pairs(out: Array, count: int, standing: Array, moving: Array, pieces: Array, work: BlockWork) -> int:
-    """Appends what comes of the pairs of two lists of roles, from the one at ``work.at`` on (see
-    ``block_work``).
+    """Append what comes of the pairs of two lists of roles, and return the new number of records, -1 when
+    there is no room.
 
     Parameters
     ----------
     standing, moving : (N, 8) and (M, 8) roles, the moving ones from right to left.
     """
-    at, stats, counting = work.at, work.stats, work.counting
+    stats, counting = work.stats, work.counting
     features, curves, lattice, limits = work.features, work.curves, work.lattice, work.limits
     integers, offset, pitch_y = curves.integers, lattice.row_offset, lattice.pitch_y
     gap = limits.gap - GAP_SLACK - HAIR
     once = counting and limits.most_listed == 0.0 and counts_once(features, lattice)
-    for i in range(at[0], standing.shape[0]):
+    for i in range(standing.shape[0]):
         if stats[STOPPED] != 0:
             break
         role = standing[i]
         first = pieces[int(role[ROLE_PIECE])]
         one = int(first[CURVE])
-        for j in range(at[1], moving.shape[0]):
+        for j in range(moving.shape[0]):
             other = moving[j]
             if not counting and other[ROLE_X] - role[ROLE_X] < gap:
                 break
@@ -183,32 +185,29 @@ def add_pairs(out: Array, count: int, standing: Array, moving: Array, pieces: Ar
                 first, second, features.loose, curves, HEIGHT, offset, pitch_y, flat, work.stack, work.roots
             )
             if count + max(number, 1) > out.shape[0]:
-                at[0], at[1] = i, j
-                stats[PAIRS] -= 1
-                return count
+                return NO_ROOM_FOR_RECORDS
             stats[CROSSED] += 1
             if number < 0:
                 write_given_up(out[count], 2.0, first, second, integers)
                 count += 1
             count = add_crossings(out, count, number, one, two, work)
-        at[1] = 0
-    at[0] = standing.shape[0]
     return count
 
 
-@compiled_making_arrays
+@compiled
 def two_and_two_cells(
-    edges: Array,
-    members: IntArray,
+    edges: Vector,
+    members: IntVector,
     features: Features,
     curves: Curves,
     lattice: Lattice,
     limits: Limits,
     counting: bool,
-    stats: IntArray,
-) -> Array:
-    """All fixtures of two and two pegs with psi in some neighbouring cells, but those that rest on a sliding
-    pair.
+    stats: IntVector,
+    space: BlockSpace,
+) -> int:
+    """Write all fixtures of two and two pegs with psi in some neighbouring cells to ``space.out``, but those
+    that rest on a sliding pair.
 
     Parameters
     ----------
@@ -220,12 +219,12 @@ def two_and_two_cells(
 
     Returns
     -------
-    (N, 19) array of records
+    how many records there are, or what there is no room for, see ``block_work``
     """
-    out = np.empty((64, RECORD_LENGTH))
     count = int(np.int64(0))
-    work = block_work(features, curves, lattice, limits, counting, stats)
-    kept, room = kept_edges(members.shape[0]), np.empty((64, PIECE_LENGTH))
+    work = block_work(features, curves, lattice, limits, counting, stats, space)
+    kept = space.kept[: members.shape[0]]
+    clear_edges(kept)
     pitch_x, least_margin = lattice.pitch_x, limits.least_margin
     # Where closing clamps, standing pegs push to the right; where opening does, to the left.
     standing_force, moving_force = RIGHTWARD_LOW, LEFTWARD_LOW
@@ -234,26 +233,39 @@ def two_and_two_cells(
     for cell in range(edges.shape[0] - 1):
         if stats[STOPPED] != 0:
             break
-        low, high = edges[cell], edges[cell + 1]
-        room, number = cell_pieces(
-            low, high, members, features.loose, curves, pitch_x, least_margin, HEIGHT, kept, np.inf, room
+        number = write_pieces(
+            edges[cell],
+            edges[cell + 1],
+            members,
+            features.loose,
+            curves,
+            pitch_x,
+            least_margin,
+            HEIGHT,
+            np.inf,
+            kept,
+            space.edges,
+            space.pieces,
         )
-        pieces = room[:number]
-        roles, counts = np.empty((2, pieces.shape[0], ROLE_LENGTH)), np.empty(2, np.int64)
-        for side in range(2):
-            touched = features.standing if side == 0 else features.moving
-            force = standing_force if side == 0 else moving_force
-            counts[side] = write_roles(
-                pieces, curves.integers, touched, X_STANDING + side, force, counting, roles[side]
-            )
-        moving = np.empty((counts[1], ROLE_LENGTH))
+        if number < 0:
+            return NO_ROOM_FOR_PIECES
+        pieces, integers = space.pieces[:number], curves.integers
+        standing = write_roles(
+            pieces, integers, features.standing, X_STANDING, standing_force, counting, space.standing
+        )
+        moving = write_roles(
+            pieces, integers, features.moving, X_MOVING, moving_force, counting, space.unordered
+        )
         # The rightmost first.
-        keys, order = np.empty(counts[1]), np.empty(counts[1], np.int64)
-        sort_rows(roles[1, : counts[1]], ROLE_X, -1.0, keys, order, moving)
-        standing, work.at[0] = roles[0, : counts[0]], 0
-        while True:
-            count = add_pairs(out, count, standing, moving, pieces, work)
-            if work.at[0] == standing.shape[0]:
-                break
-            out = grown(out)
-    return out[:count]
+        sort_rows(
+            space.unordered[:moving],
+            ROLE_X,
+            -1.0,
+            space.keys[:moving],
+            space.order[:moving],
+            space.moving[:moving],
+        )
+        count = add_pairs(space.out, count, space.standing[:standing], space.moving[:moving], pieces, work)
+        if count < 0:
+            return NO_ROOM_FOR_RECORDS
+    return count

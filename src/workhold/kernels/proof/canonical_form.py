@@ -6,7 +6,16 @@ from __future__ import annotations
 from math import pi
 
 from workhold.conventions import LEAST_SPAN
-from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
+from workhold.kernels.base.compiling import (
+    IntArray,
+    IntMatrix,
+    IntVector,
+    Matrix,
+    Stack,
+    Vector,
+    compiled,
+    inner,
+)
 from workhold.kernels.base.tables import Setting
 from workhold.kernels.contact.record import NULL, take_pegs, touch
 from workhold.kernels.proof.newton_kantorovich import held, wrenches
@@ -14,15 +23,15 @@ from workhold.kernels.proof.newton_kantorovich import held, wrenches
 
 @compiled
 def contacts_of(
-    records: Array,
-    rows: Array,
+    records: Matrix,
+    rows: Matrix,
     setting: Setting,
-    points: Array,
-    gaps: Array,
-    nulls: Array,
-    forces: Array,
-    w: Array,
-    pairs: Array,
+    points: Stack,
+    gaps: Vector,
+    nulls: Matrix,
+    forces: Matrix,
+    w: Matrix,
+    pairs: Stack,
 ) -> None:
     """Where the contacts of records are, and with what forces they hold.
 
@@ -56,11 +65,11 @@ def contacts_of(
 
 @compiled
 def to_canonical_form(
-    standing: IntArray,
-    theta: Array,
-    columns: IntArray,
-    rows: IntArray,
-    orders: IntArray,
+    standing: IntVector,
+    theta: Vector,
+    columns: IntMatrix,
+    rows: IntMatrix,
+    orders: IntMatrix,
     swapped: int,
     hair: float,
 ) -> None:

@@ -26,9 +26,13 @@ import numpy as np
 from workhold.kernels.base.compiling import (
     Array,
     ByteArray,
-    compiled_making_arrays,
+    ByteVector,
+    Matrix,
+    Stack,
+    Stacks,
+    Vector,
+    compiled,
     inner,
-    inner_making_arrays,
 )
 from workhold.kernels.base.tables import Setting
 from workhold.kernels.contact.record import (
@@ -88,19 +92,18 @@ class NewtonWorkSpace(NamedTuple):
     start : (4,) the middle of the box.
     """
 
-    w: Array
-    pairs: Array
-    stack: Array
-    numbers: Array
-    slopes: Array
-    place: Array
-    bounds: Array
-    start: Array
+    w: Matrix
+    pairs: Stack
+    stack: Stack
+    numbers: Matrix
+    slopes: Stack
+    place: Matrix
+    bounds: Matrix
+    start: Vector
 
 
-@inner_making_arrays
-def work_space() -> NewtonWorkSpace:
-    """A work space."""
+def make_newton_space() -> NewtonWorkSpace:
+    """Return memory to contract boxes in."""
     return NewtonWorkSpace(
         np.empty((WORK_LENGTH, 4)),
         np.empty((3, 4, 2)),
@@ -310,17 +313,17 @@ def solutions_in(
     return -1
 
 
-@inner
-def solutions_in_all(
-    records: Array,
-    features: Array,
+@compiled
+def write_solutions(
+    records: Matrix,
+    features: Matrix,
     setting: Setting,
-    frames: Array,
+    frames: Stacks,
     space: NewtonWorkSpace,
-    verdicts: ByteArray,
-    roots: Array,
+    verdicts: ByteVector,
+    roots: Matrix,
 ) -> int:
-    """Writes the verdict on each box and the roots of all, see :func:`interval_newton`, and returns how many
+    """Write the verdict on each box and the roots of all, see :func:`interval_newton`, and return how many
     there are."""
     count = int(np.int64(0))
     for n in range(records.shape[0]):
@@ -330,11 +333,10 @@ def solutions_in_all(
     return count
 
 
-@compiled_making_arrays
 def interval_newton(
     records: Array, features: Array, setting: Setting, frames: Array
 ) -> tuple[ByteArray, Array]:
-    """Contracts boxes one by one.
+    """Contract boxes one by one.
 
     Parameters
     ----------
@@ -349,15 +351,15 @@ def interval_newton(
     """
     verdicts = np.empty(records.shape[0], np.int8)
     roots = np.empty((ROOTS * records.shape[0], records.shape[1]))
-    count = solutions_in_all(records, features, setting, frames, work_space(), verdicts, roots)
+    count = write_solutions(records, features, setting, frames, make_newton_space(), verdicts, roots)
     return verdicts, roots[:count].copy()
 
 
-@inner
+@compiled
 def write_jacobians(
-    records: Array, features: Array, setting: Setting, w: Array, points: Array, out: Array
+    records: Matrix, features: Matrix, setting: Setting, w: Matrix, points: Matrix, out: Stack
 ) -> None:
-    """Writes the Jacobians (N, 4, 4) of the contact equations at the middles of records."""
+    """Write the Jacobians (N, 4, 4) of the contact equations at the middles of records."""
     for n in range(records.shape[0]):
         take_pegs(records[n], setting.lattice, w)
         touch(records[n], features, setting.limits.wrench_length, w, points)
@@ -366,9 +368,8 @@ def write_jacobians(
                 out[n, i, j] = w[SLOPES + i, j]
 
 
-@compiled_making_arrays
 def jacobians(records: Array, features: Array, setting: Setting) -> Array:
-    """Jacobians (N, 4, 4) of the contact equations at the middles of records."""
+    """Return the Jacobians (N, 4, 4) of the contact equations at the middles of records."""
     out = np.empty((records.shape[0], 4, 4))
     write_jacobians(records, features, setting, np.empty((WORK_LENGTH, 4)), np.empty((4, 2)), out)
     return out

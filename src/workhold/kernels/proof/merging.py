@@ -5,11 +5,15 @@ One contact is found by several pairs of chords, and in neighbouring cells.
 
 from __future__ import annotations
 
-from workhold.kernels.base.compiling import Array, IntArray, compiled
+from workhold.kernels.base.compiling import (
+    IntVector,
+    Matrix,
+    compiled,
+)
 
 
 @compiled
-def merge_boxes(low: Array, high: Array, may: IntArray, heads: IntArray) -> int:
+def merge_boxes(low: Matrix, high: Matrix, may: IntVector, heads: IntVector) -> int:
     """Lets each box join the one before it, where it may and both overlap, which grows to hold both.
 
     Parameters

@@ -38,7 +38,14 @@ from workhold.conventions import (
     LEAST_SPAN,
     TOUCHING,
 )
-from workhold.kernels.base.compiling import Array, ByteArray, compiled, inner
+from workhold.kernels.base.compiling import (
+    Array,
+    ByteVector,
+    Matrix,
+    Stack,
+    compiled,
+    inner,
+)
 from workhold.kernels.base.distance import segment_distance
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y, largest_number
 from workhold.kernels.base.tables import Setting
@@ -284,15 +291,15 @@ def is_clear(points: Array, moves: Array, outline: Array, discs: Array, setting:
 
 @compiled
 def certified(
-    records: Array,
-    features: Array,
-    outline: Array,
-    discs: Array,
+    records: Matrix,
+    features: Matrix,
+    outline: Matrix,
+    discs: Matrix,
     setting: Setting,
-    solutions: Array,
-    verdicts: ByteArray,
-    w: Array,
-    pairs: Array,
+    solutions: Matrix,
+    verdicts: ByteVector,
+    w: Matrix,
+    pairs: Stack,
 ) -> None:
     """Decides records one by one.
 

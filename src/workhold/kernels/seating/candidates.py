@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from math import cos, inf, sin, sqrt
 
-from workhold.kernels.base.compiling import Array, ByteArray, IntArray, compiled, inner
+from workhold.kernels.base.compiling import (
+    Array,
+    ByteVector,
+    IntArray,
+    IntMatrix,
+    Matrix,
+    compiled,
+    inner,
+)
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.base.tables import HEAD, TAIL
 from workhold.kernels.seating.columns import (
@@ -102,7 +110,7 @@ def slope_of_miss(
 
 
 @compiled
-def complete_three(roots: Array, given: Given, pocket_pieces: IntArray, out: Array) -> int:
+def complete_three(roots: Matrix, given: Given, pocket_pieces: IntMatrix, out: Matrix) -> int:
     """Writes the candidates of three contacts at roots of MISS (R, 6) to ``out``; returns their number.
 
     With beta how far the third contact is from the foot of P, along the face, S' = beta / (n . x). So at the
@@ -155,7 +163,7 @@ def place_third(row: Array, along: float, peg: int, given: Given) -> None:
 
 
 @compiled
-def complete_two(roots: Array, given: Given, pocket_pieces: IntArray, out: Array) -> int:
+def complete_two(roots: Matrix, given: Given, pocket_pieces: IntMatrix, out: Matrix) -> int:
     """Writes the candidates of four contacts, two of each jaw, at roots of APART (R, 6).
 
     Returns their number.
@@ -226,7 +234,7 @@ def add_fourths(fixed: Array, jaw: int, given: Given, out: Array, count: int) ->
 
 
 @compiled
-def complete_third(roots: Array, given: Given, pocket_pieces: IntArray, out: Array) -> int:
+def complete_third(roots: Matrix, given: Given, pocket_pieces: IntMatrix, out: Matrix) -> int:
     """Writes the candidates of three contacts of a jaw, at roots of GAP (R, 6); returns their number.
 
     Their place is that at separation 0.
@@ -255,7 +263,7 @@ def complete_third(roots: Array, given: Given, pocket_pieces: IntArray, out: Arr
 
 
 @compiled
-def fourths(fixed: Array, jaw: int, given: Given, out: Array) -> int:
+def fourths(fixed: Matrix, jaw: int, given: Given, out: Matrix) -> int:
     """Writes what ``add_fourths`` does, of a part that three contacts fix to a jaw in places (N, 24)."""
     count = 0
     for n in range(fixed.shape[0]):
@@ -266,7 +274,7 @@ def fourths(fixed: Array, jaw: int, given: Given, out: Array) -> int:
 
 
 @compiled
-def settle(candidates: Array, given: Given, size: float, balance: Array, normal: Array) -> None:
+def settle(candidates: Matrix, given: Given, size: float, balance: Matrix, normal: Matrix) -> None:
     """Writes the forces of candidates (N, 24), how well they balance, and the clearance of all other pegs.
 
     Forces, moments over ``size`` in mm and the jaw give four equations; they are met by least squares.
@@ -317,7 +325,7 @@ def settle(candidates: Array, given: Given, size: float, balance: Array, normal:
 
 
 @compiled
-def judge_balance(candidates: Array, slack: float, slack_in_doubt: float, verdicts: ByteArray) -> None:
+def judge_balance(candidates: Matrix, slack: float, slack_in_doubt: float, verdicts: ByteVector) -> None:
     """Writes whether all contacts of candidates (N, 24) press and balance, or whether that is in doubt.
 
     Parameters

@@ -14,7 +14,15 @@ from __future__ import annotations
 
 from math import floor, inf, pi, sqrt
 
-from workhold.kernels.base.compiling import Array, ByteArray, IntArray, compiled, inner
+from workhold.kernels.base.compiling import (
+    Array,
+    ByteVector,
+    IntVector,
+    Matrix,
+    Vector,
+    compiled,
+    inner,
+)
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.antipodal_step import antipodal_step
 from workhold.kernels.seating.columns import (
@@ -258,15 +266,15 @@ def close_one(
 
 @compiled
 def close_jaws(
-    configs: Array,
-    lengths: Array,
+    configs: Matrix,
+    lengths: Matrix,
     most: float,
     obstacles: Obstacles,
-    seats: Array,
+    seats: Matrix,
     work: DescentWorkSpace,
-    ends: ByteArray,
-    begins: IntArray,
-    nodes: Array,
+    ends: ByteVector,
+    begins: IntVector,
+    nodes: Matrix,
 ) -> None:
     """Closes the jaws from configurations (N, 4), in place, until nothing moves or the stop is met.
 
@@ -353,15 +361,15 @@ def reach_one(
 
 @compiled
 def reach_out(
-    configs: Array,
-    aims: Array,
-    far: Array,
+    configs: Matrix,
+    aims: Matrix,
+    far: Vector,
     trust: float,
     most: float,
     obstacles: Obstacles,
     work: DescentWorkSpace,
-    begins: IntArray,
-    nodes: Array,
+    begins: IntVector,
+    nodes: Matrix,
 ) -> None:
     """Moves configurations (N, 4) of theta, x, y and S, in place, along aims as far as they lead.
 

@@ -43,7 +43,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from workhold.kernels.base.compiling import Array, ByteArray, IntArray
+from workhold.kernels.base.compiling import (
+    ByteVector,
+    IntMatrix,
+    IntVector,
+    Matrix,
+    Vector,
+)
 
 KIND, SOURCE, FIRST_PEG, SECOND_PEG, ANGLE, PIVOT_X, PIVOT_Y = range(7)
 PAIR_LENGTH = 7
@@ -75,13 +81,13 @@ class Given(NamedTuple):
         one, touch.
     """
 
-    pairs: Array
-    curves: IntArray
-    reals: Array
-    rows: Array
-    pegs: Array
-    right: IntArray
-    parts: IntArray
+    pairs: Matrix
+    curves: IntMatrix
+    reals: Matrix
+    rows: Matrix
+    pegs: Matrix
+    right: IntVector
+    parts: IntMatrix
 
 
 class JawCells(NamedTuple):
@@ -95,7 +101,7 @@ class JawCells(NamedTuple):
     height : of its first peg in the pattern, in mm.
     """
 
-    cells: Array
+    cells: Matrix
     before: int
     height: float
 
@@ -118,16 +124,16 @@ class Obstacles(NamedTuple):
     most : the largest jaw separation, in mm.
     """
 
-    rows: Array
-    spans: Array
-    discs: Array
-    pegs: Array
-    right: IntArray
-    parts: IntArray
+    rows: Matrix
+    spans: Matrix
+    discs: Matrix
+    pegs: Matrix
+    right: IntVector
+    parts: IntMatrix
     size: float
     stop: float
-    hull: Array
-    half_plane: Array
+    hull: Matrix
+    half_plane: Vector
     most: float = inf
 
 
@@ -144,13 +150,13 @@ class SelfMotions(NamedTuple):
     clear : (M, 4) clearances of these pegs in mm, -inf first where one of them hinders.
     """
 
-    configs: Array
-    counts: IntArray
-    closed: ByteArray
-    across: Array
-    pegs: IntArray
-    pieces: IntArray
-    clear: Array
+    configs: Matrix
+    counts: IntVector
+    closed: ByteVector
+    across: Matrix
+    pegs: IntMatrix
+    pieces: IntMatrix
+    clear: Matrix
 
     @classmethod
     def room(cls, count: int, configs: int) -> SelfMotions:
@@ -184,11 +190,11 @@ class Manifolds(NamedTuple):
     across : (F, 2) direction in which the part gives way to both sides, NaN where it does not.
     """
 
-    rows: Array
-    configs: Array
-    begins: IntArray
-    closed: ByteArray
-    across: Array
+    rows: Matrix
+    configs: Matrix
+    begins: IntVector
+    closed: ByteVector
+    across: Matrix
 
     @classmethod
     def room(cls, count: int, configs: int) -> Manifolds:
@@ -220,18 +226,18 @@ class DescentWorkSpace(NamedTuple):
     turn : (3,) an orientation in radians, its cosine and its sine; NaN before the first.
     """
 
-    near: Array
-    basis: Array
-    triangle: Array
-    step: Array
-    way: Array
-    trial: Array
-    members: IntArray
-    known: Array
-    lists: IntArray
-    counts: IntArray
-    places: Array
-    turn: Array
+    near: Matrix
+    basis: Matrix
+    triangle: Matrix
+    step: Vector
+    way: Vector
+    trial: Vector
+    members: IntVector
+    known: Matrix
+    lists: IntMatrix
+    counts: IntVector
+    places: Matrix
+    turn: Vector
 
     @classmethod
     def for_pieces(cls, count: int) -> DescentWorkSpace:

@@ -7,7 +7,17 @@ from __future__ import annotations
 
 from math import hypot, inf, pi, sqrt
 
-from workhold.kernels.base.compiling import Array, ByteArray, IntArray, compiled, inner
+from workhold.kernels.base.compiling import (
+    Array,
+    ByteMatrix,
+    ByteVector,
+    IntArray,
+    IntMatrix,
+    IntVector,
+    Matrix,
+    compiled,
+    inner,
+)
 from workhold.kernels.seating.antipodal_step import is_peg_free
 from workhold.kernels.seating.closing import AT_REST, AT_THE_STOP
 from workhold.kernels.seating.columns import (
@@ -36,7 +46,7 @@ PARTS = 3
 
 
 @compiled
-def begin_descents(rows: Array, size: float, starts: Array, lengths: Array) -> None:
+def begin_descents(rows: Matrix, size: float, starts: Matrix, lengths: Matrix) -> None:
     """Writes where descent paths begin, to both sides of passes (N, 24) along their free motions.
 
     They begin nearer where the motion bends so much that they would lie elsewhere.
@@ -137,16 +147,16 @@ def end_of_free(
 
 @compiled
 def free_until(
-    chosen: IntArray,
-    whose: IntArray,
-    nodes: Array,
-    begins: IntArray,
-    shifts: Array,
-    others: ByteArray,
+    chosen: IntVector,
+    whose: IntVector,
+    nodes: Matrix,
+    begins: IntVector,
+    shifts: Matrix,
+    others: ByteMatrix,
     most: float,
     obstacles: Obstacles,
-    known: Array,
-    lasts: IntArray,
+    known: Matrix,
+    lasts: IntVector,
 ) -> None:
     """Writes the last node of each path at which, and before which, none of the other pegs is in the part.
 
@@ -177,17 +187,17 @@ def free_until(
 
 @compiled
 def take_up(
-    passes: IntArray,
-    chosen: IntArray,
-    whose: IntArray,
-    lasts: IntArray,
-    nodes: Array,
-    begins: IntArray,
-    how: ByteArray,
-    shifts: Array,
-    ends: Array,
-    lengths: Array,
-    left: ByteArray,
+    passes: IntVector,
+    chosen: IntVector,
+    whose: IntVector,
+    lasts: IntVector,
+    nodes: Matrix,
+    begins: IntVector,
+    how: ByteVector,
+    shifts: Matrix,
+    ends: Matrix,
+    lengths: Matrix,
+    left: ByteVector,
 ) -> None:
     """Writes where paths off both sides of passes come without leaving what is known, and which are left.
 
@@ -300,20 +310,20 @@ def doubt_at(config: Array, doubtful: Array, count: int, size: float) -> int:
 
 @compiled
 def write_places(
-    ends: Array,
-    how: ByteArray,
-    leaves: ByteArray,
+    ends: Matrix,
+    how: ByteVector,
+    leaves: ByteVector,
     manifolds: Manifolds,
-    lying: IntArray,
-    falling: IntArray,
-    seats: Array,
-    numbers: IntArray,
+    lying: IntVector,
+    falling: IntVector,
+    seats: Matrix,
+    numbers: IntVector,
     first: int,
     size: float,
-    doubtful: Array,
+    doubtful: Matrix,
     count: int,
-    fallen: IntArray,
-    out: IntArray,
+    fallen: IntVector,
+    out: IntVector,
 ) -> int:
     """Writes the places that descent paths end in, and returns how many configurations are not settled then.
 
@@ -362,7 +372,7 @@ def write_places(
 
 
 @compiled
-def leads_out(joins: IntArray, place: int, groups: IntArray) -> int:
+def leads_out(joins: IntMatrix, place: int, groups: IntVector) -> int:
     """The number of the first pass, by separation, from which on a place is joined with the outside, or -1.
 
     Parameters

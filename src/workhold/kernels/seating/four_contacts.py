@@ -10,7 +10,13 @@ from __future__ import annotations
 
 from math import cos, inf, sin
 
-from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
+from workhold.kernels.base.compiling import (
+    Array,
+    IntVector,
+    Matrix,
+    compiled,
+    inner,
+)
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import (
     BOTTOM,
@@ -177,10 +183,10 @@ def two_pairs(
     left: JawCells,
     right: JawCells,
     given: Given,
-    two_cells: Array,
-    stack: Array,
-    reaching: IntArray,
-    out: Array,
+    two_cells: Matrix,
+    stack: Matrix,
+    reaching: IntVector,
+    out: Matrix,
 ) -> int:
     """Orientations at which a pair of the left jaw and one of the right have one height; how many, or -1.
 
@@ -220,7 +226,9 @@ def two_pairs(
 
 
 @compiled
-def third_of_jaw(cells: Array, middles: Array, given: Given, discs: Array, stack: Array, out: Array) -> int:
+def third_of_jaw(
+    cells: Matrix, middles: Matrix, given: Given, discs: Matrix, stack: Matrix, out: Matrix
+) -> int:
     """Writes orientations at which a third peg of a pair's own jaw touches a piece.
 
     Returns how many, or -1.

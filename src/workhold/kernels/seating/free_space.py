@@ -19,7 +19,14 @@ from __future__ import annotations
 
 from math import acos, atan2, cos, floor, hypot, inf, isnan, nan, pi, sin, sqrt
 
-from workhold.kernels.base.compiling import Array, compiled, inner
+from workhold.kernels.base.compiling import (
+    Array,
+    Matrix,
+    Stack,
+    Vector,
+    compiled,
+    inner,
+)
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import Obstacles
 from workhold.kernels.seating.obstacles import (
@@ -122,16 +129,16 @@ def free_intervals(
 
 @compiled
 def free_poses(
-    config: Array,
+    config: Vector,
     opening: float,
     cells: int,
-    step: Array,
+    step: Vector,
     lean: float,
     arm: float,
     obstacles: Obstacles,
-    crossings: Array,
-    intervals: Array,
-    out: Array,
+    crossings: Matrix,
+    intervals: Stack,
+    out: Matrix,
 ) -> int:
     """Writes free poses around a seat with the jaws opened.
 
@@ -354,7 +361,7 @@ def way_away(config: Array, obstacles: Obstacles, axes: Array, ranges: Array) ->
 
 
 @compiled
-def leave(configs: Array, obstacles: Obstacles, axes: Array, ranges: Array, out: Array) -> None:
+def leave(configs: Matrix, obstacles: Obstacles, axes: Vector, ranges: Matrix, out: Vector) -> None:
     """Writes a direction (N,) along which all pegs can leave a part in configurations (N, 4), or NaN.
 
     It is in radians in the part's frame; no peg enters the part, which comes no nearer to a wall. Entries

@@ -5,7 +5,14 @@ from __future__ import annotations
 from math import hypot, inf
 
 from workhold.conventions import END_SLACK
-from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
+from workhold.kernels.base.compiling import (
+    Array,
+    IntArray,
+    IntVector,
+    Matrix,
+    compiled,
+    inner,
+)
 from workhold.kernels.seating.columns import (
     CONTACTS,
     PEG,
@@ -90,7 +97,7 @@ def nothing_seen(seen: Array) -> None:
 
 
 @compiled
-def keep_free(motions: SelfMotions, around: Obstacles, seen: Array) -> int:
+def keep_free(motions: SelfMotions, around: Obstacles, seen: Matrix) -> int:
     """Moves the self-motions along which a part is free somewhere to the front; returns how many they are.
 
     Writes the clearances of all pegs along them, or less where these are large.
@@ -296,10 +303,10 @@ def free_runs(
     low: float,
     high: float,
     around: Obstacles,
-    clear: Array,
-    seen: Array,
-    touched: IntArray,
-    work: Array,
+    clear: Matrix,
+    seen: Matrix,
+    touched: IntVector,
+    work: Matrix,
     out: Manifolds,
 ) -> int:
     """Writes the runs of motions in which a part is free, and returns how many there are.

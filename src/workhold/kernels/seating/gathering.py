@@ -17,7 +17,15 @@ from __future__ import annotations
 
 from math import hypot, inf, pi
 
-from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
+from workhold.kernels.base.compiling import (
+    Array,
+    IntArray,
+    IntVector,
+    Matrix,
+    Vector,
+    compiled,
+    inner,
+)
 from workhold.kernels.seating.candidates import add_fourths
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
@@ -77,15 +85,15 @@ def add_rows(rows: Array, stop: float, widest: float, out: Array, count: int) ->
 
 @compiled
 def gathered(
-    subsets: Array,
-    kept: Array,
-    before: Array,
-    after: Array,
+    subsets: Matrix,
+    kept: Matrix,
+    before: Matrix,
+    after: Matrix,
     stop: float,
     widest: float,
     given: Given,
-    fixed: Array,
-    out: Array,
+    fixed: Vector,
+    out: Matrix,
 ) -> int:
     """Writes all candidates of a pattern at separations that are reached; returns their number, or -1.
 
@@ -169,7 +177,7 @@ def first_of(config: Array, manifolds: Manifolds, asked: IntArray, arm: float, m
 
 @compiled
 def first_sets(
-    configs: Array, manifolds: Manifolds, asked: IntArray, arm: float, most: float, out: IntArray
+    configs: Matrix, manifolds: Manifolds, asked: IntVector, arm: float, most: float, out: IntVector
 ) -> None:
     """Writes ``first_of`` of configurations (N, 4) to ``out`` (N,)."""
     for n in range(configs.shape[0]):
@@ -215,7 +223,7 @@ def write_each_once(manifolds: Manifolds, arm: float, most: float, out: Manifold
 
 
 @compiled
-def write_beyond(manifolds: Manifolds, arm: float, step: float, configs: Array, whose: IntArray) -> int:
+def write_beyond(manifolds: Manifolds, arm: float, step: float, configs: Matrix, whose: IntVector) -> int:
     """Writes configurations just past both ends of each manifold; returns how many.
 
     Of one that gives way they are to both sides of its middle, and of a whole turn there are none.
@@ -257,7 +265,7 @@ def write_beyond(manifolds: Manifolds, arm: float, step: float, configs: Array, 
 
 
 @compiled
-def first_of_each(rows: Array, turn: float, shift: float, kept: IntArray) -> int:
+def first_of_each(rows: Matrix, turn: float, shift: float, kept: IntVector) -> int:
     """Writes the numbers of candidates (N, 24) that are none of those before them; how many they are.
 
     Parameters

@@ -12,7 +12,14 @@ from __future__ import annotations
 from math import atan2, cos, hypot, inf, pi, sin, sqrt
 
 from workhold.conventions import PARALLEL, SAME_CENTER
-from workhold.kernels.base.compiling import Array, ByteArray, compiled, inner
+from workhold.kernels.base.compiling import (
+    Array,
+    ByteVector,
+    Matrix,
+    Vector,
+    compiled,
+    inner,
+)
 from workhold.kernels.base.distance import segment_distance
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y, is_shallow
 from workhold.kernels.seating.columns import Obstacles
@@ -160,7 +167,7 @@ def clearance(x: float, y: float, rows: Array, first: int, end: int) -> float:
 
 
 @compiled
-def clearances(points: Array, rows: Array, first: int, end: int, out: Array) -> None:
+def clearances(points: Matrix, rows: Matrix, first: int, end: int, out: Vector) -> None:
     """Writes the distances in mm (M,) of peg centres (M, 2) from pieces ``first`` to ``end``."""
     for k in range(points.shape[0]):
         out[k] = clearance(points[k, 0], points[k, 1], rows, first, end)
@@ -289,13 +296,13 @@ def covers_same(one: Array, other: Array, sign: float, rows: Array, points: Arra
 
 @compiled
 def cover_same(
-    one: Array,
-    others: Array,
-    turned_over: ByteArray,
-    rows: Array,
-    points: Array,
+    one: Vector,
+    others: Matrix,
+    turned_over: ByteVector,
+    rows: Matrix,
+    points: Matrix,
     most: float,
-    out: ByteArray,
+    out: ByteVector,
 ) -> None:
     """Writes whether a part covers in configurations (N, 4) the place that it covers in one (4,).
 

@@ -15,7 +15,12 @@ from math import atan2, cos, hypot, sin, sqrt
 import numpy as np
 
 from workhold.conventions import END_SLACK
-from workhold.kernels.base.compiling import Array, compiled, inner
+from workhold.kernels.base.compiling import (
+    Array,
+    Matrix,
+    compiled,
+    inner,
+)
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
 from workhold.kernels.chord.intervals import are_parallel
 from workhold.kernels.seating.candidates import write_pose
@@ -45,7 +50,7 @@ THREE_FACES = 7
 
 
 @compiled
-def tangent_chords(rows: Array, first: int, end: int, d: float, out: Array) -> int:
+def tangent_chords(rows: Matrix, first: int, end: int, d: float, out: Matrix) -> int:
     """Writes the tangencies (C, 5) of chords of length d from lines to arcs; returns their number, -1 where
     they do not fit.
 
@@ -97,7 +102,7 @@ def separation_on(
 
 @compiled
 def at_tangencies(
-    first: int, second: int, chords: Array, stop: float, widest: float, given: Given, out: Array
+    first: int, second: int, chords: Matrix, stop: float, widest: float, given: Given, out: Matrix
 ) -> int:
     """Writes the candidates of two pegs of one jaw at tangencies (C, 5) of their chord, with a third peg.
 
@@ -170,7 +175,7 @@ def is_between(p: float, q: float, r: float, one: float, two: float, three: floa
 
 
 @compiled
-def on_three_faces(slides: Array, given: Given, stop: float, widest: float, out: Array) -> int:
+def on_three_faces(slides: Matrix, given: Given, stop: float, widest: float, out: Matrix) -> int:
     """Writes the self-motions on three parallel faces, the middle one against the outer two.
 
     Two pegs of one jaw are on a slide (S, 7), and one of the other jaw is the third. Returns their number, -1
@@ -307,7 +312,7 @@ def add_about(
 
 
 @compiled
-def about_one_center(given: Given, stop: float, widest: float, out: Array) -> int:
+def about_one_center(given: Given, stop: float, widest: float, out: Matrix) -> int:
     """Writes the candidates (N, 24) of pegs on two arcs of one centre and a piece with a normal through it.
 
     The arcs are those of pegs p and q of both jaws, the piece that of peg b of p's jaw. Returns their number,

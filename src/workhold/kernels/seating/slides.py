@@ -12,7 +12,13 @@ from __future__ import annotations
 from math import acos, atan2, ceil, cos, hypot, nan, pi, sin, sqrt
 
 from workhold.conventions import END_SLACK
-from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
+from workhold.kernels.base.compiling import (
+    Array,
+    IntMatrix,
+    Matrix,
+    compiled,
+    inner,
+)
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.base.interval import TURN
 from workhold.kernels.base.tables import FROM, TO
@@ -130,7 +136,7 @@ def met_at(slide: Array, row: Array, middle: float, piece: Array, side: float, a
 
 
 @compiled
-def slides_squared(slides: Array, given: Given, out: Array) -> int:
+def slides_squared(slides: Matrix, given: Given, out: Matrix) -> int:
     """Writes the candidates of slides (S, 7) with a third peg, of the other jaw, whose normal is parallel.
 
     It is on an arc or, if the part goes round, on a line. Returns their number, -1 where they do not fit.
@@ -154,7 +160,7 @@ def slides_squared(slides: Array, given: Given, out: Array) -> int:
                     side, turn = 1.0 - 2.0 * (way // 6), way % 3 - 1
                     if way % 6 == 0:
                         ts = square_to(slide, row, middle, piece, side, above)
-                    t = turned_in(slide, row, ts[way // 3 % 2], turn)
+                    t = turned_in(slide, row, ts[0] if way // 3 % 2 == 0 else ts[1], turn)
                     if t != t:
                         continue
                     x, y = met_at(slide, row, middle, piece, side, above, t)
@@ -187,7 +193,7 @@ def inside(pair: Array, given: Given, psi: float) -> float:
 
 @compiled
 def slides_held(
-    slides: Array, left: JawCells, right: JawCells, given: Given, pocket_pieces: IntArray, out: Array
+    slides: Matrix, left: JawCells, right: JawCells, given: Given, pocket_pieces: IntMatrix, out: Matrix
 ) -> int:
     """Writes the candidates of slides (S, 7) with two contacts of the other jaw at their height.
 
@@ -213,7 +219,7 @@ def slides_held(
             level = height(pair, given, there[0], there[1], cos(exact), sin(exact)) + given.pegs[first, 1]
             ts = track_crossing(row, middle, -s, c, level)
             for way in range(6):
-                t = turned_in(slide, row, ts[way // 3], way % 3 - 1)
+                t = turned_in(slide, row, ts[0] if way < 3 else ts[1], way % 3 - 1)
                 if t != t:
                     continue
                 if count >= out.shape[0]:
@@ -248,7 +254,7 @@ def blocked(row: Array, middle: float, piece: Array, ox: float, oy: float) -> Tw
 
 
 @compiled
-def slides_blocked(slides: Array, given: Given, out: Array) -> int:
+def slides_blocked(slides: Matrix, given: Given, out: Matrix) -> int:
     """Writes candidates of slides (S, 7) with a third contact, where a peg of their own jaw blocks them.
 
     Their place is that at separation 0. Returns their number, -1 where they do not fit.
@@ -268,7 +274,7 @@ def slides_blocked(slides: Array, given: Given, out: Array) -> int:
                 piece = given.rows[number]
                 ts = blocked(row, middle, piece, ox, oy)
                 for way in range(6):
-                    t = turned_in(slide, row, ts[way // 3], way % 3 - 1)
+                    t = turned_in(slide, row, ts[0] if way < 3 else ts[1], way % 3 - 1)
                     if t != t:
                         continue
                     x, y = track_at(row, middle, t)

@@ -10,7 +10,14 @@ from __future__ import annotations
 from math import copysign, hypot, inf, sqrt
 
 from workhold.kernels.base.arrays import eliminate
-from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
+from workhold.kernels.base.compiling import (
+    Array,
+    IntArray,
+    IntVector,
+    Matrix,
+    compiled,
+    inner,
+)
 
 Cubic = tuple[float, float, float, float]
 
@@ -226,13 +233,13 @@ def balances(
 
 @compiled
 def least_friction(
-    points: Array,
-    normals: Array,
-    right: IntArray,
-    straight: Array,
-    across: Array,
-    matrix: Array,
-    inverse: Array,
+    points: Matrix,
+    normals: Matrix,
+    right: IntVector,
+    straight: Matrix,
+    across: Matrix,
+    matrix: Matrix,
+    inverse: Matrix,
 ) -> float:
     """The least friction at which three of four contacts, or two, balance a jaw, or infinity.
 

@@ -14,7 +14,12 @@ from __future__ import annotations
 
 from math import asin, cos, inf, pi, sin
 
-from workhold.kernels.base.compiling import Array, compiled, inner
+from workhold.kernels.base.compiling import (
+    Array,
+    Matrix,
+    compiled,
+    inner,
+)
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.base.interval import Interval, idivide, imul
 from workhold.kernels.base.tables import HEAD, TAIL
@@ -297,14 +302,14 @@ def write_root(
 
 @compiled
 def three_contacts(
-    cells: Array,
-    middles: Array,
+    cells: Matrix,
+    middles: Matrix,
     given: Given,
-    discs: Array,
+    discs: Matrix,
     stop: float,
-    stack: Array,
-    work: Array,
-    out: Array,
+    stack: Matrix,
+    work: Matrix,
+    out: Matrix,
 ) -> int:
     """Writes all orientations at which two pegs of one jaw and one of the other may balance.
 

@@ -11,7 +11,14 @@ from __future__ import annotations
 from math import cos, hypot, sin
 
 from workhold.conventions import SAME_CENTER
-from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
+from workhold.kernels.base.compiling import (
+    Array,
+    IntArray,
+    IntMatrix,
+    Matrix,
+    compiled,
+    inner,
+)
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y
 from workhold.kernels.seating.candidates import write_pose
 from workhold.kernels.seating.columns import CONTACTS, DOUBT, PEG, PIECE, SEPARATION
@@ -130,7 +137,7 @@ def write_pocketed(
 
 @compiled
 def tip_in_pocket(
-    stood: Stood, pockets: Array, pieces: IntArray, stack: Array, found: Array, out: Array
+    stood: Stood, pockets: Matrix, pieces: IntMatrix, stack: Matrix, found: Matrix, out: Matrix
 ) -> int:
     """Writes the candidates (N, 24) of a part on a wall with the tip in a pocket; returns their number or -1.
 

@@ -25,7 +25,12 @@ from __future__ import annotations
 from math import cos, floor, hypot, inf, pi, sin, sqrt
 from typing import NamedTuple
 
-from workhold.kernels.base.compiling import Array, compiled, inner
+from workhold.kernels.base.compiling import (
+    Array,
+    Matrix,
+    compiled,
+    inner,
+)
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.base.interval import TURN
 from workhold.kernels.base.tables import (
@@ -132,7 +137,7 @@ def write_cell(cell: Array, number: int, low: float, high: float, speed: float, 
 
 
 @compiled
-def make_cells(given: Given, stretches: Array, cells: Array) -> int:
+def make_cells(given: Given, stretches: Matrix, cells: Matrix) -> int:
     """Cuts all pairs into cells; returns how many, or -1 where they do not fit into ``cells``.
 
     Parameters
@@ -230,7 +235,7 @@ def ray_over(pair: Array, given: Given, s: PairState, speed: float, reach: float
 
 
 @compiled
-def write_middles(cells: Array, given: Given, out: Array) -> None:
+def write_middles(cells: Matrix, given: Given, out: Matrix) -> None:
     """Writes the middles (C, 19) of cells (C, 7)."""
     for number in range(cells.shape[0]):
         cell, row = cells[number], out[number]

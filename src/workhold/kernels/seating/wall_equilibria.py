@@ -13,7 +13,14 @@ from math import ceil, cos, pi, sin
 from typing import NamedTuple
 
 from workhold.conventions import SAME_CENTER
-from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
+from workhold.kernels.base.compiling import (
+    Array,
+    IntMatrix,
+    Matrix,
+    Vector,
+    compiled,
+    inner,
+)
 from workhold.kernels.base.interval import Interval, imul, ineg, iscale, ishift, isub
 from workhold.kernels.seating.candidates import write_pose
 from workhold.kernels.seating.columns import DOUBT, MOTION, PEG, PIECE, SECOND, SEPARATION
@@ -55,13 +62,13 @@ class Stood(NamedTuple):
         is.
     """
 
-    rows: Array
-    discs: Array
-    parts: IntArray
-    hull: Array
-    runs: Array
-    pegs: Array
-    half_plane: Array
+    rows: Matrix
+    discs: Matrix
+    parts: IntMatrix
+    hull: Matrix
+    runs: Matrix
+    pegs: Matrix
+    half_plane: Vector
 
 
 @inner
@@ -205,7 +212,7 @@ def write_balance(
 
 
 @compiled
-def stationary(stood: Stood, shapes: Array, stack: Array, out: Array) -> int:
+def stationary(stood: Stood, shapes: Matrix, stack: Matrix, out: Matrix) -> int:
     """Writes the candidates (N, 24) of all balances of wall, locator and tip on a piece of the hull.
 
     Returns their number, or -1 where they do not fit.

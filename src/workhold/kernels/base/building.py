@@ -1,0 +1,195 @@
+"""Compile the kernels of a room into one library: ``python -m workhold.kernels.base.building ROOM FOLDER``.
+
+Numba compiles each kernel together with an entry that reads its arguments from words. LLVM makes one object
+of all entries of the room, in which nothing else can be called, and a linker makes a shared library of it.
+Arrays in kernels look at memory of the caller and own none, so that no references are counted; the library
+calls functions of the C library's mathematics alone, and has neither Python nor numba in it.
+"""
+
+from __future__ import annotations
+
+import gc
+import os
+import pkgutil
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path
+from threading import Event, Thread
+from typing import Any
+
+import llvmlite.binding as llvm
+import numba
+import numpy as np
+from numba import types
+
+from workhold.kernels.base.compiling import (
+    INNER,
+    LETTERS,
+    OPTIONS,
+    Kernel,
+    dimensions,
+    element,
+    fields,
+    kernels_of,
+)
+from workhold.kernels.base.libraries import ENDINGS, KERNELS, library_name
+from workhold.kernels.base.views import view_at
+
+# What a library may call: functions of the C library's mathematics, and those that move memory.
+OUTSIDE = {
+    *("acos", "asin", "atan", "atan2", "ceil", "cos", "exp", "floor", "fmod", "hypot", "log", "pow", "sin"),
+    *("sqrt", "tan", "memcpy", "memmove", "memset"),
+}
+# Seconds between reports of how much is compiled.
+INTERVAL = 0.2
+
+
+class EntrySource:
+    """Python source that reads the arguments of a kernel from words and writes its result to the first ones."""
+
+    def __init__(self, kernel: Kernel) -> None:
+        self.word = len(kernel.results)
+        self.names: dict[str, Any] = {
+            "view_at": view_at,
+            "kernel": numba.njit(**OPTIONS)(kernel.function),
+            "int64": np.int64,
+            "float64": np.float64,
+        }
+        arguments = ", ".join([self.read(kind) for kind in kernel.arguments.values()])
+        self.lines = [
+            "def entry(address):",
+            f"    words, reals = view_at(address, ({self.word},), int64), view_at(address, ({self.word},), float64)",
+            f"    {'found = ' if kernel.results else ''}kernel({arguments})",
+        ]
+        for number, kind in enumerate(kernel.results):
+            found = f"found[{number}]" if len(kernel.results) > 1 else "found"
+            self.lines.append(f"    {'reals' if kind is float else 'words'}[{number}] = {found}")
+
+    def read(self, kind: Any) -> str:
+        """Return the expression that reads an argument of a type from the next words."""
+        if (parts := fields(kind)) is not None:
+            values = ", ".join([self.read(part) for _, part in parts])
+            return f"{self.name(kind)}({values})" if hasattr(kind, "_fields") else f"({values},)"
+        word = self.word
+        if kind in LETTERS:
+            self.word += 1
+            return {int: f"words[{word}]", float: f"reals[{word}]", bool: f"words[{word}] != 0"}[kind]
+        count = dimensions(kind)
+        self.word += 1 + count
+        shape = ", ".join(f"words[{word + 1 + axis}]" for axis in range(count))
+        return f"view_at(words[{word}], ({shape},), {self.name(element(kind).type)})"
+
+    def name(self, thing: type[Any]) -> str:
+        """Return the name of a class in the source, and make it known there."""
+        self.names[thing.__name__] = thing
+        return thing.__name__
+
+    def compile(self) -> Any:
+        """Return numba's compiled function for C."""
+        exec("\n".join(self.lines), self.names)
+        return numba.cfunc(types.void(types.int64), error_model="numpy")(self.names["entry"])
+
+
+def make_object(room: str) -> bytes:
+    """Return an object file of all kernels of a room.
+
+    Raises
+    ------
+    SystemExit
+        When a kernel calls what a library has not, as one does that makes an array or raises an error.
+    """
+    machine = llvm.Target.from_default_triple().create_target_machine(
+        cpu=os.environ["NUMBA_CPU_NAME"], features="", opt=3, reloc="pic", codemodel="default"
+    )
+    whole = None
+    entries = []
+    for kernel in kernels_of(room):
+        entry = EntrySource(kernel).compile()
+        module = llvm.parse_assembly(entry.inspect_llvm())
+        module.get_function(entry.native_name).name = kernel.name
+        entries.append(kernel.name)
+        if whole is None:
+            whole = module
+        else:
+            whole.link_in(module)
+    assert whole is not None
+    for thing in (*whole.functions, *whole.global_variables):
+        if not thing.is_declaration and thing.name not in entries:
+            thing.linkage = "internal"
+    builder = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=3))
+    builder.getModulePassManager().run(whole, builder)
+    for function in whole.functions:
+        if function.is_declaration and not function.name.startswith("llvm.") and function.name not in OUTSIDE:
+            sys.exit(f"The kernels of {room} call {function.name}, which no library has.")
+    return bytes(machine.emit_object(whole))
+
+
+def link(source: Path, target: Path) -> bool:
+    """Make a shared library of an object file, and return whether there was a linker for it."""
+    linker = shutil.which("cc") or shutil.which("ld")
+    if linker is None:
+        return False
+    if sys.platform == "darwin":
+        options = ["-dynamiclib", "-undefined", "dynamic_lookup"]
+    elif sys.platform == "win32":
+        # Of MinGW, whose C library is linked to; untested.
+        options = ["-shared", "-s"]
+    else:
+        # What is left open, the functions of libm, is found in the process that loads the library.
+        options = ["-shared", "-s"] + (["-nostdlib"] if linker.endswith("cc") else [])
+    subprocess.run([linker, *options, "-o", target, source], check=True)
+    return True
+
+
+def build(room: str, folder: Path) -> Path:
+    """Build the library of a room into a folder, an object file where there is no linker; return its path."""
+    package = (
+        f"{__name__.split('.')[0]}.kernels.{room}" if __name__ != "__main__" else f"workhold.kernels.{room}"
+    )
+    for module in pkgutil.iter_modules([str(KERNELS / room)]):
+        if module.name not in ("building", "libraries", "views"):
+            import_module(f"{package}.{module.name}")
+    with tempfile.TemporaryDirectory(dir=folder) as name:
+        made = Path(name) / "kernels.o"
+        made.write_bytes(make_object(room))
+        linked = made.with_suffix(".so")
+        if link(made, linked):
+            made = linked
+        path = folder / library_name(room, ENDINGS[made.suffix != ".so"])
+        made.replace(path)
+    return path
+
+
+def report_progress(stop: Event) -> None:
+    """Print how much of the inner functions is compiled, now and then, from 0 to 1."""
+    while not stop.wait(INTERVAL):
+        done = sum(bool(function.signatures) for function in INNER)
+        sys.stdout.write(f"{done / max(len(INNER), 1):.3f}\n")
+        sys.stdout.flush()
+
+
+def end_with_starter() -> None:
+    """End this process when the one that started it has ended."""
+    sys.stdin.read()
+    os._exit(1)
+
+
+def main(room: str, folder: str) -> None:
+    """Build a library, and print how far it is."""
+    # The collector would look through all that is compiled again and again.
+    gc.disable()
+    stop = Event()
+    watching: list[Callable[[], None]] = [end_with_starter, lambda: report_progress(stop)]
+    for watch in watching:
+        Thread(target=watch, daemon=True).start()
+    build(room, Path(folder))
+    stop.set()
+    sys.stdout.write("1.0\n")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,241 @@
+"""Find, load and build the shared libraries of the kernels, one for each room.
+
+A library's name holds a hash of the kernels' sources, so that code of other sources is never run. It lies in
+the package where a wheel was built, else in the user's cache, where it is built when a kernel of its room is
+first called.
+"""
+
+from __future__ import annotations
+
+import atexit
+import ctypes
+import os
+import platform
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import cache
+from hashlib import sha256
+from importlib.util import find_spec
+from pathlib import Path
+from sysconfig import get_platform
+from threading import Event, Lock
+from typing import IO, Any
+
+from workhold.errors import InputError
+from workhold.limits import refuse_little_space
+
+KERNELS = Path(__file__).resolve().parents[1]
+# The rooms that every search needs, and that of seating; those that take longest come first.
+SEARCH_ROOMS = ("curves", "proof", "contact", "base")
+SEATING_ROOMS = ("seating",)
+ROOMS = (*SEATING_ROOMS, *SEARCH_ROOMS)
+FOLDERS_KEPT = 3
+# Bytes of address space: with less, numba and its compiler end the process by a signal.
+COMPILER_SPACE = 1_000_000_000
+LOADING = Lock()
+# A shared library, or an object file where there was no linker.
+ENDINGS = ("so", "o")
+# The plain processor that is compiled for; of others whatever LLVM takes for the oldest.
+PLAIN_PROCESSORS = {"x86_64": "x86-64", "AMD64": "x86-64"}
+
+
+@cache
+def source_hash() -> str:
+    """Return a hash of the sources of all kernels, and of the numbers that decide."""
+    digest, package = sha256(), KERNELS.parent
+    for path in (package / "conventions.py", *sorted(KERNELS.rglob("*.py"))):
+        # Where libraries lie makes no difference to what is in them.
+        if path == Path(__file__):
+            continue
+        digest.update(path.relative_to(package).as_posix().encode())
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:20]
+
+
+def library_name(room: str, ending: str) -> str:
+    """Return the name of the file of a room's library for this kind of machine."""
+    return f"kernels-{room}-{source_hash()}.{get_platform().replace('.', '_')}.{ending}"
+
+
+def user_cache() -> Path:
+    """Return the folder for compiled code: ``$WORKHOLD_CACHE_DIR``, or ``workhold`` in the user's cache."""
+    named = os.environ.get("WORKHOLD_CACHE_DIR")
+    if named:
+        return Path(named)
+    base = os.environ.get("XDG_CACHE_HOME")
+    return Path(base or Path("~/.cache").expanduser()) / "workhold"
+
+
+@cache
+def cache_folder() -> Path | None:
+    """Return the folder for the libraries of these sources, or None where nothing can be written."""
+    try:
+        folder = user_cache() / f"kernels-{source_hash()}"
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except (OSError, RuntimeError):
+        return None
+    drop_old_folders(folder)
+    return folder
+
+
+@cache
+def temporary_folder() -> Path:
+    """Return a folder for the libraries of this process alone, which goes with it."""
+    folder = tempfile.TemporaryDirectory(prefix="workhold-kernels-")
+    atexit.register(folder.cleanup)
+    return Path(folder.name)
+
+
+def drop_old_folders(current: Path) -> None:
+    """Remove the libraries of sources long replaced, but for the newest few."""
+    try:
+        others = [path for path in current.parent.glob("kernels-*") if path != current]
+        others.sort(key=lambda path: path.stat().st_mtime, reverse=True)
+    except OSError:
+        return
+    for folder in others[FOLDERS_KEPT:]:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def library_folder() -> Path:
+    """Return the folder that libraries are built into, outside of a wheel."""
+    return cache_folder() or temporary_folder()
+
+
+def find_library(room: str) -> Path | None:
+    """Return the file of a room's library, or None where it is still to be built."""
+    # Benchmarks and tests ask for what is compiled on first use, though the package has libraries.
+    in_package = () if os.environ.get("WORKHOLD_KERNELS") == "cache" else (KERNELS,)
+    for folder in (*in_package, library_folder()):
+        for ending in ENDINGS:
+            if (path := folder / library_name(room, ending)).exists():
+                return path
+    return None
+
+
+def is_built(rooms: Sequence[str] = SEARCH_ROOMS) -> bool:
+    """Return whether the libraries of some rooms need not be built any more."""
+    return all(find_library(room) is not None for room in rooms)
+
+
+def load_entry(room: str, name: str) -> Callable[[int], None]:
+    """Return the entry of a kernel; where its room has no library yet, it is built.
+
+    Raises
+    ------
+    InputError
+        When there is no library, and nothing to build it with.
+    """
+    with LOADING:
+        if find_library(room) is None:
+            build_libraries((room,))
+        entry = find_entry(str(find_library(room)), name)
+    entry.argtypes, entry.restype = (ctypes.c_void_p,), None
+    return entry
+
+
+def find_entry(path: str, name: str) -> Any:
+    """Return a function of a library: of a shared one, or of an object file where there was no linker."""
+    if path.endswith(ENDINGS[0]):
+        return getattr(ctypes.CDLL(path), name)
+    return ctypes.CFUNCTYPE(None, ctypes.c_void_p)(load_object(path).get_function_address(name))
+
+
+@cache
+def load_object(path: str) -> Any:
+    """Load an object file without a linker, and return LLVM's engine that knows its functions."""
+    import llvmlite.binding as llvm
+
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    machine = llvm.Target.from_default_triple().create_target_machine()
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine)
+    engine.add_object_file(llvm.object_file.ObjectFileRef.from_path(path))
+    engine.finalize_object()
+    return engine
+
+
+def build_libraries(
+    rooms: Sequence[str],
+    folder: Path | None = None,
+    report: Callable[[float], None] = lambda done: None,
+    cancel: Event | None = None,
+) -> None:
+    """Build the libraries of rooms that have none, each in a process of its own.
+
+    Processes share the work, and numba's settings there are not those of this process.
+
+    Parameters
+    ----------
+    folder : where they go; None for the user's cache.
+    report : is told how much is done, from 0 to 1.
+    cancel : ends all when it is set.
+
+    Raises
+    ------
+    InputError
+        When there is no numba to compile with, no memory for it, or a kernel cannot be compiled.
+    """
+    if find_spec("numba") is None:
+        raise InputError(
+            "This installation has no compiled kernels for this kind of machine, and no numba to compile "
+            "them with; install workhold[numba]."
+        )
+    refuse_little_space(
+        COMPILER_SPACE, "compiling the kernels", "raise the limit, or install a wheel with compiled kernels"
+    )
+    folder = folder or library_folder()
+    wanted = [room for room in ROOMS if room in rooms and not is_in(folder, room)]
+    done = dict.fromkeys(wanted, 0.0)
+    faults: list[str] = []
+
+    def build(room: str) -> None:
+        with tempfile.TemporaryFile("w+") as said, compiling_process(room, folder, said) as process:
+            assert process.stdout is not None
+            for line in process.stdout:
+                if cancel is not None and cancel.is_set():
+                    process.terminate()
+                    return
+                done[room] = float(line)
+                report(sum(done.values()) / len(done))
+            if process.wait():
+                said.seek(0)
+                faults.extend(
+                    said.read().strip().splitlines()[-1:] or [f"it ended with {process.returncode}"]
+                )
+
+    with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
+        list(pool.map(build, wanted))
+    if faults:
+        raise InputError(f"The kernels could not be compiled: {faults[0]}")
+
+
+def is_in(folder: Path, room: str) -> bool:
+    """Return whether a folder has the library of a room."""
+    return any((folder / library_name(room, ending)).exists() for ending in ENDINGS)
+
+
+def compiling_process(room: str, folder: Path, said: IO[str]) -> subprocess.Popen[str]:
+    """Start the process that builds the library of a room, and ends with this one however that ends; ``said``
+    receives its errors."""
+    processor = PLAIN_PROCESSORS.get(platform.machine(), "generic")
+    settings = {
+        "WORKHOLD_KERNELS": "building",
+        "NUMBA_CPU_NAME": processor,
+        "NUMBA_CPU_FEATURES": "",
+        "PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry),
+    }
+    return subprocess.Popen(
+        [sys.executable, "-P", "-m", "workhold.kernels.base.building", room, str(folder)],
+        env={**os.environ, **settings},
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=said,
+        text=True,
+    )
