@@ -24,7 +24,7 @@ demo: $(INSTALLED)
 	@echo "$(BIN)/workhold serve --open shows the same, and more, as a page in the browser."
 
 # A wheel with compiled kernels for machines of this kind, in dist/: it needs no compiler where it is installed, and starts at
-# once. Building it takes gcc or binutils, half a minute, and an environment with numba that is thrown away afterwards.
+# once. Building it takes gcc or binutils, a minute or two, and an environment with numba that is thrown away afterwards.
 wheel: | $(BIN)/python
 	@echo 'Compiling the kernels into a wheel ...'
 	@rm -rf build dist/workhold-*.whl
@@ -85,7 +85,7 @@ $(INSTALLED): pyproject.toml constraints.txt $(SOURCES) | $(BIN)/python
 	@if command -v cc >/dev/null || command -v ld >/dev/null; then \
 	    $(MAKE) --no-print-directory wheel && $(INSTALL) --force-reinstall --no-deps dist/workhold-*.whl && $(INSTALL) dist/workhold-*.whl; \
 	else \
-	    echo 'There is no linker (gcc or binutils) here, so kernels are compiled on first use, in half a minute.' && \
+	    echo 'There is no linker (gcc or binutils) here, so kernels are compiled on first use, in a minute or two.' && \
 	    $(INSTALL) -e '.[numba]'; \
 	fi
 	@# The tests are of these sources, not of the wheel that now stands in their place.

@@ -24,7 +24,7 @@ DEMO = [*WORKHOLD, "design", BRACKET, "--pitch", "10", "--columns", "2", "--peg-
 FIRST_ANSWER = 1.0
 # Of the processor, for the demo's part from the drawing to the file.
 DEMO_SECONDS = 1.0
-FIRST_RUN = 12.0
+FIRST_RUN = 30.0
 WORD = "first run"
 
 COLUMNS = (

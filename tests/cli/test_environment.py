@@ -80,11 +80,10 @@ def limited(size: int) -> Callable[[], None]:
         ),
     ],
 )
-def test_too_little_memory_is_one_sentence(megabytes: int, sentence: str) -> None:
+def test_too_little_memory_is_one_sentence(megabytes: int, sentence: str, tmp_path: Path) -> None:
     """Where the libraries would end the process by a signal, or with a complaint of their own."""
-    done = features(
-        "widget", limited(megabytes * 10**6), WORKHOLD_KERNELS="cache", WORKHOLD_CACHE_DIR="/nowhere"
-    )
+    to_compile = {"WORKHOLD_KERNELS": "cache", "WORKHOLD_CACHE_DIR": str(tmp_path)}
+    done = features(EXAMPLES / "bracket.dxf", limited(megabytes * 10**6), **to_compile)
     assert (done.returncode, done.stdout, done.stderr) == (2, "", f"workhold: error: {sentence}\n")
 
 

@@ -74,7 +74,7 @@ def test_answers_are_those_of_python() -> None:
             if max(abs(x), abs(y)) < 10 or min(abs(x), abs(y)) <= 10
             else np.hypot(abs(x) - 10, abs(y) - 10)
         )
-        assert distance.is_inside(x, y, SQUARE) is (max(abs(x), abs(y)) < 10)
+        assert distance.is_inside(x, y, SQUARE) is bool(max(abs(x), abs(y)) < 10)
         turned = distance.turns_around(x, y, SQUARE)
         assert type(turned) is float and turned == pytest.approx(
             2 * pi if max(abs(x), abs(y)) < 10 else 0.0, abs=1e-9

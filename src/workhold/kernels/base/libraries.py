@@ -61,6 +61,11 @@ def library_name(room: str, ending: str) -> str:
     return f"kernels-{room}-{source_hash()}.{get_platform().replace('.', '_')}.{ending}"
 
 
+def names_of(room: str) -> list[str]:
+    """Return the names that the file of a room's library may have."""
+    return [library_name(room, ending) for ending in ENDINGS]
+
+
 def user_cache() -> Path:
     """Return the folder for compiled code: ``$WORKHOLD_CACHE_DIR``, or ``workhold`` in the user's cache."""
     named = os.environ.get("WORKHOLD_CACHE_DIR")
@@ -113,8 +118,8 @@ def find_library(room: str) -> Path | None:
     # Benchmarks and tests ask for what is compiled on first use, though the package has libraries.
     in_package = () if os.environ.get("WORKHOLD_KERNELS") == "cache" else (KERNELS,)
     for folder in (*in_package, library_folder()):
-        for ending in ENDINGS:
-            if (path := folder / library_name(room, ending)).exists():
+        for name in names_of(room):
+            if (path := folder / name).exists():
                 return path
     return None
 
@@ -133,9 +138,16 @@ def load_entry(room: str, name: str) -> Callable[[int], None]:
         When there is no library, and nothing to build it with.
     """
     with LOADING:
-        if find_library(room) is None:
-            build_libraries((room,))
-        entry = find_entry(str(find_library(room)), name)
+        path = find_library(room) or build_library(room)
+        try:
+            entry = find_entry(str(path), name)
+        except OSError as error:
+            if path.parent == KERNELS:
+                raise InputError(
+                    f"A library of compiled kernels is damaged; install again. {error}"
+                ) from None
+            path.unlink()
+            entry = find_entry(str(build_library(room)), name)
     entry.argtypes, entry.restype = (ctypes.c_void_p,), None
     return entry
 
@@ -145,6 +157,14 @@ def find_entry(path: str, name: str) -> Any:
     if path.endswith(ENDINGS[0]):
         return getattr(ctypes.CDLL(path), name)
     return ctypes.CFUNCTYPE(None, ctypes.c_void_p)(load_object(path).get_function_address(name))
+
+
+def build_library(room: str) -> Path:
+    """Build the library of a room into the user's cache, and return its file."""
+    build_libraries((room,))
+    path = find_library(room)
+    assert path is not None
+    return path
 
 
 @cache
@@ -204,7 +224,13 @@ def build_libraries(
                     return
                 done[room] = float(line)
                 report(sum(done.values()) / len(done))
-            if process.wait():
+            if process.wait() == 0:
+                # Whole after a loss of power, too.
+                with (folder / next(name for name in names_of(room) if (folder / name).exists())).open(
+                    "rb"
+                ) as file:
+                    os.fsync(file.fileno())
+            else:
                 said.seek(0)
                 faults.extend(
                     said.read().strip().splitlines()[-1:] or [f"it ended with {process.returncode}"]
@@ -218,7 +244,7 @@ def build_libraries(
 
 def is_in(folder: Path, room: str) -> bool:
     """Return whether a folder has the library of a room."""
-    return any((folder / library_name(room, ending)).exists() for ending in ENDINGS)
+    return any((folder / name).exists() for name in names_of(room))
 
 
 def compiling_process(room: str, folder: Path, said: IO[str]) -> subprocess.Popen[str]:
