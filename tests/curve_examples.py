@@ -75,7 +75,7 @@ def pieces_of(features: Array, table: CurveTable, low: float, high: float, mode:
     members = np.arange(len(table))
     pitch = pitch_of(table) if len(table) else 1.0
     kept, edges = np.full((len(members), EDGE_LENGTH + 1), np.nan), np.empty((2, EDGE_LENGTH))
-    pieces = np.empty((4096, PIECE_LENGTH))
+    pieces = np.empty((1 << 16, PIECE_LENGTH))
     count = write_pieces(
         low, high, members, features, table.curves, pitch, 0.0, mode, np.inf, kept, edges, pieces
     )

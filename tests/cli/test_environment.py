@@ -75,8 +75,8 @@ def limited(size: int) -> Callable[[], None]:
         ),
         (
             600,
-            "compiling the kernels takes 1,000 MB of address space, and this process is limited to 600 MB (ulimit -v): "
-            "raise the limit, or install a wheel with compiled kernels.",
+            "bracket.dxf: compiling the kernels takes 1,000 MB of address space, and this process is limited to "
+            "600 MB (ulimit -v): raise the limit, or install a wheel with compiled kernels.",
         ),
     ],
 )

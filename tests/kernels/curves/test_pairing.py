@@ -40,7 +40,7 @@ from workhold.kernels.base.tables import (
 from workhold.kernels.chord.evaluation import HEIGHT, POSITION, chord_state
 from workhold.kernels.contact.record import PEG_LENGTH, angle_of, place_peg
 from workhold.kernels.contact.rules import is_fixture, minors, outward_normal, share_a_carrier
-from workhold.kernels.curves.block_work import TRIPLE_ROWS, place_chord, place_triple
+from workhold.kernels.curves.block_work import ROLE_LENGTH, TRIPLE_ROWS, place_chord, place_triple
 from workhold.kernels.curves.moving_pegs import faces_away, height_range, may_close, row_meets, write_triple
 from workhold.kernels.curves.piece_bounds import HAIR
 from workhold.kernels.curves.pieces import write_pieces
@@ -55,7 +55,6 @@ from workhold.kernels.curves.roots import (
 )
 from workhold.kernels.curves.three_and_one import farthest_right
 from workhold.kernels.curves.two_and_two import (
-    ROLE_LENGTH,
     ROLE_X,
     flat_slope,
     may_cross,
