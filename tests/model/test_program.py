@@ -193,7 +193,7 @@ def test_a_file_has_all_of_a_program(rapid: str) -> None:
         (lambda data: data["pieces"][0].update(kind="jump"), "is none"),
         (lambda data: data["pieces"][0].update(path=[[0, 0, 0], [1, 0, 0], [1, 1, 0]]), "is none"),
         (lambda data: [piece.update(path=[["x", 0, 0]]) for piece in data["pieces"]], "cannot be 'x'"),
-        (lambda data: data.update(unit="ell"), "in mm or inch"),
+        (lambda data: data.update(unit="ell"), "is mm or inch"),
         (lambda data: data.update(clearance=-1), "clearance"),
         (lambda data: data.update(zero=[nan, 0]), "zero"),
     ],
