@@ -41,8 +41,8 @@ def test_a_task_whose_worker_dies_is_tried_again_and_named_when_it_dies_twice(tm
     told = sorted(sentence.partition(" ended ")[2] for sentence in onlooker.sentences)
     assert told == [
         "by signal 9 while it worked on title 1. Another worker tries it again.",
-        "by signal 9 while it worked on title 3. This is the second time.",
         "by signal 9 while it worked on title 3. Another worker tries it again.",
+        "by signal 9 while it worked on title 3. This is the second time.",
     ]
     # None is left behind.
     assert processes and not any(process.is_alive() for process in processes)

@@ -205,7 +205,7 @@ def test_pictures_are_shown_where_asked_for(folder: Path) -> None:
         ("design", {"part": "wedge.json", **VISE, "avoid": [77]}, "77"),
         ("design", {"part": "wedge.json", **VISE, "loads": [{"at": [0, 0]}]}, "load 1 has at but no force"),
         ("design", {"part": "wedge.json", **VISE, "types": ["IV"]}, "type IV is unknown"),
-        ("design", {"part": "wedge.json", **VISE, "out": "wedge.json"}, "wedge.json is also what is read"),
+        ("design", {"part": "wedge.json", **VISE, "out": "wedge.json"}, "wedge.json is also an input"),
         (
             "design",
             {"part": "wedge.json", **VISE, "out": "other.txt"},

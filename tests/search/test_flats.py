@@ -198,9 +198,9 @@ def test_keeping_their_place() -> None:
         ((1.5, 2.7), "half a width of 2.7 mm"),
         ((1.5, -1), "half a width of -1 mm"),
         ("wide", "flat 'wide' cannot be used"),
-        ((1, 2, 3), "is none"),
-        ({"width": 2}, "is none"),
-        (float("nan"), "nan mm from the centre"),
+        ((1, 2, 3), "cannot be used"),
+        ({"width": 2}, "cannot be used"),
+        (float("nan"), "nan mm from its centre"),
     ):
         for made in (lambda flat: Vise(9, 2, 3, flat=flat), lambda flat: Plate(9, 3, flat=flat)):
             with pytest.raises(InputError, match=words):

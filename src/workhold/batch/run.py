@@ -160,10 +160,10 @@ class Counting(Protocol):
     """Who counts along."""
 
     def stage(self, doing: str, count: int, seconds: float) -> None:
-        """So many tasks are to be done, which are estimated to take a processor so long."""
+        """Begin a stage of ``count`` tasks, which are predicted to take ``seconds`` of one processor."""
 
     def one_done(self, seconds: float) -> None:
-        """One of them is done, for which so many seconds were reckoned."""
+        """Count one of these tasks as done, which was predicted to take ``seconds``."""
 
 
 @define(eq=False)

@@ -258,7 +258,8 @@ def bending_words(result: Result, rank: int, unit: Unit, jaw_force: float | None
     error = result[rank - 1].figures.get("location_error")
     return [
         "",
-        f"Pegs bend, {bent.at_force(mover, unit)}, built in at the plate; a real hole gives more:",
+        f"Pegs bend as follows, {bent.at_force(mover, unit)}, if they are built in at the plate; "
+        "in a real hole they give way more:",
         table,
         bent.sentence(mover, unit, error),
         *(f"Beware: {sentence}" for sentence in bent.cautions(mover, unit)),

@@ -405,8 +405,8 @@ def notes_of(found: Supports, listed: Sequence[Triple], unit: Unit) -> list[str]
     from workhold.supports.words import listing_notes
 
     notes = [
-        "The clamp presses at that point of the part's coordinates. Its force times the tipping arm is the "
-        f"moment that tips the part; where the last figure is at least {unit.text(STEADY)}, the part stands "
-        "before it is clamped."
+        "The clamp presses at this point of the part's coordinates. Its force times the tipping "
+        "arm is the tipping moment that it resists. If the last figure is at least "
+        f"{unit.text(STEADY)}, the part stands before it is clamped."
     ]
     return notes + before_first(listed) + listing_notes(found, listed, unit, KEEP_OFF)

@@ -541,7 +541,7 @@ def write_title(column: TextColumn, sheet: Sheet) -> None:
     column.paragraph(fixture_words(sheet.fixture, sheet.toolkit), BODY)
     x0, y0, x1, y1 = sheet.workpiece.bounds
     outside = f"{sheet.lengths.number(x1 - x0)} × {sheet.lengths.words(y1 - y0)}"
-    column.words(f"Outside dimensions {outside}, as drawn", BODY, gap=0.3)
+    column.words(f"Size {outside}, as drawn", BODY, gap=0.3)
 
 
 def write_zero(column: TextColumn, sheet: Sheet) -> None:

@@ -208,8 +208,8 @@ def supports_html(supports: Supports) -> str:
         for rank, triple in enumerate(supports.triples[:MOST_SETS], 1)
     ]
     notes = [
-        "The clamp presses at that point of the part's coordinates; where the last figure is at least "
-        f"{MILLIMETRE.text(STEADY)}, the part stands before it is clamped."
+        "The clamp presses at this point of the part's coordinates. If the last figure is at "
+        f"least {MILLIMETRE.text(STEADY)}, the part stands before it is clamped."
     ]
     if loaded:
         notes.append(f"Forces are for a closing force of {supports.jaw_force:.0f} N, without friction.")

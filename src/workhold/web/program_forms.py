@@ -177,7 +177,7 @@ def look_at_program(question: ReadProgramForm, order: Order) -> dict[str, Any]:
     thick = form.thickness if question.height is None else question.height
     high = form.peg_height if question.peg_height is None else question.peg_height
     if thick is None and form.z_zero == "top":
-        raise InputError('The thickness of the part is not known: fill in "Part thickness".')
+        raise InputError('The part\'s thickness is not known: fill in "Part thickness".')
     read = read_sent_program(form, thick)
     program, figures = read.program, tool_figures(read.program)
     low, top = tip_box(program.moves)

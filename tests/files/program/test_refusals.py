@@ -198,7 +198,7 @@ def test_what_is_left_out_or_taken_is_noted(tmp_path: Path) -> None:
         "has no M6",
         "Line 7: a line that a switch can leave out",
         "Line 6: a cutting move has no feed",
-        "Line 13: what stands behind the end",
+        "Line 13: the lines behind the end",
         "The holder of T1 is not known",
     ):
         assert words in notes

@@ -374,8 +374,8 @@ def notes_on(control: Interpreter, listing: ProgramText) -> list[str]:
     adrift = [line for line in path.adrift if line not in said]
     if adrift:
         notes.append(
-            f"{lines_named(adrift)}: a rapid move while X, Y or Z is not known is left out; what it names is "
-            "known from then on."
+            f"{lines_named(adrift)}: a rapid move while X, Y or Z is not known is left out; the axes "
+            "that it names are known from then on."
         )
     if not control.distance_said:
         notes.append("The program does not say G90 or G91; its places are read as after G90.")
@@ -411,7 +411,7 @@ def notes_on(control: Interpreter, listing: ProgramText) -> list[str]:
         notes.append(f"{lines_named(lines)}: {codes} {are} passed over, as {they} nothing of the path.")
     notes += whole_notes(control)
     if listing.behind:
-        notes.append(f"{lines_named(listing.behind)}: what stands behind the end of the program is not read.")
+        notes.append(f"{lines_named(listing.behind)}: the lines behind the end of the program are not read.")
     return notes
 
 
