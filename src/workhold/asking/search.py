@@ -74,7 +74,9 @@ class SearchQuestion:
         called="largest location error",
         section=RULING_OUT,
     )
-    best: int | None = declare("count", "Keep only the best K.", section=SEARCH, most=10_000, metavar="K")
+    best: int | None = declare(
+        "count", "Keep only the best K fixtures.", section=SEARCH, most=10_000, metavar="K"
+    )
     listing: str | None = declare(
         "choice",
         "With two clamps: best lists the best pair of clamps of each seat, and the number of its "
@@ -105,17 +107,17 @@ class SearchQuestion:
     )
     opening: float | None = declare(
         "length",
-        "List only those of them into which the part settles with the jaws open, or the clamp "
-        "drawn back, by this much more than where they hold it; wrong places beyond this opening "
-        "do not count.",
+        "Of the first K fixtures list only those into which the part settles with the jaws open, "
+        "or the clamp drawn back, by this much more than where they hold it; wrong places beyond "
+        "this opening do not count.",
         PageLabel("Settles from", "any", is_usual=True),
         section=SEATING,
         needs="seating",
     )
     foolproof: bool = declare(
         "flag",
-        "List only those of them that have no wrong place to rest in, or whose wrong places all "
-        "show by a caliper.",
+        "Of the first K fixtures list only those that have no wrong place to rest in, or whose "
+        "wrong places all show by a caliper.",
         PageLabel("Only if a caliper shows every wrong place", is_usual=True),
         default=False,
         section=SEATING,

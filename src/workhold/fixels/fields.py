@@ -23,8 +23,8 @@ from workhold.fixels.table import (
 
 # The names of kinds that people give, and what they are.
 NAMES: Mapping[str, str] = {
-    "vise": "closing clamps the part",
-    "opening-vise": "opening does, from inside its holes or around a waist",
+    "vise": "a vise that clamps the part by closing",
+    "opening-vise": "a vise that clamps by opening, from inside the part's holes or around a waist",
     "gripper": "a vise of one column",
     "plate": "three locators on a plate of holes, and a clamp or two",
     "fence": "a straight wall that the part lies flush against, one locator and a clamp",
