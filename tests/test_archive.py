@@ -79,7 +79,7 @@ def test_opening_reads_no_column(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     content[8000] ^= 1
     path.write_bytes(content)
     mapped_archive(path, COLUMNS, "head.json")
-    with pytest.raises(InputError, match=r"a\.npy is not what was written"):
+    with pytest.raises(InputError, match=r"a\.npy has been changed since it was written"):
         mapped_archive(path, COLUMNS, "head.json", whole=True)
 
 

@@ -88,7 +88,9 @@ class Panel:
         self.height = Gui.UiLoader().createWidget("Gui::InputField")
         self.height.setProperty("unit", "mm")
         self.height.setProperty("quantity", self.obj.PegHeight)
-        self.height.setToolTip(tr("How far pegs reach above where the part lies; 0 is all of the part"))
+        self.height.setToolTip(
+            tr("Height that pegs reach above the plane on which the part lies; 0 is all of the part")
+        )
         form.addRow(tr("Peg height"), self.height)
         self.faces = {}
         for name, words in (("Avoid", tr("Do not touch")), ("Only", tr("Touch only"))):
@@ -113,7 +115,7 @@ class Panel:
         for k, (words, tip, called) in enumerate(
             (
                 (tr("Design"), tr("Find every fixture"), self.design),
-                (tr("Stop"), tr("End the search; what was found is kept"), self.cancel.set),
+                (tr("Stop"), tr("End the search; the fixtures found so far are kept"), self.cancel.set),
                 (tr("Put in"), tr("Put the selected fixture into the document as bodies"), self.put_in),
                 (tr("Sheet ..."), tr("Write the setup sheet of the fixture in the document"), self.sheet),
             )
@@ -222,7 +224,7 @@ class Panel:
         drawn = self.obj.Glance if self.obj.Glanced else ""
         self.first.fill(drawn if rows else "", json.loads(self.obj.Glanced or "[]"))
         self.picture.fill("" if rows else drawn)
-        self.picture.setToolTip("" if rows else tr("What comes nearest to a fixture"))
+        self.picture.setToolTip("" if rows else tr("The nearest miss"))
         if rows and self.obj.Chosen <= len(rows):
             self.table.selectRow(self.obj.Chosen - 1)
 

@@ -269,7 +269,7 @@ def mapped_archive(
         refuse_unlike(names, members, list(spans.values()))
         for info in members:
             if (whole or info.filename == name) and checksum(content, *spans[info.filename]) != info.CRC:
-                raise BadZipFile(f"{info.filename} is not what was written")
+                raise BadZipFile(f"{info.filename} has been changed since it was written")
         arrays = {one: mapped(content, *spans[f"{one}.npy"], one, column) for one, column in columns.items()}
     except (BadZipFile, struct.error, ValueError, NotImplementedError, OverflowError) as error:
         reason = str(error) if isinstance(error, BadZipFile) else "it is damaged"

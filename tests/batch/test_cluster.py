@@ -138,7 +138,7 @@ def test_a_task_that_ends_its_workers_is_given_up_and_others_are_not(
     with ClusterWorkers(onlooker, count=2) as queue:
         outcomes = {outcome.name: outcome for outcome in queue.run(iter(tasks), Event())}
     assert set(outcomes) == {task.name for task in tasks}
-    assert "workers ended while they had this in hand" in outcomes["task2"].failure
+    assert "workers ended while they worked on this" in outcomes["task2"].failure
     done = [outcome.record for name, outcome in outcomes.items() if name != "task2"]
     assert all(record is not None and "was done" in plain_record(record)["refusal"] for record in done)
     assert sum("is lost" in sentence for sentence in onlooker.sentences) >= 3
@@ -264,8 +264,8 @@ def test_a_lost_scheduler_is_told_and_the_next_one_goes_on(shop: Path, tmp_path:
     assert command.returncode in (0, 2) and "Traceback" not in error, error
     if command.returncode == 2:
         assert (
-            f"the scheduler at {address} is lost; what is done is kept: start it, and then the same command"
-            in error
+            f"the scheduler at {address} is lost. The answers so far are kept: "
+            "start the scheduler, and then the same command" in error
         )
         assert f"The scheduler at {address} is lost" in (out / "report.html").read_text()
     with scheduler(tmp_path) as (address, _, _):
@@ -318,4 +318,4 @@ def test_two_hundred_parts_in_four_toolkits(tmp_path: Path) -> None:
 
 def test_a_place_to_work_is_one(tmp_path: Path) -> None:
     code, _, warned = run("widget", *TOOLS, "--out", tmp_path / "out", "--workers", 1, "--local-cluster", 1)
-    assert code == 2 and "are three places to work: give one of them" in warned
+    assert code == 2 and "each choose where the work is done: give only one of them" in warned

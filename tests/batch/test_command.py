@@ -88,7 +88,7 @@ def test_two_workers_killed_in_the_middle_make_what_one_makes(
 def test_the_same_command_again_does_nothing_anew(shop: Path, alone: Path) -> None:
     code, told, _ = run(shop, *TOOLS, "--out", alone)
     assert code == 0
-    assert "12 parts, 0 answers found in " in told and "; 22 were known from before." in told
+    assert "12 parts, 0 answers found in " in told and "; 22 were known already." in told
 
 
 def test_jobs_of_a_file_have_their_own_words(shop: Path, tmp_path: Path) -> None:

@@ -71,7 +71,7 @@ def test_what_there_is_no_room_for_is_told(
     )
     reported(batch, folder, tmp_path)
     text = (tmp_path / "r.html").read_text()
-    assert "1 further jobs are in the table of results only." in text
+    assert "The table of results lists 1 further jobs." in text
     assert text.count("<tr>") == 3 and text.count("<img") == 1
     # The line that makes the sheet.
     assert (

@@ -198,7 +198,7 @@ def test_a_full_disk_is_one_sentence_and_what_is_done_is_kept(
 
     monkeypatch.setattr(store_module, "write_bytes", until_full)
     with pytest.raises(
-        InputError, match=r"No space left on device\. What is done is kept: make room, and start"
+        InputError, match=r"No space left on device\. The answers so far are kept: make room, and start"
     ):
         run_in(tmp_path, shop, queue=InlineQueue(), held_in=(COARSE, FINE))
     monkeypatch.undo()
@@ -207,7 +207,7 @@ def test_a_full_disk_is_one_sentence_and_what_is_done_is_kept(
     queue = InlineQueue()
     assert run_in(tmp_path, shop, queue=queue, held_in=(COARSE, FINE)).is_complete
     assert len(queue.titles) == len(records_in(tmp_path)) - 5
-    with pytest.raises(InputError, match=r"The system refused something\. What is done is kept"):
+    with pytest.raises(InputError, match=r"The system refused something\. The answers so far are kept"):
         run_in(tmp_path, shop, queue=Full(), best=9)
 
 

@@ -87,8 +87,11 @@ def test_an_answer_tells_the_seating_of_those_it_keeps(part: bytes, tmp_path: Pa
     [
         (MemoryError(), "more memory"),
         (OSError(errno.ENOMEM, "Cannot allocate memory"), "more memory"),
-        (OSError(errno.EIO, "Input/output error"), "refused something the work needs: Input/output error"),
-        (RuntimeError("odd"), r"A mistake of workhold, not of yours \(RuntimeError: odd\)"),
+        (
+            OSError(errno.EIO, "Input/output error"),
+            "refused something that this task needs: Input/output error",
+        ),
+        (RuntimeError("odd"), r"workhold has a fault \(RuntimeError: odd\)"),
     ],
 )
 def test_what_may_not_come_again_is_no_record(error: Exception, words: str) -> None:
@@ -108,7 +111,7 @@ def test_a_worker_that_is_not_fit_is_no_reason_to_refuse_a_part() -> None:
     lacking = done(Unprepared("name", "title", error=InputError("no kernels.")))
     assert (lacking.record, lacking.failure) == (None, "no kernels.")
     other = done(Failing("name", "title", program="0.0.1 abc", error=InputError("no such face.")))
-    assert other.record is None and "another workhold" in other.failure
+    assert other.record is None and "another version of workhold" in other.failure
 
 
 def test_a_full_disk_is_told_from_other_failures() -> None:

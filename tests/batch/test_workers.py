@@ -35,14 +35,14 @@ def test_a_task_whose_worker_dies_is_tried_again_and_named_when_it_dies_twice(tm
         assert record is not None and plain_record(record)["refusal"] == f"{name} was done."
     assert outcomes["task3"].record is None
     assert outcomes["task3"].failure.startswith(
-        "Two workers ended, the last by signal 9, while they worked on this"
+        "Two workers ended, the last one by signal 9, while they worked on this"
     )
     assert sorted(p.name for p in tmp_path.iterdir()) == ["task1-0", "task3-0", "task3-1"]
     told = sorted(sentence.partition(" ended ")[2] for sentence in onlooker.sentences)
     assert told == [
-        "by signal 9 while it worked on title 1, which is tried again.",
-        "by signal 9 while it worked on title 3, for the second time.",
-        "by signal 9 while it worked on title 3, which is tried again.",
+        "by signal 9 while it worked on title 1. Another worker tries it again.",
+        "by signal 9 while it worked on title 3. Another worker tries it again.",
+        "by signal 9 while it worked on title 3. This is the second time.",
     ]
     # None is left behind.
     assert processes and not any(process.is_alive() for process in processes)
@@ -61,12 +61,12 @@ def test_a_task_without_an_end_is_given_up_and_the_others_go_on(
         outcomes = {outcome.name: outcome for outcome in queue.run(iter(given), Event())}
         assert len(list(scratch.iterdir())) == 1
     assert outcomes["endless"].failure == (
-        "This was given up after 1 s, the most that it may take: allow it more, or make the part or the "
-        "question simpler."
+        "This task was stopped after 1 s, the longest time that it may take: allow more seconds, or simplify "
+        "the part or the question."
     )
     assert outcomes["endless"].record is None and len(outcomes) == 3
     assert all(outcomes[name].record for name in ("task0", "task1"))
-    assert onlooker.sentences == ["worker 1 was ended: endless took longer than 1 s."]
+    assert onlooker.sentences == ["worker 1 was ended, because endless took longer than 1 s."]
     assert list(scratch.iterdir()) == []
 
 

@@ -48,7 +48,7 @@ def test_sets_are_made_and_hold(
     """The folder has the sets with what is needed to check them, and a second run writes the same bytes."""
     outcome = run("run", "bar-plate", "disc-flat", "--out", tmp_path / "sets", "--threads", 1)
     assert outcome.exit_code == 0, outcome.output
-    assert "all as the manifest has them" in " ".join(outcome.stdout.split())
+    assert "all equal to the manifest" in " ".join(outcome.stdout.split())
     names = {path.name for path in (tmp_path / "sets").iterdir()}
     assert names == {"bar-plate.json", "disc-flat.json", "manifest.json", "check.py", "parts"} | {
         "set.schema.json",
@@ -84,7 +84,7 @@ def test_a_list_is_compared(run: Callable[..., Any], tmp_path: Path, content: Co
         (("check",), "needs a file"),
         (("check", "nowhere.json", "--set", "kite-vise"), "nowhere.json"),
         (("play",), "the action"),
-        (("list", "--out", "x"), "--out is of run alone"),
+        (("list", "--out", "x"), "--out belongs to run"),
         (("check", "a.json", "--tolerance", "-1"), "--tolerance"),
     ],
 )

@@ -75,7 +75,7 @@ def test_seating_is_told_where_it_is_asked_for(folder: Path) -> None:
     assert shown[0]["fixture"]["seating"]["reading"] == pytest.approx(right.reading_of(), abs=1e-8)
     assert "seating" not in shown[1]["fixture"]
     told("sheet", folder, result_file="some.json", rank=3, path="setup.svg", seating=True)
-    assert "Will it end up there?" in Path("setup.svg").read_text()
+    assert "Does the part end up there?" in Path("setup.svg").read_text()
     data, _, failed = outcome("design", {"part": "wedge.json", **VISE, "foolproof": True}, folder, Event())
     assert failed and "such as seating 100" in json.dumps(data)
 
@@ -91,7 +91,7 @@ def test_with_two_clamps_agents_are_told_what_to_do_by_hand(folder: Path) -> Non
         shown = told("show", folder, result_file="some.json", rank=2, seating=asked, picture=False)["fixture"]
         assert shown.get("by_hand") == (other.as_fields() if asked else None) and "seating" not in shown
     told("sheet", folder, result_file="some.json", rank=2, path="setup.svg", seating=True)
-    assert "Will it end up there?" in Path("setup.svg").read_text()
+    assert "Does the part end up there?" in Path("setup.svg").read_text()
 
 
 def test_design_keeps_results_apart(folder: Path) -> None:
@@ -205,7 +205,7 @@ def test_pictures_are_shown_where_asked_for(folder: Path) -> None:
         ("design", {"part": "wedge.json", **VISE, "avoid": [77]}, "77"),
         ("design", {"part": "wedge.json", **VISE, "loads": [{"at": [0, 0]}]}, "load 1 has at but no force"),
         ("design", {"part": "wedge.json", **VISE, "types": ["IV"]}, "type IV is unknown"),
-        ("design", {"part": "wedge.json", **VISE, "out": "wedge.json"}, "wedge.json is also what is read"),
+        ("design", {"part": "wedge.json", **VISE, "out": "wedge.json"}, "wedge.json is also an input"),
         (
             "design",
             {"part": "wedge.json", **VISE, "out": "other.txt"},
@@ -232,7 +232,7 @@ def test_a_fault_is_owned_up_to(folder: Path, monkeypatch: pytest.MonkeyPatch) -
     data, _, failed = outcome("load", {"part": "wedge.json"}, folder, Event())
     assert (
         failed
-        and str(data).startswith("This is a mistake of workhold, not of yours (KeyError")
+        and str(data).startswith("workhold has a mistake, which is not yours (KeyError")
         and "\n" not in str(data)
     )
 
@@ -336,4 +336,4 @@ def test_a_program_and_its_forces(folder: Path) -> None:
     refused, _, failed = outcome(
         "design", {"part": "wedge.json", **VISE, "program": {"path": "p.nc"}}, folder, Event()
     )
-    assert failed and "give its thickness" in str(refused)
+    assert failed and "give the part's thickness" in str(refused)

@@ -190,7 +190,7 @@ def test_an_incomplete_result_is_written_and_marked(
     outcome = run("design", "widget", *VISE, "--out", tmp_path / "r.json", "--draw", tmp_path / "d")
     assert outcome.exit_code == 130
     assert json.loads((tmp_path / "r.json").read_text())["complete"] is False
-    assert "interrupted: this is a part of the fixtures only" in outcome.stderr
+    assert "interrupted: these are only some of the fixtures" in outcome.stderr
     assert not (tmp_path / "d").exists()
 
 
@@ -349,9 +349,9 @@ def test_both_engines_write_the_same_counts(run: Any, tmp_path: Path) -> None:
         (
             ("--out", "r.json"),
             1000,
-            "there are about 250,000 fixtures, 240 MB in r.json: these are the best 1,000; --all lists all.",
+            "there are about 250,000 fixtures, 240 MB in r.json. Listed are the best 1,000; --all lists all.",
         ),
-        ((), 1000, "there are about 250,000 fixtures, 240 MB: these are the best 1,000; --all lists all."),
+        ((), 1000, "there are about 250,000 fixtures, 240 MB. Listed are the best 1,000; --all lists all."),
         (("--out", "r.json", "--all"), None, "there are about 250,000 fixtures, 240 MB in r.json."),
         (
             ("--all",),

@@ -122,7 +122,7 @@ def test_kernels_say_where_they_come_from(
     assert findings()["kernels"] == (f"compiled on this machine, kept in {tmp_path}", None)
     monkeypatch.setattr(libraries, "cache_folder", lambda: None)
     state, remedy = findings()["kernels"]
-    assert state.startswith("compiled anew in every process") and "WORKHOLD_CACHE_DIR" in str(remedy)
+    assert state.startswith("compiled again in every process") and "WORKHOLD_CACHE_DIR" in str(remedy)
 
 
 def test_a_copy_that_was_not_installed_says_so(installation: None, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -130,7 +130,7 @@ def test_a_copy_that_was_not_installed_says_so(installation: None, monkeypatch: 
         raise metadata.PackageNotFoundError(name)
 
     monkeypatch.setattr(metadata, "requires", requires)
-    assert findings()["mcp"] == ("not known: this copy was not installed as a package", None)
+    assert findings()["mcp"] == ("not known, because this copy was not installed as a package", None)
 
 
 def test_what_is_said_of_the_extras_is_what_the_package_asks_for() -> None:

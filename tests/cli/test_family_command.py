@@ -74,7 +74,7 @@ def test_a_largest_loss_picks_the_fewest_within_it(run: Any, drawings: Path) -> 
 
 def test_without_a_choice_it_is_told_how_to_choose(run: Any, drawings: Path) -> None:
     outcome = run("family", drawings / "ell-1.json", *VISE)
-    assert "See the plan of a line with --setups K" in outcome.stdout
+    assert "Show the plan of a line with --setups K" in outcome.stdout
     assert "Set-up" not in outcome.stdout
 
 
@@ -158,7 +158,10 @@ def test_jobs_bring_rules_of_their_own(
     ]
     jobs.write_text(f'toolkit = "plate-20mm"\n[[job]]\npart = "{part}"\n')
     outcome = run("family", jobs, *VISE)
-    assert outcome.exit_code == 2 and "the parts of a family share that of the command line" in outcome.stderr
+    assert (
+        outcome.exit_code == 2
+        and "all parts of a family use the toolkit of the command line" in outcome.stderr
+    )
     jobs.write_text(f'[[job]]\npart = "{part}"\nrank_by = "tilt"\n[[job]]\npart = "{part}"\n')
     monkeypatch.undo()
     outcome = run("family", jobs, *VISE)
@@ -194,7 +197,7 @@ def test_both_sides_and_the_zero(run: Any, drawings: Path, monkeypatch: pytest.M
         (("widget", *VISE, "--out", "missing/f.json"), "there is no folder missing"),
         (("widget", *VISE, "--draw", "c.pdf"), "let the name end in .svg or .png"),
         (("widget", *VISE, "--setups", "1", "--sheets", "s.txt"), "let the name end in .pdf, .svg or .png"),
-        (("widget", *VISE, "--sheets", "s.pdf"), "--sheets needs a plan: say which"),
+        (("widget", *VISE, "--sheets", "s.pdf"), "--sheets needs a plan: choose one"),
         (("widget", *VISE, "--out", "f.svg", "--draw", "./f.svg"), "named for two outputs"),
         (("odd.dxf", *VISE), "none of the parts can be used: odd.dxf: "),
         (("widget", *VISE, "--type", "III"), "--type"),

@@ -78,7 +78,7 @@ def test_parts_are_listed_and_drawn_with_their_numbers(run: Run, drawing: Path, 
 def test_missing_numbers_of_faces_are_explained(run: Run, drawing: Path, tmp_path: Path) -> None:
     """A circle is two segments and one face; a part of lines only has every number."""
     outcome = run("features", drawing, "--draw", tmp_path / "faces.svg")
-    assert "No face is called 5: that is a further piece of a face drawn in pieces" in outcome.stdout
+    assert "No face has the number 5: that is a further piece of a face drawn in pieces" in outcome.stdout
     assert "a face drawn in pieces has the number of the first" in (tmp_path / "faces.svg").read_text()
     plain = run("features", drawing, "--layer", "Outline", "--draw", tmp_path / "plain.svg")
     assert "No face is called" not in plain.stdout

@@ -172,7 +172,7 @@ def test_files_written_are_named(run: Any, folder: Path, words: tuple[Any, ...])
 def test_two_things_in_one_place_are_refused(run: Any, folder: Path, words: tuple[Any, ...]) -> None:
     outcome = run(*words, "--json")
     assert outcome.exit_code == 2 and not outcome.stdout
-    assert "two things in one place" in outcome.stderr
+    assert "would both go to the terminal" in outcome.stderr
 
 
 def test_forces_without_end_are_nothing(run: Any, folder: Path) -> None:

@@ -55,7 +55,9 @@ def test_show_writes_bodies(run: Any, result_file: Path, tmp_path: Path) -> None
         outcome = run("show", result_file, 2, "--glb", tmp_path / "a.glb", *given)
         assert outcome.exit_code == 0, outcome.stderr
         assert f"Drawn in {tmp_path / 'a.glb'}." in outcome.stdout
-        assert ("10.000 mm high, as nobody said" in " ".join(outcome.stderr.split())) == (not given)
+        assert ("10.000 mm high, because no thickness is given" in " ".join(outcome.stderr.split())) == (
+            not given
+        )
         sizes = BodySizes.of(result.workpiece, thickness)
         assert (tmp_path / "a.glb").read_bytes() == fixture_glb(*held, sizes)
 

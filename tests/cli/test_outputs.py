@@ -65,9 +65,7 @@ def test_what_is_read_is_not_written_over(run: Any, folder: Path, command: str, 
         (link or os.link)(folder / read, folder / output)
     outcome = run(*COMMANDS[command], output, "--force")
     assert outcome.exit_code == 2
-    assert (
-        outcome.stderr == f"workhold: error: {output} is also what is read: give the output another name.\n"
-    )
+    assert outcome.stderr == f"workhold: error: {output} is also an input: give the output another name.\n"
     assert (folder / read).read_bytes() == before
 
 

@@ -30,9 +30,10 @@ def test_a_drawing_takes_a_thickness_and_a_height_of_the_pegs_without_a_program(
     for words in (
         "pin deflection",
         "How far the peg that bends most gives way, at a jaw force of 500 N.",
-        "Pegs bend, at a jaw force of 500 N, built in at the plate; a real hole gives more:",
+        "Pegs bend as follows, at a jaw force of 500 N, if they are built in at the plate; "
+        "in a real hole they give way more:",
         "38.00",
-        "beside its location error of",
+        "on top of its location error of",
         "Beware: ",
         "more than the 421 MPa that a pin should take",
     ):
@@ -50,7 +51,7 @@ def test_without_a_force_it_is_said_to_be_for_each_kn(run: Any, part: str) -> No
     assert run("design", part, *HELD, "--peg-height", "10", "--out", "r.json").exit_code == 0
     shown = run("show", "r.json", 1).stdout
     assert "gives way, for each kN of jaw force." in shown
-    assert "Pegs bend, for each kN of jaw force, built in at the plate" in shown
+    assert "Pegs bend as follows, for each kN of jaw force, if they are built in at the plate" in shown
     assert "Beware" not in shown
     inches = run("show", "r.json", 1, "--unit", "inch").stdout
     assert "gives way, for each 225 lbf (1000 N) of jaw force." in inches and "kN" not in inches

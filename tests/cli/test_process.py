@@ -116,7 +116,8 @@ def test_ctrl_c_keeps_what_was_found(tmp_path: Path) -> None:
     assert len(data["fixtures"]) == 3
     assert "3 fixtures" in out
     assert (
-        "stopping; what was found is kept as far as it is soon proven (Ctrl-C again ends at once).\n" in err
+        "stopping; the fixtures found so far are kept, if their proof takes little time (Ctrl-C again ends at once).\n"
+        in err
     )
     assert "r.json is marked so" in err
     assert "Traceback" not in err
@@ -231,7 +232,7 @@ def test_a_fault_is_owned_up_to_and_its_traceback_kept(tmp_path: Path) -> None:
     _, err = process.communicate(timeout=PATIENCE)
     assert process.returncode == 1
     assert err.count("\n") == 1
-    assert "a mistake of workhold, not of yours (RuntimeError: secret of the inside)" in err
+    assert "workhold has a mistake, which is not yours (RuntimeError: secret of the inside)" in err
     (kept,) = tmp_path.iterdir()
     assert str(kept) in err
     assert "Traceback" in kept.read_text()

@@ -55,7 +55,7 @@ def test_tools_come_from_a_table(run: Run, tmp_path: Path) -> None:
     table = tmp_path / "tools.csv"
     table.write_text("tool,diameter,stickout,holder_diameter\n1,12,40,50\n3,7,60,40\n")
     shown = run("program", HAAS, "--tools", table).stdout
-    assert "12.000" in shown and "The holder" not in shown and "read in mm as the program" in shown
+    assert "12.000" in shown and "The holder" not in shown and "read in mm like the program" in shown
     bare = tmp_path / "bare.nc"
     bare.write_text(HAAS.read_text().replace("D=", "d "))
     outcome = run("program", bare)

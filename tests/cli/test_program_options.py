@@ -118,7 +118,7 @@ def test_a_start_and_thousandths_reach_the_program(run: Any, searched: dict[str,
 
 def test_words_about_no_program_are_refused(run: Any, searched: dict[str, Any]) -> None:
     outcome = run("design", "widget", *HELD, "--zero", "3,4")
-    assert outcome.exit_code == 2 and "--zero says something of a program" in outcome.stderr
+    assert outcome.exit_code == 2 and "--zero belongs to a program" in outcome.stderr
     ranked = run("design", "widget", *HELD, "--rank-by", "program-clearance")
     assert ranked.exit_code == 2 and "there is no program to rank by" in ranked.stderr
 

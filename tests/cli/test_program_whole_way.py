@@ -85,4 +85,4 @@ def test_what_is_skipped_for_too_much_work_is_said(
     assert "looking was stopped" not in whole
     monkeypatch.setattr("workhold.cli.support_words.MOST_PLACES", 1)
     cut = run(*asked, "--supports", "--out", tmp_path / "b.json").stdout
-    assert "looking was stopped after 1: under 2 not all sets were looked at, and under 3 to 5 none." in cut
+    assert "the search stopped after 1: under 2 it did not look at all sets, and under 3 to 5 at none." in cut

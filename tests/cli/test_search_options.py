@@ -107,7 +107,7 @@ def test_a_named_vise_brings_its_tolerance_and_gives_way_to_options(
         (("--angle", "20..10"), "give the smaller first"),
         (("--blocked", "B3"), "'B3' names no hole"),
         (("--blocked", "L-D1"), "L-D1 is blocked, but each jaw has only 2 columns"),
-        (("--body-radius", "1"), "body radius 1 is not one of a peg of radius 3"),
+        (("--body-radius", "1"), "body radius 1 is less than the peg radius 3"),
         (("--rank-by", "beauty"), "'beauty' is no figure to rank by"),
         (("--rank-by", "load-reaction"), "there is no load"),
         (("--tolerance", "1,2,3"), "has 3 numbers"),
@@ -148,7 +148,7 @@ def test_no_fixture_is_explained_and_the_nearest_miss_drawn(run: Any, tmp_path: 
     """The rule that left nothing, and a picture of what came nearest."""
     outcome = run(*WIDGET, "--min-gap", "300", "--draw", tmp_path)
     assert outcome.exit_code == 0
-    assert "The last were removed by: smallest gap." in outcome.stdout
+    assert "The rule that removed the last of them: smallest gap." in outcome.stdout
     assert "with a smallest gap of 6 mm" in outcome.stdout
     assert sorted(path.name for path in tmp_path.iterdir()) == ["nearest-miss.png", "nearest-miss.svg"]
 

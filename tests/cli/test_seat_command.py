@@ -48,9 +48,11 @@ def test_it_says_where_nothing_is_known_of_how_a_part_is_caught(run: Any, tmp_pa
     outcome = run("seat", path, 1)
     text = " ".join(outcome.stdout.split())
     assert outcome.exit_code == 0 and "a fault of the program" in " ".join(outcome.stderr.split())
-    assert "From where on it is caught is not known: put the part in its place, hold it there" in text
-    assert "of room" not in text and "Open the jaws to" not in text and "When it has come home" in text
-    assert "Beware: from where on the part is caught is not known." in " ".join(
+    assert "It is not known how far you may open: put the part in its place, hold it there" in text
+    assert (
+        "of room" not in text and "Open the jaws to" not in text and "When the part is in its place" in text
+    )
+    assert "Beware: it is not known how far you may open without losing the part." in " ".join(
         run("show", path, 1).stdout.split()
     )
     words = SeatingSentences(untold, result[0], result.toolkit, LengthUnit.suiting(MILLIMETRE, 20.0))
@@ -70,7 +72,7 @@ def test_it_tells_what_to_do_and_what_to_read(
     [told] = workhold.seatings(result)
     text = " ".join(outcome.stdout.split())
     right = f"{result[0].travel:.3f} mm"
-    assert f"When it has come home the opening S is {right}. While that is more" in text
+    assert f"When the part is in its place, the opening S is {right}. While it is more" in text
     assert f"which is {told.capture_opening:.3f} mm from where they hold the part" in text
     assert f"With a friction below {told.sticking_friction:.3f}" in text
     reads = [line.split()[1] for line in lines if line.split()[:1] and line.split()[0].isdigit()]
@@ -99,7 +101,7 @@ def test_a_design_tells_it_of_the_first_and_lists_what_is_as_asked(
     for figure in ("capture_opening", "reading"):
         assert f"{result[0].figures[figure]:.2f}" in first
     shown, told = (" ".join(run(command, out, 1).stdout.split()) for command in ("show", "seat"))
-    sentence = f"When it has come home the opening S is {result[0].travel:.3f} mm."
+    sentence = f"When the part is in its place, the opening S is {result[0].travel:.3f} mm."
     assert sentence in shown and sentence in told
     data = json.loads(run("show", out, 1, "--json").stdout)
     assert data["fixture"]["seating"] == json.loads(json.dumps(result.seating[0].as_fields()))
@@ -270,7 +272,7 @@ def test_a_clamp_is_drawn_back(
     text = " ".join(outcome.stdout.split())
     right = result[0].pegs[-1].y if travel is None else -result[0].travel
     assert words.format(wide=f"{right - told.capture_opening:.3f}", by=f"{told.capture_opening:.3f}") in text
-    assert f"is {right:.3f} mm. While that is less, the part is stuck" in text
+    assert f"is {right:.3f} mm. While it is less, the part is stuck" in text
     reads = [
         line.split()[1]
         for line in outcome.stdout.splitlines()
@@ -300,4 +302,4 @@ def test_an_opening_vise_is_closed_to_put_the_part_in(run: Any, tmp_path: Path) 
     text = " ".join(run("seat", tmp_path / "o.json", 1).stdout.split())
     right = result[0].travel
     assert f"Close the jaws to more than {right - told.capture_opening:.3f} mm" in text
-    assert f"the opening S is {right:.3f} mm. While that is less" in text
+    assert f"the opening S is {right:.3f} mm. While it is less" in text

@@ -203,9 +203,9 @@ def test_where_the_part_ends_up_is_told_when_asked(run: Any, folder: Path) -> No
     run("sheet", "r.json", 1, "-o", "plain.pdf")
     assert run("sheet", "r.json", 1, "-o", "a.pdf", "--seating").exit_code == 0
     plain, asked = words_in(folder / "plain.pdf"), words_in(folder / "a.pdf")
-    right = f"Right is S = {diamond()[0].jaw_separation:.3f} mm."
-    assert "Will it end up there?" in asked and right in asked and "What it looks like" in asked
-    assert "Will it end up there?" not in plain and right not in plain
+    right = f"The right reading is S = {diamond()[0].jaw_separation:.3f} mm."
+    assert "Does the part end up there?" in asked and right in asked and "What it looks like" in asked
+    assert "Does the part end up there?" not in plain and right not in plain
 
 
 def test_part_zero_is_where_it_was_asked_for(run: Any, folder: Path) -> None:

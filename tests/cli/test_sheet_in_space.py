@@ -151,7 +151,7 @@ def test_sheet_of_a_set_of_supports(run: Run, folder: Path) -> None:
         assert "load 1: 90 N at x 30.000, y 20.000 mm" in text
     for words, sentence in (
         (("s.json", len(listed) + 1), f"there is no set {len(listed) + 1} of supports"),
-        (("s.json", 1, "--thickness", 12), "s.json says what --thickness would"),
+        (("s.json", 1, "--thickness", 12), "s.json already gives what --thickness would"),
         (("s.json", 1, "--load", "force=5 at=1,1"), "s.json has the loads"),
     ):
         shown = run("sheet", *words, "-o", "t.pdf")
@@ -162,10 +162,16 @@ def test_sheet_of_a_set_of_supports(run: Run, folder: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        (("r.json", "-o", "a.pdf", "--supports"), "how thick the part is, is not known: give --thickness."),
+        (
+            ("r.json", "-o", "a.pdf", "--supports"),
+            "the thickness of the part is not known: give --thickness.",
+        ),
         (("op10.json", "-o", "a.dxf", "--supports"), "a.dxf has no supports"),
-        (("op10.json", "-o", "a.csv", "--first-setup", "op20.json"), "--first-setup is of a sheet on paper"),
-        (("op10.json", "-o", "a.pdf", "--support-height", "8"), "--support-height is of supports"),
+        (
+            ("op10.json", "-o", "a.csv", "--first-setup", "op20.json"),
+            "--first-setup belongs to a sheet on paper",
+        ),
+        (("op10.json", "-o", "a.pdf", "--support-height", "8"), "--support-height belongs to supports"),
         (("r.json", "-o", "a.pdf", "--first-setup", "op10.json"), "plate has no faces of a solid"),
         (("op10.json", "-o", "op20.json", "--first-setup", "op20.json"), "-o op20.json names no kind"),
         (("op10.json", "-o", "a.pdf", "--supports", "--thickness", "0"), "--thickness"),
@@ -215,9 +221,9 @@ def test_smaller_pads_stand_where_the_usual_ones_do_not(run: Run, folder: Path) 
     shown = run(*words, "--sheet", "a.pdf", "--out", "r.json")
     assert shown.exit_code == 0, shown.stderr
     assert "Pads of radius 3.000 mm and a tip of radius 4.000 mm" in shown.stdout
-    assert "Larger ones hold the part under none of these" in shown.stdout
+    assert "Larger pads and tips hold the part under none of these" in shown.stdout
     rank = int(shown.stdout.split("The setup sheet of fixture ")[1].split()[0])
-    assert f"fixture 1 has no such supports: the sheet is of fixture {rank}." in shown.stderr
+    assert f"no such supports hold up fixture 1, so the sheet shows fixture {rank}." in shown.stderr
     assert f"\n   {rank}   " in shown.stdout.split("supports   clamp at")[1]
     assert "round pads Ø 6 mm" in words_in("a.pdf") and "its round tip Ø 8 mm" in words_in("a.pdf")
     assert run("sheet", "r.json", rank, "-o", "b.pdf", "--supports", "--thickness", 9).exit_code == 0

@@ -57,7 +57,7 @@ def test_best_sets_and_a_file_that_verify_accepts(result_file: Path, tmp_path: P
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        ((), "how thick the part is, is not known: give --thickness."),
+        ((), "the thickness of the part is not known: give --thickness."),
         (("--thickness", "0"), "--thickness"),
         (("--thickness", "12", "--band", "3"), "give 2 lengths with ':' between them"),
         (("--thickness", "12", "--band", "3:20"), "cannot press at heights 3 to 20"),
@@ -122,9 +122,9 @@ def test_search_with_supports(run: Run, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        (("--supports",), "how thick the part is, is not known: give --thickness."),
+        (("--supports",), "the thickness of the part is not known: give --thickness."),
         (("--supports", "--thickness", "4", "--json"), "--supports prints a table: leave --json out"),
-        (("--not-on-faces-cut-in", "RESULT"), "needs the faces of one solid in both"),
+        (("--not-on-faces-cut-in", "RESULT"), "needs the faces of the same solid in both set-ups"),
     ],
 )
 def test_search_with_supports_refuses(
@@ -166,11 +166,11 @@ def test_show_and_sheet_write_the_best_supports_of_the_usual_sizes(
     refused = run("show", result_file, "1", "--step", tmp_path / "c.step", "--supports")
     assert refused.exit_code == 2 and "give --thickness" in refused.stderr
     refused = run("show", result_file, "1", "--part", "a.step")
-    assert refused.exit_code == 2 and "--part is of a file in three dimensions" in refused.stderr
+    assert refused.exit_code == 2 and "--part belongs to a file in three dimensions" in refused.stderr
     refused = run("show", result_file, "1", "--glb", tmp_path / "d.glb", "--part", step)
     assert refused.exit_code == 2 and "was not read from a solid" in " ".join(refused.stderr.split())
     refused = run("show", result_file, "1", "--supports")
-    assert refused.exit_code == 2 and "--supports is of a file in three dimensions" in refused.stderr
+    assert refused.exit_code == 2 and "--supports belongs to a file in three dimensions" in refused.stderr
 
 
 def test_supports_of_a_result_in_python() -> None:
@@ -183,7 +183,7 @@ def test_supports_of_a_result_in_python() -> None:
     assert every[0].request.inside == 4.0 and every[0].request.pad_radius == 4.0
     with pytest.raises(workhold.InputError, match="supports have no 'pads': give some of pad_radius"):
         fixture_supports(result[0], 20, pads=3)
-    with pytest.raises(workhold.InputError, match="how thick the part is, is not known"):
+    with pytest.raises(workhold.InputError, match="the thickness of the part is not known"):
         result.supports()
 
 
@@ -194,7 +194,9 @@ def test_friction_is_a_line_of_its_own_and_ranks_nothing(result_file: Path, run:
     plain, more = run(*words), run(*words, "--friction", "0.2")
     assert more.exit_code == 0 and more.stdout.startswith(plain.stdout.rstrip())
     line = more.stdout[len(plain.stdout.rstrip()) :]
-    assert "With a friction of 0.2 at every contact the clamp of these sets, in their order, could do" in line
+    assert (
+        "With a friction of 0.2 at every contact the clamp of these sets, in their order, could hold" in line
+    )
     told = json.loads(run(*words, "--friction", "0.2", "--json").stdout)
     assert told["friction"] == 0.2 and len(told["needed_with_friction"]) == len(told["triples"]) == 3
     for force, one in zip(told["needed_with_friction"], told["triples"], strict=True):
@@ -205,7 +207,7 @@ def test_friction_is_a_line_of_its_own_and_ranks_nothing(result_file: Path, run:
         refused = run(*words, "--friction", wrong)
         assert refused.exit_code == 2 and sentence in refused.stderr
     bare = run(*words[:5], "--friction", "0.2")
-    assert bare.exit_code == 2 and "--friction is asked of loads, of which there are none" in bare.stderr
+    assert bare.exit_code == 2 and "--friction needs loads, and there are none" in bare.stderr
 
 
 @pytest.mark.thorough
@@ -224,7 +226,10 @@ def test_forces_are_pounds_with_inches(result_file: Path, run: Run) -> None:
     )
     for own, size in zip(first[:2], other[:2], strict=True):
         assert float(own) == pytest.approx(float(size) * 4.4482, abs=3)
-    assert "All for a closing force of" in pounds and "lbf (" in pounds.split("All for a closing force of")[1]
+    assert (
+        "All figures are for a closing force of" in pounds
+        and "lbf (" in pounds.split("All figures are for a closing force of")[1]
+    )
     assert not re.search(r"\bN\b(?!\))", pounds)
 
 
@@ -240,5 +245,7 @@ def test_no_pad_stands_under_a_solid_that_lies_on_no_face(tmp_path: Path, run: R
         shown = [run("supports", path, n, "--keep-out-below", "circle=0,0,1") for n in range(1, 31)]
         held = [one for one in shown if "clamp at mm" in one.stdout]
         assert bool(held) is bool(bottom)
-        smaller = "the usual sizes find no place: the pads have a radius of 3.000 mm, the tip one of 4.000 mm"
+        smaller = (
+            "the usual sizes find no place, so the pads have a radius of 3.000 mm and the tip one of 4.000 mm"
+        )
         assert not bottom or any(smaller in one.stderr for one in held)

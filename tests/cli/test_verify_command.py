@@ -56,7 +56,7 @@ def test_a_proven_result_in_one_line(run: Any, result_file: Path) -> None:
     assert match[1] == match[2] != "0"
     assert outcome.stderr == ""
     heading, *points = outcome.stdout[match.end() :].splitlines()
-    assert heading == "What a file alone cannot show, and --complete does:"
+    assert heading == "A file alone cannot show this; --complete checks it:"
     told = ("fixtures were left out", "query was wider", "how many", "how much work", "was interrupted")
     assert len(points) == 5 and all(word in point for word, point in zip(told, points, strict=True))
     assert "a smaller gap or contact margin, a larger opening, more rows, fewer restrictions" in points[1]

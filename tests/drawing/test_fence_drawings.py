@@ -116,7 +116,7 @@ def test_the_sheet_says_what_is_measured_and_how_far_the_set_up_may_be_moved() -
         "\n", " "
     )
     assert (
-        "any columns further right; places are then measured from the column that takes the place of A"
+        "any columns further right; then measure all places from the column that takes the place of A"
         in words
     )
     assert "further up" not in words

@@ -74,7 +74,9 @@ def test_nothing_is_covered_or_cut_off(
     assert drawn == min(wrong + 1, 6)
     words = " ".join(word for page in pages for word in texts(page))
     assert ("18 more are off by more" in words) == (wrong == 23)
-    assert ("in one wrong place" in words) == (wrong == 1) and ("in no wrong place" in words) == (wrong == 0)
+    assert ("in one wrong place" in words) == (wrong == 1) and ("no wrong place in which" in words) == (
+        wrong == 0
+    )
     assert f"{len(pages)} of {len(pages)}" in words
 
 
@@ -146,7 +148,7 @@ def test_it_is_told_whether_the_reading_tells(result: Result, told: list[Seating
 def test_friction_is_told_where_dry_steel_sticks(result: Result, told: list[Seating]) -> None:
     for friction, sticks in ((0.19, True), (0.21, False)):
         steps = words_for(result, evolve(told[0], sticking_friction=friction)).steps(WEDGE)
-        assert any("tap it home meanwhile" in step for step in steps) == sticks
+        assert any("tap it home as you close" in step for step in steps) == sticks
 
 
 def test_what_never_gets_out_may_be_opened_as_far_as_one_likes(result: Result, told: list[Seating]) -> None:
@@ -186,8 +188,8 @@ def test_it_is_told_where_it_is_known_or_asked_for(result: Result, told: list[Se
         seating: result_sheet(kept, 1, seating=seating) == sheets[True] for seating in (None, True, False)
     }
     assert same == {None: True, True: True, False: False}
-    assert "Will it end up there?" in asked and "no different" in asked
-    assert "Will it end up there?" not in plain
+    assert "Does the part end up there?" in asked and "no different" in asked
+    assert "Does the part end up there?" not in plain
     assert [c.kind for c in result_cautions(result, 1, seating=True)] == ["reading"]
     assert "reading" not in [c.kind for c in result_cautions(result, 1)]
 
@@ -195,7 +197,7 @@ def test_it_is_told_where_it_is_known_or_asked_for(result: Result, told: list[Se
 def test_what_cannot_be_told_is_left_out_with_its_sentence() -> None:
     plate = workhold.design(WEDGE, Plate(pitch=20, peg_radius=0.0), best=1)
     words = " ".join(word for page in result_sheet(plate, 1, seating=True) for word in texts(page))
-    assert "Will it end up there?" in words and "What it looks like" not in words
+    assert "Does the part end up there?" in words and "What it looks like" not in words
     with pytest.raises(workhold.InputError) as refusal:
         workhold.seatings(plate)
     assert str(refusal.value)[1:] in words
@@ -218,7 +220,7 @@ def test_with_two_clamps_it_says_what_to_do_by_hand(toolkit: Plate | Fence) -> N
             wanted = seating or (seating is None and rank == 2)
             steps = told.steps(LengthUnit.suiting(MILLIMETRE, 20.0).words, with_order=False)
             why = "Neither of the two clamps holds the part alone"
-            assert all((part in words) == wanted for part in (why, *steps, "Will it end up there?"))
+            assert all((part in words) == wanted for part in (why, *steps, "Does the part end up there?"))
             assert words.count(order_words(result[rank - 1])) == 2
             assert "What it looks like" not in words and not any(collisions(page) for page in pages)
     [asked, plain] = [result_cautions(result, 1, seating=seating) for seating in (True, False)]
@@ -239,7 +241,8 @@ def test_a_clamp_is_drawn_back_and_tightened() -> None:
     assert steps[0].startswith("Draw the clamp back to stroke = ") and "at least" in steps[0]
     assert right - capture <= least < right - capture + 0.01
     assert any(
-        step.startswith("Tighten it. Right is stroke = ") and "While less is read" in step for step in steps
+        step.startswith("Tighten it. The right reading is stroke = ") and "While the reading is less" in step
+        for step in steps
     )
     # Readings as long as that stand on the sheet uncut.
     pages = draw_sheet(plate[0], WEDGE, plate.toolkit, evolve(DETAILS, seating=told))

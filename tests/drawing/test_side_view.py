@@ -81,7 +81,7 @@ def test_view_is_true_to_the_scale_that_is_written(name: str) -> None:
     assert all(float(one.attrib.get("stroke-width", "0")) == 0.0 for one in by_class(page, "unknown"))
     (upper,) = by_class(page, "upper-face")
     assert upper.attrib["stroke-dasharray"] == "7 4"
-    assert re.search("level upper faces, dashed", " ".join(texts(page)))
+    assert re.search("level upper faces .dashed", " ".join(texts(page)))
     feet = [way.across(fixture.pose.apply(x, y)) for x, y, _ in FOOT]
     assert boxes(page, "foot-face") == [pytest.approx((min(feet), 0.0, max(feet), 0.0), abs=2e-3)]
     bench = bench_of(fixture, SOLID, toolkit)
@@ -159,7 +159,7 @@ def test_every_height_is_in_the_pdf(unit: object, size: str) -> None:
         f"part {told(HEIGHT)} {sign}",
         f"pegs {told(PEG_HEIGHT)} {sign}",
         f"head room above the pegs {told(HEAD_ROOM)} {sign}",
-        f"Up to {told(PEG_HEIGHT + HEAD_ROOM)} {sign} the part is drawn as wide as all that pegs can meet",
+        f"Up to {told(PEG_HEIGHT + HEAD_ROOM)} {sign} the part is drawn as wide as everything that pegs can meet",
         f"{told(PEG_HEIGHT)} {sign} beside the part + {told(dowel.depth)} {sign} in the plate.",
         f"locators: dowels of {dowel.name} each sits in the plate {told(dowel.depth)} {sign}",
     ):
@@ -204,7 +204,7 @@ def test_a_drawing_without_thickness_has_no_view() -> None:
     words = printed(sheet(result, thickness=12.0))
     assert "The part is drawn as a prism of its outline." in words
     assert (
-        "Assumed, as nobody said: thickness of the jaws 10.000 mm; pegs as high as the part, 12.000 mm."
+        "Assumed, because no value is given: thickness of the jaws 10.000 mm; pegs as high as the part, 12.000 mm."
         in words
     )
     (known,) = boxes(side_page(sheet(result, thickness=12.0)), "part-side")

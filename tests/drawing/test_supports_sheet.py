@@ -109,7 +109,7 @@ def test_forces_are_those_of_the_loads(name: str) -> None:
     assert f"clamp force wanted at least {needed} N" in words
     assert f"largest force on a support {ceil(clamp.support_force - 1e-6)} N" in words
     assert (
-        f"With that force the clamp alone holds up to {clamp.clamp_needed * clamp.arm:.0f} N mm of tipping."
+        f"With that force the clamp alone resists a tipping moment of up to {clamp.clamp_needed * clamp.arm:.0f} N mm."
         in words
     )
     assert f"mm with at least {needed} N, inside the triangle" in words
@@ -122,27 +122,41 @@ def test_without_loads_the_moment_is_told_for_a_round_force() -> None:
     pages = sheet(result_of("plate", False), thickness=HEIGHT, supports=found, jaw_force=500.0)
     words = printed(pages)
     assert (
-        f"With each 100 N the clamp alone holds up to {100 * found.clamp.arm:.0f} N mm of tipping." in words
+        f"With each 100 N the clamp alone resists a tipping moment of up to {100 * found.clamp.arm:.0f} N mm."
+        in words
     )
     if found.clamp.lift > 0:
         assert f"clamp force wanted at least {ceil(500 * found.clamp.lift - 1e-6)} N" in words
     standing = found.triple.standing
-    sentence = f"its area is {standing:.3f} mm inside" if standing > 0 else "Unclamped it does not stand"
+    sentence = (
+        f"its area is {standing:.3f} mm inside"
+        if standing > 0
+        else "Before it is clamped the part does not stand"
+    )
     assert sentence in words
     for inside, said in (
         (
             0.0,
-            "Unclamped it tips at a touch, as the centre of its area is 0.000 mm inside their triangle: hold it",
+            "Before it is clamped the part tips at a touch, because "
+            "the centre of its area is 0.000 mm inside their triangle: hold it",
         ),
-        (0.5, "Unclamped it stands on the three: the centre of its area is 0.500 mm inside their triangle."),
-        (-0.1, "Unclamped it does not stand on the three: hold it down until it is clamped."),
+        (
+            0.5,
+            "Before it is clamped the part stands on the three supports: "
+            "the centre of its area is 0.500 mm inside their triangle.",
+        ),
+        (
+            -0.1,
+            "Before it is clamped the part does not stand on the three supports: hold it down until it is clamped.",
+        ),
     ):
         triples = tuple(evolve(one, standing=inside) for one in found.supports.triples)
         moved = evolve(found, supports=evolve(found.supports, triples=triples))
         assert said in printed(sheet(result_of("plate", False), thickness=HEIGHT, supports=moved))
     inches = printed(sheet(result_of("plate", False), thickness=HEIGHT, supports=found, unit=INCH))
     assert (
-        f"With each 100 lbf the clamp alone holds up to {100 * found.clamp.arm / 304.8:.3g} ft lbf" in inches
+        f"With each 100 lbf the clamp alone resists a tipping moment of up to {100 * found.clamp.arm / 304.8:.3g} ft lbf"
+        in inches
     )
 
 
@@ -185,12 +199,12 @@ def test_pegs_as_high_as_the_part_may_be_as_short_as_they_press(name: str, high:
     peg = TOOLKITS[name].plates[0].peg
     shorter = dowel_for(TOOLKITS[name].peg_diameter, high)
     dowels = "shorter ones" if shorter is None else f"dowels of {shorter.name}"
-    words = f"No {peg} presses above {high:.3f} mm, so {dowels} do as well."
-    assert (words in text) is said and ("do as well" in text) is said
+    words = f"No {peg} is pressed above {high:.3f} mm, so {dowels} are long enough too."
+    assert (words in text) is said and ("are long enough too" in text) is said
     if not said:
         return
     chosen_height = evolve(tall, solid=evolve(tall.solid, peg_height=HEIGHT - 0.5))
-    assert "do as well" not in printed(sheet(design(chosen_height, TOOLKITS[name], best=1)))
+    assert "are long enough too" not in printed(sheet(design(chosen_height, TOOLKITS[name], best=1)))
 
 
 @pytest.mark.thorough
@@ -206,7 +220,9 @@ def test_a_part_that_lies_on_no_face_is_said_to_do_so() -> None:
     text = printed(
         sheet(design(Workpiece.from_loops("box", [square], solid=own), TOOLKITS["two clamps"], best=1))
     )
-    assert "Turned over, the part would fit the same pegs: make sure that −z of the file points up." in text
+    assert (
+        "Upside down the part would fit the same pegs too: make sure that −z of the file points up." in text
+    )
 
 
 @pytest.mark.thorough
@@ -217,7 +233,7 @@ def test_holes_with_other_names_are_said_to_be_so() -> None:
     assert new.travel != listed.travel
     words = printed(sheet(result_of("vise", False), thickness=HEIGHT, supports=found))
     less = listed.travel - new.travel
-    assert f"the opening is {less:.3f} mm narrower than the fixture was listed with" in words
+    assert f"the opening is {less:.3f} mm narrower than in the list" in words
     assert f"S = {new.travel:.3f} mm" in words
     assert f"S = {listed.travel:.3f} mm" not in words
     for peg in new.pegs:
@@ -239,7 +255,7 @@ def test_second_side_says_what_the_first_did() -> None:
     words = printed(sheet(result_of("plate"), first_side=FIRST))
     for wanted in (
         "Second set-up of the same part",
-        "Second side up: −z of the file points up, z did before.",
+        "This is the second side: −z of the file points up, and z did before.",
         "The part is turned over about the y axis of the first drawing, by half a turn.",
         "Faces 0 and 3 of this outline must not be touched: the first set-up cuts faces 4 and 7 of the solid.",
         "Face 2 of the solid is touched in both set-ups",
@@ -251,11 +267,11 @@ def test_second_side_says_what_the_first_did() -> None:
     assert side_up_words(SOLID.solid, lonely) == [
         "The same side is up as in the first set-up: −z of the file.",
         "The first set-up names no face that it cuts.",
-        "No face is touched in both set-ups: what one locates on, the other does not.",
+        "No face is touched in both set-ups: they locate on different faces.",
     ]
     out_of_reach = FirstSide("-z", "z", "turned", (), (5,), (1, 2))
     assert side_up_words(SOLID.solid, out_of_reach)[1:] == [
-        "What the first set-up cuts (face 5 of the solid) is not in reach of the pegs here.",
+        "The pegs cannot reach the faces that the first set-up cuts (face 5 of the solid).",
         "Faces 1 and 2 of the solid are touched in both set-ups, in the first by its best fixture.",
     ]
 

@@ -278,7 +278,7 @@ def above(force: float) -> str:
 def test_a_sheet_tells_pose_calipers_and_figures(held: Held) -> None:
     """Part zero where the pose carries it, what calipers read over two pegs at their places, and the figures of quality."""
     fixture, words, pose = held.fixture, sheet(HELD.index(held)), held.fixture.pose
-    drawn = re.search(r"In the part's drawing it is at x (\S+) mm, y (\S+) mm", words)
+    drawn = re.search(r"In the part's drawing the zero is at x (\S+) mm, y (\S+) mm", words)
     assert drawn is not None
     u, v = (float(number.replace("−", "-")) for number in drawn.groups())
     turn = radians(pose.theta_deg)

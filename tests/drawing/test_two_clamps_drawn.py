@@ -98,7 +98,7 @@ def test_a_sheet_with_much_to_say_still_has_a_plan() -> None:
     loads = [Load(points=((50.0, 30.0),), force=200.0, name=f"cut {k}") for k in range(6)]
     cases = load_cases(result[0], RECTANGLE, result.toolkit, loads, 5000.0)
     words = sheet_words(result, jaw_force=5000.0, loads=cases, others=3, part_name="a long name " * 12)
-    assert "Order of tightening" in words and "The clamp force is that of both clamps added up" in words
+    assert "Order of tightening" in words and "The clamp force is the sum of both clamps" in words
 
 
 def test_files_have_both_clamps() -> None:

@@ -25,4 +25,4 @@ def test_a_job_with_a_program_is_refused(tmp_path: Path) -> None:
     jobs.write_text('[[job]]\npart = "widget"\nprogram = "plate.nc"\n')
     refused = CliRunner().invoke(app, ["family", str(jobs), "--vise", "plate-20mm"])
     assert refused.exit_code == 2
-    assert "job 1 names a program: a family of parts is planned without" in refused.stderr
+    assert "job 1 names a program, but a family of parts is planned without" in refused.stderr

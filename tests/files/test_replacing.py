@@ -147,9 +147,9 @@ def test_what_is_read_is_never_replaced(result: Result, tmp_path: Path, link: An
         link(read, path)
     before = read.read_bytes()
     for overwrite in (False, True):
-        with pytest.raises(InputError, match="is also what is read"):
+        with pytest.raises(InputError, match="is also an input"):
             result[0].save_sheet(path, result_file=read, overwrite=overwrite)
-        with pytest.raises(InputError, match="is also what is read"):
+        with pytest.raises(InputError, match="is also an input"):
             result[0].save_glb(linked(read, tmp_path), part=read, overwrite=overwrite)
     assert read.read_bytes() == before
 
@@ -235,7 +235,7 @@ def test_outputs_are_refused_before_any_work_is_done_for_them(tmp_path: Path) ->
     with pytest.raises(InputError, match="cannot be a folder"):
         refuse_output_folder(tmp_path / "file", [], [], False)
     (tmp_path / "b").write_text("read")
-    with pytest.raises(InputError, match="b is also what is read"):
+    with pytest.raises(InputError, match="b is also an input"):
         (tmp_path / "a").touch()
         refuse_output_folder(tmp_path, ["a", "b"], iter([tmp_path / "b"]), True)
     # The name of something else than a file is no input that could be replaced.

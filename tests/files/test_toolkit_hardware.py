@@ -102,15 +102,18 @@ def test_a_file_says_what_supports_and_clamp_there_are_and_they_are_the_usual_on
         ("[supports]\nheight = 1e300\n", "supports: height"),
         (
             "[supports]\npad_radius = [[1, 2, 3, 4]]\n",
-            "supports: pad radius is not what it should be: give one num",
+            "supports: pad radius cannot be used: give one num",
         ),
         (
             "[supports]\npad_radius = 8\n",
             "supports: pads of radius 8 mm would overlap in neighbouring holes 15 mm",
         ),
         ("[top-clamp]\ntip_radius = 0\n", "top-clamp: tip radius 0 cannot be used: give a length above 0"),
-        ("[top-clamp]\nreach = 5\n", "top-clamp: reach is not what it should be: give a list of rings"),
-        ("[top-clamp]\nreach = [[0, 0, 9, 5]]\n", "top-clamp: reach is no list of rings: give of each x, y"),
+        ("[top-clamp]\nreach = 5\n", "top-clamp: reach cannot be used: give a list of rings"),
+        (
+            "[top-clamp]\nreach = [[0, 0, 9, 5]]\n",
+            "top-clamp: reach is no list of rings: give for each ring x, y",
+        ),
         ("[top-clamp]\nreach = [[0, 0, 9]]\n", "top-clamp: reach is no list of rings"),
         ("[top_clamp]\ntip_radius = 4\n", '"top_clamp" is no entry of a plate: did you mean top-clamp?'),
         ("top-clamp = true\n", "top-clamp is not what it should be: write a table, such as"),

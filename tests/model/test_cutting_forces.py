@@ -98,7 +98,7 @@ def test_what_a_tool_says_goes_before_what_the_job_says() -> None:
         ({}, {"cutting_force": -1}, {}, "cutting_force -1 cannot be used"),
         ({}, {"power": 2, "material": "steel"}, {}, "power and material are two ways to the same force"),
         ({}, {"material": "butter"}, {}, "the material 'butter' is not known"),
-        ({}, {"material": "1500,2"}, {}, "mc 2 is none"),
+        ({}, {"material": "1500,2"}, {}, "mc 2 cannot be used"),
         ({"teeth": 2.5}, {}, {}, "give a whole number from 1"),
         ({}, {"direction": "up"}, {}, "give any or feed"),
     ],

@@ -32,7 +32,7 @@ def test_a_solid_says_how_thick_it_is_and_where_it_is_level() -> None:
         None,
         None,
     )
-    with pytest.raises(InputError, match="how thick the part is, is not known: give its thickness in mm"):
+    with pytest.raises(InputError, match="the thickness of the part is not known: give it in mm"):
         SupportRequest.of(FLAT)
 
 

@@ -193,7 +193,7 @@ def test_no_fixture_says_why() -> None:
 def test_why_there_is_none_is_asked_of_none_only() -> None:
     with pytest.raises(InputError, match="there are fixtures"):
         RESULT.why_none()
-    with pytest.raises(InputError, match="was not found out"):
+    with pytest.raises(InputError, match="it is not proven that there is no fixture"):
         attrs.evolve(NONE, complete=False).why_none()
     assert "why_none" not in attrs.evolve(NONE, complete=False)._repr_html_()
 

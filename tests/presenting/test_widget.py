@@ -98,7 +98,7 @@ def test_supports_that_cannot_be_had_are_a_sentence() -> None:
     widget = RESULT.widget(supports={"thickness": 12})
     assert "No three supports hold the part" in widget.picture["title"]
     assert 'class="support"' not in widget.picture["svg"]
-    with pytest.raises(InputError, match="how thick the part is"):
+    with pytest.raises(InputError, match="the thickness of the part is not known"):
         RESULT.widget(supports={})
 
 

@@ -206,7 +206,7 @@ def test_what_was_asked_for_is_named_where_closure_is_the_last_rule() -> None:
     query = Query(PLAIN_PLATE, WIDE, restrictions=Restrictions(avoid=(2,)))
     explanation = explain(query)
     assert (explanation.last_rule, explanation.taken_by) == ("closure", ("faces to avoid",))
-    assert explanation.asked_words.endswith("what was asked for: faces to avoid.")
+    assert explanation.asked_words.endswith("What was asked for rules out the last fixtures: faces to avoid.")
     (item,) = (item for item in explanation.helps if item.rules)
     assert item.fixtures == len(design(PLAIN_PLATE, WIDE)) > 0
 

@@ -336,8 +336,8 @@ def test_every_face_length_and_number_that_cannot_be_is_refused() -> None:
     for fields, words in (
         ({"wall_offset": 2}, "would stand in the fence"),
         ({"wall_offset": float("nan")}, "not a positive length"),
-        ({"wall_offset": 10, "directions": ["up"]}, "none in which a clamp moves"),
-        ({"wall_offset": 10, "travel": (5, 3)}, "none that a clamp has"),
+        ({"wall_offset": 10, "directions": ["up"]}, "a clamp cannot move in the direction"),
+        ({"wall_offset": 10, "travel": (5, 3)}, "is not possible"),
     ):
         with pytest.raises(InputError, match=words):
             Fence(pitch=20, peg_radius=3, **fields)  # type: ignore[arg-type]

@@ -193,14 +193,14 @@ def test_keeping_their_place() -> None:
     assert flat_of({"distance": 2, "half_width": 1}) == Flat(2.0, 1.0) and flat_of(None) is None
     assert evolve(wide, columns=3).flat == wide.flat
     for value, words in (
-        (3.5, "3.5 mm from the centre is none of a peg of radius 3"),
-        (-1, "-1 mm from the centre"),
+        (3.5, "a peg of radius 3 mm cannot have a flat 3.5 mm from its centre"),
+        (-1, "-1 mm from its centre"),
         ((1.5, 2.7), "half a width of 2.7 mm"),
         ((1.5, -1), "half a width of -1 mm"),
-        ("wide", "flat 'wide' is none"),
-        ((1, 2, 3), "is none"),
-        ({"width": 2}, "is none"),
-        (float("nan"), "nan mm from the centre"),
+        ("wide", "flat 'wide' cannot be used"),
+        ((1, 2, 3), "cannot be used"),
+        ({"width": 2}, "cannot be used"),
+        (float("nan"), "nan mm from its centre"),
     ):
         for made in (lambda flat: Vise(9, 2, 3, flat=flat), lambda flat: Plate(9, 3, flat=flat)):
             with pytest.raises(InputError, match=words):

@@ -111,7 +111,9 @@ def test_warnings_are_of_a_small_opening_and_a_close_reading(seated: Result) -> 
     assert (small.warning_count, near.warning_count, one.warning_count) == (2, 1, 0)
     alike = attrs.evolve(one, seats=(*one.seats, attrs.evolve(nearest, difference=2e-4)))
     assert alike.warnings == ("a wrong seat reads the same",)
-    assert "reads only 0.090 mm otherwise" in near.warnings[0] and not near.is_foolproof and one.is_foolproof
+    assert (
+        "reads only 0.090 mm differently" in near.warnings[0] and not near.is_foolproof and one.is_foolproof
+    )
     for toolkit, opened in (
         (Plate(pitch=20, peg_radius=3), "the clamp is drawn back"),
         (OpeningVise(20, 2, 3), "the jaws are closed"),
@@ -121,7 +123,7 @@ def test_warnings_are_of_a_small_opening_and_a_close_reading(seated: Result) -> 
         assert small.in_toolkit(toolkit).warnings == (words,)
     untold = attrs.evolve(one, capture_opening=0.0, lowest_pass=None, cage=None, placing=None)
     assert (
-        untold.warnings == ("from where on the part is caught is not known",)
+        untold.warnings == ("it is not known how far you may open without losing the part",)
         and untold.figures["placing"] == 0.0
     )
     assert seating_figures_of(untold.as_fields())["placing"] == 0.0

@@ -130,7 +130,7 @@ def test_steps_tell_what_to_push_hold_tighten_and_look_at(result: Result) -> Non
             for d in fixture.direction.split()
         ]
         assert all(word in push for word in towards)
-        assert order.startswith(order_words(fixture)) and "until both are tight" in order
+        assert order.startswith(order_words(fixture)) and "until both clamps are tight" in order
         first = [fixture.pair.ratio[0] == 0.0, fixture.pair.ratio[1] == inf]
         for tip, may, pegs in zip(fixture.pegs[3:], first, told.unpressed, strict=True):
             assert (f"{tip.hole} alone does not press it on" in order) == may
@@ -154,7 +154,9 @@ def test_friction_is_told_rounded_down_and_against_that_of_steel(result: Result)
     [high] = evolve(told, sticking_friction=0.41279).friction_words()
     assert "while friction is below 0.412;" in high and "tap" not in high
     [low] = evolve(told, sticking_friction=0.19999).friction_words()
-    assert low.startswith("From a friction of 0.199 on") and low.endswith("so tap it home meanwhile.")
+    assert low.startswith("If the friction is 0.199 or more") and low.endswith(
+        "so tap it home as you tighten."
+    )
     [never] = evolve(told, sticking_friction=inf).friction_words()
     assert never.endswith("whatever the friction.")
     fixture = evolve(told.fixture, pair=evolve(told.pair, ratio=(0.0, 0.008)))

@@ -179,7 +179,7 @@ def test_starts_that_cannot_be_are_refused_in_a_sentence():
     solver, fixture, told = solved(CASE)
     with pytest.raises(InputError, match=r"^the peg in .* stands in the part there: put the part elsewhere"):
         simulate_closing(solver, fixture, told.seats, put(fixture, solver.workpiece, 0.0, -15.0, 0.0), 1.0)
-    with pytest.raises(InputError, match=r"^pegs meet before what moves stands there"):
+    with pytest.raises(InputError, match=r"^pegs meet before the jaw or clamp gets there"):
         simulate_closing(solver, fixture, told.seats, Pose(0.0, 0.0, 500.0), told.stop - fixture.travel - 1.0)
 
 
@@ -234,5 +234,5 @@ def test_jaws_are_opened_no_farther_than_they_go():
         most = toolkit.moving.travel.most - fixture.travel
         away = Pose(0.0, 500.0, 500.0)
         assert simulate_closing(solver, fixture, (), away, most).ending == "outside"
-        with pytest.raises(InputError, match="does not go so far: open it by less"):
+        with pytest.raises(InputError, match="does not open so far: open it by less"):
             simulate_closing(solver, fixture, (), away, most + farther)

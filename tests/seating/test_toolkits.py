@@ -311,7 +311,7 @@ def test_a_disc_is_nowhere_located_by_a_clamp():
         (Vise(8, 2, 2, flat=(1, 1)), "round pegs"),
         (
             Plate(pitch=8, peg_radius=2, clamps=2),
-            "of one clamp: with two the part is put against its locators",
+            "for one clamp: with two clamps you push the part against its locators",
         ),
     ],
 )

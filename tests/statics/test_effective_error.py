@@ -149,7 +149,9 @@ def test_why_first_says_what_counts() -> None:
     square = answer(Query(block(), two, best=3), threads=1)
     assert re.fullmatch(r"First: no warning; location error 0\.\d{4} mm, .*; as drawn\.", why_first(square))
     aslant = answer(Query(block(), plate, best=3), threads=1)
-    assert "(turned aslant" in why_first(aslant) and "square to the drawing nothing" in why_first(aslant)
+    assert "(turned aslant" in why_first(
+        aslant
+    ) and "no fixture that lies square to the drawing" in why_first(aslant)
     quarter = Workpiece.from_loops("standing", [[(y, -x, b) for x, y, b in BLOCK]])
     tilted = answer(Query(quarter, two, restrictions=Restrictions(angles=((90.0, 90.0),)), best=3), threads=1)
     assert "counted as" in why_first(tilted) and "(turned by 90°" in why_first(tilted)
@@ -160,22 +162,22 @@ def test_why_first_says_what_stands_square() -> None:
     """None at all, none among those listed, none within a tenth, or none that has no warning or is fit."""
     whole = answer(Query(block(), Plate(pitch=20, peg_radius=3)), threads=1)
     best = answer(Query(block(), Plate(pitch=20, peg_radius=3), best=3), threads=1)
-    assert why_first(whole).endswith("; nothing stands square to the drawing.")
+    assert why_first(whole).endswith("; no fixture lies square to the drawing.")
     assert why_first(best).endswith(
-        "; square to the drawing nothing comes within a tenth, and none is listed."
+        "; no fixture that lies square to the drawing comes within a tenth, and none is listed."
     )
     assert why_first(evolve(whole, complete=False)).endswith("and none is listed.")
     alone = answer(Query(block(), Plate(pitch=20, peg_radius=3), best=1), threads=1)
-    assert why_first(alone).endswith("; square to the drawing nothing comes within a tenth.")
+    assert why_first(alone).endswith("; no fixture that lies square to the drawing comes within a tenth.")
     theta, quality = whole.table.theta.copy(), whole.table.quality.copy()
     theta[7] = np.pi
     turned = evolve(whole.table, theta=theta)
     assert why_first(evolve(whole, table=turned)).endswith(
-        "; square to the drawing nothing comes within a tenth."
+        "; no fixture that lies square to the drawing comes within a tenth."
     )
     for column, value, words in (
-        (WARNINGS, 1.0, "what stands square to the drawing has a warning"),
-        (LOCATION_ERROR, 50.0, "what stands square to the drawing is not fit for a workshop"),
+        (WARNINGS, 1.0, "those that lie square to the drawing have a warning"),
+        (LOCATION_ERROR, 50.0, "those that lie square to the drawing are not fit for a workshop"),
     ):
         changed = quality.copy()
         changed[7, column] = value
@@ -183,11 +185,11 @@ def test_why_first_says_what_stands_square() -> None:
         other = theta.copy()
         other[8] = np.pi / 2
         two = evolve(whole.table, theta=other, quality=changed)
-        assert why_first(evolve(whole, table=two)).endswith("nothing comes within a tenth.")
+        assert why_first(evolve(whole, table=two)).endswith("comes within a tenth.")
     quarter = theta.copy()
     quarter[0], quarter[7] = np.pi / 2, 0.3
     said = why_first(evolve(whole, table=evolve(whole.table, theta=quarter)))
-    assert said.endswith("; nothing stands as drawn.")
+    assert said.endswith("; no fixture lies as drawn.")
 
 
 def test_the_manual_has_the_table_of_factors() -> None:

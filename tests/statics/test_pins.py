@@ -115,7 +115,7 @@ def test_where_no_height_is_known_nothing_is_said() -> None:
     assert bent_pegs(result[0], SQUARE, VISE) is None
     assert not set(PIN_KEYS) & set(result[0].quality)
     assert figures_in(result.table.quality.shape[1]) == FIGURES[:BEFORE_PINS]
-    with pytest.raises(InputError, match="give its thickness, or how high the pegs are"):
+    with pytest.raises(InputError, match="give the part's thickness, or the height of the pegs"):
         design(SQUARE, VISE, rank_by="pin-stress")
 
 

@@ -1,4 +1,4 @@
-"""What Mishra's toe clamps are cited for (docs/toe-clamps.md): six contacts close if any do, and four hold a rectangle."""
+"""What Mishra's toe clamps are cited for (docs/plates.md): six contacts close if any do, and four hold a rectangle."""
 
 from __future__ import annotations
 

@@ -154,7 +154,7 @@ def test_what_is_no_friction_and_no_load_are_refused() -> None:
     for wrong in (-0.1, float("nan"), float("inf"), 1e9):
         with pytest.raises(InputError, match="cannot be used: give a coefficient from 0 to"):
             found.clamp_with_friction(wrong)
-    with pytest.raises(InputError, match="of which there are none: give a load too"):
+    with pytest.raises(InputError, match="and there are none: give a load too"):
         clamp_with_friction(evolve(found, loads=()), found.triples[0], 0.1)
     with pytest.raises(InputError, match="there is no set 3 of supports"):
         found.clamp_with_friction(0.1, 3)

@@ -54,13 +54,13 @@ def test_nothing_is_said_of_what_is_not_there(found: Supports) -> None:
     """Without loads, openings of their own, or a solid; one known side leaves the other to be named alone."""
     still = tuple(evolve(one, travel=found.fixture.travel) for one in found.triples)
     plain = evolve(found, triples=still, loads=())
-    assert [note for note in notes_of_page(plain, "mm") if "level face" not in note] == []
+    assert [note for note in notes_of_page(plain, "mm") if "are level" not in note] == []
     assert flat_faces_notes(workhold.load("widget"), ("a", "b")) == []
     part = stepped({})
     assert part.solid is not None
     known = evolve(part, solid=evolve(part.solid, bottom=[BASE]))
     (note,) = flat_faces_notes(known, ("a", "b"))
-    assert "at its top," in note and note.endswith("off the rest with b.")
+    assert "at the part's top are level" in note and note.endswith("off the rest with b.")
 
 
 @pytest.mark.thorough

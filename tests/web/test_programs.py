@@ -97,7 +97,7 @@ def test_without_a_program_nothing_is_passed(server: RunningServer) -> None:
         ({"text": "G21\nG0 X1 Y1 Z1\n", "tools": None}, "what is in the spindle (T0)"),
         ({"tools": {"name": "my tools.toml", "text": "= 3"}}, "my tools.toml"),
         ({"tools": {"name": "t.csv", "text": "tool;size\n1;2\n"}}, "t.csv"),
-        ({"thickness": None}, "how thick the part is"),
+        ({"thickness": None}, "the part's thickness"),
         ({"clearance": -1.0}, "clearance"),
         ({"rapid": "curved"}, "rapid"),
         ({"text": 5}, "text"),

@@ -108,11 +108,11 @@ def test_with_two_clamps_it_is_told_what_to_do_by_hand(server: RunningServer) ->
     assert " in at clamp" in inches["steps"][-1] and inches["steps"][:-1] == answer["by_hand"]["steps"][:-1]
     assert PushedByHand().words in server.client.get(job).json()["notes"]
     sheet = server.client.get(f"{job}/fixtures/2/sheet.svg")
-    assert sheet.status_code == 200 and "Will it end up there?" in sheet.text
+    assert sheet.status_code == 200 and "Does the part end up there?" in sheet.text
     start = {"theta_deg": 0.0, "x": 0.0, "y": 0.0, "opening": 1.0}
     answer = server.client.post(f"{job}/fixtures/2/closing", json=start)
     refused(answer, 400)
-    assert "put against its locators by hand" in answer.text
+    assert "push the part against its locators by hand" in answer.text
 
 
 def test_a_closing_comes_home_from_the_cage(
@@ -123,7 +123,7 @@ def test_a_closing_comes_home_from_the_cage(
     asked = {**put(result, 1.0, 0.4 * opening, 0.0), "opening": opening}
     answer = server.client.post(f"{place}/closing", json=asked).json()
     assert answer["ending"] == "right" and told.seats[answer["seat"]].is_own
-    assert answer["words"].startswith("It comes home: S = ")
+    assert answer["words"].startswith("The part is in its place: S = ")
     pose, way = result[1].pose, answer["way"]
     assert way[-1] == pytest.approx([pose.theta_deg, pose.x, pose.y, 0.0], abs=1e-4)
     opened = [row[3] for row in way]
@@ -148,7 +148,7 @@ def test_a_closing_ends_in_the_wrong_seat_that_it_is_put_over(
         answer = server.client.post(f"{place}/closing", json=asked).json()
         assert (answer["ending"], answer["seat"]) == ("wrong", index)
         off = f"{abs(seat.difference) / 25.4:.4f} in {'more' if seat.difference > 0.0 else 'less'}"
-        assert f"{off} than when it is right." in answer["words"]
+        assert f"{off} than in the right place." in answer["words"]
 
 
 def test_a_part_beside_the_pegs_is_told_to_slip_out(
@@ -214,8 +214,11 @@ def test_few_seatings_are_kept_of_a_job(server: RunningServer, place: str, told:
 
 
 def test_the_sheet_of_the_page_tells_it_when_asked(server: RunningServer, place: str) -> None:
-    assert "Will it end up there?" in server.client.get(f"{place}/sheet.svg", params={"seating": True}).text
-    assert "Will it end up there?" not in server.client.get(f"{place}/sheet.svg").text
+    assert (
+        "Does the part end up there?"
+        in server.client.get(f"{place}/sheet.svg", params={"seating": True}).text
+    )
+    assert "Does the part end up there?" not in server.client.get(f"{place}/sheet.svg").text
 
 
 def test_a_closing_that_nobody_waits_for_is_not_begun(

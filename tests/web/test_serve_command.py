@@ -20,7 +20,7 @@ from workhold.cli.main import app
 pytestmark = pytest.mark.thorough
 
 COMMAND = [sys.executable, "-m", "workhold", "serve"]
-FIRST_RUN = "workhold: compiling for this machine, which takes half a minute or so the first time.\n"
+FIRST_RUN = "workhold: the kernels are being compiled for this machine, which takes half a minute or so the first time.\n"
 
 
 def is_alive(pid: int) -> bool:

@@ -116,8 +116,8 @@ def test_only_one_file_asks_for_the_version() -> None:
     "sentence, words",
     [
         (
-            "how thick the part is, is not known: give --thickness.",
-            "How thick the part is, is not known: give the thickness.",
+            "the thickness of the part is not known: give --thickness.",
+            "The thickness of the part is not known: give the thickness.",
         ),
         (
             "give its --thickness, and --peg-height where pegs are not as high.",

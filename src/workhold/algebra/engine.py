@@ -194,8 +194,8 @@ def refuse_unlike(frame: Frame) -> None:
     one, other = ((c.columns, c.rows, c.peg_radius, c.body_radius, c.flat, c.heights) for c in frame.carriers)
     if one != other or not (frame.swapped or all(each.pegs == (3, 1) for each in frame.toolkit.arrangements)):
         raise InputError(
-            f"the paper's polynomials do not serve a {frame.toolkit.kind}: its carriers are not alike; "
-            "search with curves."
+            f"the paper's polynomials cannot search a {frame.toolkit.kind}, because its carriers are "
+            "not alike: search with curves."
         )
 
 

@@ -25,25 +25,26 @@ class ProgramQuestion:
 
     zero: Sequence[float] = declare(
         "place",
-        "Where its X0 Y0 is on the part, in the part's coordinates.",
+        "Point of the part, in its own coordinates, at which the program has X0 Y0.",
         default=(0.0, 0.0),
         section=PROGRAM,
-        typed="Where its X0 Y0 is on the part: corner (lower left, as drawn), centre, hole N, or X,Y of "
-        "the drawing.",
+        typed="Point of the part at which the program has X0 Y0: corner (lower left, as drawn), "
+        "centre, hole N, or X,Y of the drawing.",
         typed_default="0,0",
         metavar="PLACE",
     )
     z_zero: str | float = declare(
         "text",
-        "Where its Z0 is: top or bottom of the part, or a height above the part's lower side.",
+        "Height at which the program has Z0: top or bottom of the part, or a height above the "
+        "part's lower side.",
         default="top",
         section=PROGRAM,
-        typed="Where its Z0 is: a side of the part, or a height.",
+        typed="Height at which the program has Z0: a side of the part, or a height above its lower side.",
         metavar="top|bottom|LENGTH",
     )
     clearance: float = declare(
         "length",
-        "What tools keep from pegs, clamps and walls.",
+        "Distance that tools keep from pegs, clamps and walls.",
         default=1.0,
         least="0",
         section=PROGRAM,
@@ -52,26 +53,27 @@ class ProgramQuestion:
     )
     rapid: str = declare(
         "choice",
-        "Whether its rapid moves are straight, or may go anywhere in the box of their ends.",
+        "Path of rapid moves: straight, or anywhere in the box between their ends.",
         default="straight",
         choices=("straight", "box"),
         section=PROGRAM,
     )
     unit: str | None = declare(
         "choice",
-        "Unit of a program without G20 and G21.",
+        "Unit of a program that has neither G20 nor G21.",
         choices=("mm", "inch"),
         section=PROGRAM,
         word="program_unit",
     )
     start: Sequence[float] | None = declare(
         "point",
-        "Where the tip is at its start, from its own zero, where the program does not say it.",
+        "Place of the tip at the start, from the program's own zero, if the program does not give it.",
         section=PROGRAM,
     )
     whole_numbers: str = declare(
         "choice",
-        "What its lengths without a decimal point count; thousandths are 0.001 mm or 0.0001 inch.",
+        "Meaning of lengths without a decimal point: units, or thousandths, which are 0.001 mm "
+        "or 0.0001 inch.",
         default="units",
         choices=("units", "thousandths"),
         section=PROGRAM,
@@ -84,49 +86,50 @@ class CuttingQuestion:
 
     cutting_force: float | None = declare(
         "force",
-        "Force at the periphery of every tool whose own the table does not give, in N.",
+        "Cutting force, in N, at the periphery of every tool for which the table gives none.",
         least="0",
         converter=optional(real),
         section=FORCES,
-        typed="Force at the periphery of every tool whose own the table does not give, in N or 1.5kN.",
+        typed="Cutting force, in N or such as 1.5kN, at the periphery of every tool for which the "
+        "table gives none.",
     )
     power: float | None = declare(
         "power",
-        "Power at the spindle in kW, from which the force follows by S.",
+        "Spindle power in kW; the cutting force follows from it and the speed S.",
         converter=optional(real),
         section=FORCES,
-        typed="Power at the spindle, from which the force follows by S; also 3hp.",
+        typed="Spindle power in kW, or such as 3hp; the cutting force follows from it and the speed S.",
     )
     material: Any = declare(
         "text",
-        "What is cut, such as steel, stainless, cast-iron, aluminium, brass or titanium, or kc1.1 in N/mm2 "
-        "and mc: the force "
-        "follows from F, S, teeth and the cut.",
+        "Material of the part, such as steel, stainless, cast-iron, aluminium, brass or "
+        "titanium, or its kc1.1 in N/mm2 and mc; the cutting force follows from F, S, the teeth "
+        "and the cut.",
         section=FORCES,
         metavar="NAME|KC,MC",
     )
     teeth: float | None = declare(
         "count",
-        "Teeth of every tool whose own the table does not give.",
+        "Number of teeth of every tool for which the table gives none.",
         converter=optional(real),
         section=FORCES,
     )
     cut_depth: float | None = declare(
         "length",
-        "How deep tools cut at most at once, along their axes.",
+        "Largest depth of one cut, along the tool's axis.",
         converter=optional(real),
         section=FORCES,
     )
     cut_width: float | None = declare(
         "length",
-        "How broad they cut, across the feed; the tool's diameter if not given.",
+        "Width of the cut, across the feed; the tool's diameter if not given.",
         converter=optional(real),
         section=FORCES,
     )
     direction: Any = declare(
         "choice",
-        "Whether a force may act in any direction, or within 60 degrees of against the feed; any if not "
-        "given.",
+        "Direction of the cutting force: any, or within 60 degrees of the direction against the "
+        "feed; any if not given.",
         choices=("any", "feed"),
         section=FORCES,
         word="cutting_direction",
@@ -139,7 +142,7 @@ class StockQuestion:
 
     side: float = declare(
         "length",
-        "How far the stock reaches around the outline; 0 where the part comes finished there.",
+        "Stock around the outline; 0 if the part comes finished there.",
         PageLabel("Around"),
         default=ALLOWANCE,
         least="0",
@@ -147,7 +150,7 @@ class StockQuestion:
     )
     top: float = declare(
         "length",
-        "How far it reaches above the part's top; 0 where the part comes finished there.",
+        "Stock above the part's top; 0 if the part comes finished there.",
         PageLabel("On top"),
         default=ALLOWANCE,
         least="0",

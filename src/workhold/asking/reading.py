@@ -30,69 +30,67 @@ class ReadingQuestion:
     )
     part_number: int | str | None = declare(
         "text",
-        "Which part, when a drawing holds several, or which solid of a STEP file, by its number or its "
-        "name; the largest if not "
-        "given.",
+        "The part to read if a drawing holds several, or the solid of a STEP file: its number or "
+        "its name; the largest if not given.",
         section=READING,
         spelled="--part",
         metavar="N|NAME",
     )
     unit: str | None = declare(
         "choice",
-        "Unit of a drawing that does not say its own, or says a wrong one; of an SVG drawing in pixels, "
-        "how many make an inch.",
+        "Unit of a drawing that does not give its own, or gives a wrong one; for an SVG drawing "
+        "in pixels, the number of pixels in an inch.",
         choices=UNITS,
         section=READING,
         word="drawing_unit",
-        typed="Unit of the drawing, where it is not that of --unit, or where the file says a wrong one.",
+        typed="Unit of the drawing, if it is not that of --unit or if the file gives a wrong one.",
         metavar="UNIT",
     )
     axis: str | None = declare(
         "choice",
-        "STEP files: the direction that points up, to which pegs are parallel; z if not given. With - the "
-        "part lies on its other "
-        "side.",
+        "STEP files: the direction of the file that points up, parallel to the pegs; z if not "
+        "given. A minus sign lays the part on its other side.",
         choices=AXES,
         section=READING,
         metavar="[-]x|y|z",
     )
     peg_height: float | None = declare(
         "length",
-        "STEP files: how far pegs reach above the plane on which the part lies. The outline is what they "
-        "can meet there, and "
-        "only upright faces are touched. If not given, no higher than dowels must stand out.",
+        "STEP files: height that pegs reach above the plane on which the part lies. The outline "
+        "is everything that such pegs can meet, and pegs touch only upright faces. If not given, "
+        "pegs stand out no farther than dowels must.",
         section=READING,
-        typed="STEP files: how far pegs reach above the plane on which the part lies. The outline is what "
-        "they can meet there, "
-        "and only upright faces are touched. If not given, no higher than dowels must stand out. Of a "
-        "drawing it says how high "
-        "the pegs are, for how far they bend.",
+        typed="STEP files: height that pegs reach above the plane on which the part lies. The outline "
+        "is everything that such pegs can meet, and pegs touch only upright faces. If not given, "
+        "pegs stand out no farther than dowels must. For a drawing it is the height of the pegs, "
+        "which decides how far they bend.",
         metavar="HEIGHT",
     )
     head_room: float | None = declare(
         "length",
-        "With a height of the pegs: what is kept free above them; 0.5 mm if not given.",
+        "With a height of the pegs: clearance that is kept free above them; 0.5 mm if not given.",
         least="0",
         section=READING,
-        typed="With --peg-height: what is kept free above the pegs; 0.5mm if not given.",
+        typed="With --peg-height: clearance that is kept free above the pegs; 0.5mm if not given.",
     )
     least_band: float | None = declare(
         "length",
-        "With a height of the pegs: how high an upright face must be to be touched; 1 mm if not given.",
+        "With a height of the pegs: least height of an upright face that a peg may touch; 1 mm if not given.",
         least="0",
         section=READING,
-        typed="With --peg-height: how high an upright face must be to be touched; 1mm if not given.",
+        typed="With --peg-height: least height of an upright face that a peg may touch; 1mm if not given.",
     )
     section: float | None = declare(
         "length",
-        "STEP files: take the section at this height above the part's lowest point, not the silhouette.",
+        "STEP files: height above the part's lowest point at which the outline is the section, "
+        "instead of the silhouette.",
         least="any",
         section=READING,
         metavar="HEIGHT",
     )
     join_tolerance: float = declare(
         "length",
-        "Largest gap between ends of lines that is closed.",
+        "Largest gap between line ends that is closed.",
         default=1e-3,
         least="0",
         section=READING,
@@ -101,7 +99,7 @@ class ReadingQuestion:
     )
     fit: float | None = declare(
         "length",
-        "Put lines and arcs, nowhere farther off than this, in place of splines, ellipses and Bézier "
-        "curves that are none.",
+        "Largest distance at which lines and arcs may stand in place of splines, ellipses and "
+        "Bézier curves; without it such true curves are refused.",
         section=READING,
     )

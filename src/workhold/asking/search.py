@@ -30,20 +30,20 @@ class RuledOut:
     )
     zones: Any = declare(
         "zones",
-        "Where no peg may stand.",
+        "Places where no peg may stand.",
         default=(),
         section=RULING_OUT,
         word="keep_out",
-        typed="Where no peg may stand, in the drawing's coordinates: circle=X,Y,RADIUS or "
+        typed="Places where no peg may stand, in the drawing's coordinates: circle=X,Y,RADIUS or "
         "polygon=X,Y;X,Y;X,Y. May be repeated.",
     )
     angles: Any = declare(
         "angles",
-        "Angles the part may lie at, in degrees.",
+        "Angles at which the part may lie, in degrees.",
         default=(),
         section=RULING_OUT,
         word="angle",
-        typed="Angles the part may lie at, in degrees: -10..10. May be repeated.",
+        typed="Angles at which the part may lie, in degrees: -10..10. May be repeated.",
     )
     touch: Any = declare(
         "faces",
@@ -74,54 +74,56 @@ class SearchQuestion:
         called="largest location error",
         section=RULING_OUT,
     )
-    best: int | None = declare("count", "Keep only the best K.", section=SEARCH, most=10_000, metavar="K")
+    best: int | None = declare(
+        "count", "Keep only the best K fixtures.", section=SEARCH, most=10_000, metavar="K"
+    )
     listing: str | None = declare(
         "choice",
-        "Of two clamps: best: for each seat of the locators its best pair of clamps, and how many there "
-        "are; all: every pair. "
-        "best if not given.",
+        "With two clamps: best lists the best pair of clamps of each seat, and the number of its "
+        "pairs; all lists every pair; best if not given.",
         choices=("best", "all"),
         section=SEARCH,
     )
     jaw_force: float | None = declare(
         "force",
-        "Force that closes the vise, or of the clamp, in N or with its unit (3kN, 700lbf), of two clamps "
-        "the sum of theirs, to "
-        "warn of pegs that let go under the loads.",
+        "Force that closes the vise or tightens the clamp, in N or with its unit (3kN, 700lbf); "
+        "for two clamps the sum of both. With it the search warns of pegs that let go under the "
+        "loads.",
         least="0",
         section=LOADS,
     )
     seating: int | None = declare(
         "count",
-        "Of the first K fixtures report from how far open, or with the clamp how far drawn back, the part "
-        "is caught and where "
-        "else it can rest, and order them by that too.",
-        PageLabel("Of the first", "none", is_usual=True),
+        "For each of the first K fixtures, find how wide the jaws may stand open, or how far the "
+        "clamp may be drawn back, so that the part still settles in its place, and where else it "
+        "can come to rest. Order these fixtures by that too.",
+        PageLabel("Check the first", "none", is_usual=True),
         section=SEATING,
         most=1_000,
-        typed="Of the first K fixtures report from how far open, or with the clamp how far drawn back, the "
-        "part is caught and "
-        "where else it can rest, and order them by that too (see workhold seat).",
+        typed="For each of the first K fixtures, find how wide the jaws may stand open, or how far the "
+        "clamp may be drawn back, so that the part still settles in its place, and where else it "
+        "can come to rest. Order these fixtures by that too (see workhold seat).",
         metavar="K",
     )
     opening: float | None = declare(
         "length",
-        "List only those of them that catch the part with the jaws open, or the clamp drawn back, by so "
-        "much more than where "
-        "they hold it; places beyond it do not count.",
-        PageLabel("Caught from", "any", is_usual=True),
+        "Of the first K fixtures list only those into which the part settles with the jaws open, "
+        "or the clamp drawn back, by this much more than where they hold it; wrong places beyond "
+        "this opening do not count.",
+        PageLabel("Settles from", "any", is_usual=True),
         section=SEATING,
         needs="seating",
     )
     foolproof: bool = declare(
         "flag",
-        "List only those of them that have no wrong place to rest in, or a caliper shows each.",
-        PageLabel("Only where a caliper tells every wrong place", is_usual=True),
+        "Of the first K fixtures list only those that have no wrong place to rest in, or whose "
+        "wrong places all show by a caliper.",
+        PageLabel("Only if a caliper shows every wrong place", is_usual=True),
         default=False,
         section=SEATING,
         needs="seating",
     )
-    thickness: float | None = declare("length", "How thick the part is.", section=HEIGHTS)
+    thickness: float | None = declare("length", "Thickness of the part.", section=HEIGHTS)
     peg_height: float | None = declare(
-        "length", "How far pegs reach above the plane on which the part lies.", section=HEIGHTS
+        "length", "Height that pegs reach above the plane on which the part lies.", section=HEIGHTS
     )

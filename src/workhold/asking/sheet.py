@@ -58,7 +58,7 @@ class SheetQuestion:
     )
     part_name: str | None = declare(
         "text",
-        "What to call the part; its own name if not given.",
+        "Name of the part on the sheet; the part's own name if not given.",
         PageLabel("Part’s name", ""),
         section=ON_PAPER,
         metavar="NAME",
@@ -68,29 +68,29 @@ class SheetQuestion:
     )
     zero: str | Sequence[float] | None = declare(
         "text",
-        "Part zero: corner (lower left, as drawn), centre, hole N, or X,Y of the drawing. If not given, the "
-        "origin of the drawing where that is on the part, else the corner.",
+        "Part zero: corner (lower left, as drawn), centre, hole N, or X,Y of the drawing. If not "
+        "given, the origin of the drawing if that lies on the part, else the corner.",
         PageLabel("X0 Y0", "origin or corner"),
         metavar="POINT",
     )
     at: str | None = declare(
         "text",
-        "Where on the plate all of it stands: the hole of its lowest column and row, such as D4. In the "
-        "middle of "
-        "the plate if not given.",
+        "Hole of the plate, such as D4, in which the set-up's lowest column and row meet. If not "
+        "given, the set-up stands in the middle of the plate.",
         PageLabel("Lowest hole", "middle of the plate"),
         metavar="HOLE",
     )
     machine_position: Sequence[float] | None = declare(
         "place",
-        "Where the machine stands over the first hole: gives the lines G10 L2 and G68.",
+        "Machine position over the first hole; with it the sheet has the lines G10 L2 and G68.",
         PageLabel("Machine over the first hole,", "not known"),
         section=ON_PAPER,
-        typed="Where the machine stands over hole A1 of the fixed jaw: gives the lines G10 L2 and G68.",
+        typed="Machine position over hole A1 of the fixed jaw; with it the sheet has the lines G10 L2 "
+        "and G68.",
     )
     thickness: float | None = declare(
         "length",
-        "Thickness of the part; that of its solid, or a line to write it on, if not given.",
+        "Thickness of the part; if not given, that of its solid, or a line to write it on.",
         PageLabel("Part thickness", LINE),
         section=BODIES,
     )
@@ -99,61 +99,64 @@ class SheetQuestion:
     )
     peg_height: float | None = declare(
         "length",
-        "How far the pegs stand out.",
-        PageLabel("Standing out", LINE),
+        "Standout of the pegs.",
+        PageLabel("Standout", LINE),
         section=BODIES,
-        typed="How far the pegs stand out of the jaws.",
+        typed="Standout of the pegs above the jaws.",
     )
     dowel: str | None = declare(
         "text",
-        "What the pegs are and how they fit, such as '6 mm m6 in H7'; what the toolkit says if not given.",
+        "Dowels and their fit, such as '6 mm m6 in H7'; those of the toolkit if not given.",
         PageLabel("Dowel and fit", "6 mm m6 in H7"),
         section=BODIES,
-        typed="What the pegs are and how they fit, such as '6 mm m6 in H7'; what --vise said if not given.",
+        typed="Dowels and their fit, such as '6 mm m6 in H7'; those of --vise if not given.",
     )
     clearance: float | None = declare(
         "length",
-        "How far the cutter is to keep off the pegs, on the layer KEEP_OUT of a .dxf; 1 mm if not given.",
+        "Distance that the cutter keeps from the pegs, on the layer KEEP_OUT of a .dxf; 1 mm if not given.",
         PageLabel("Cutter keeps off", "1 mm in the DXF"),
         least="0",
         section=BODIES,
-        typed="How far the cutter is to keep off the pegs, on the layer KEEP_OUT of a .dxf.",
+        typed="Distance that the cutter keeps from the pegs, on the layer KEEP_OUT of a .dxf.",
         typed_default="1mm",
     )
     plate_thickness: float | None = declare(
         "length",
-        "How far pegs go into the plate; 10 mm is assumed if not given.",
+        "Depth that pegs go into the plate; 10 mm is assumed if not given.",
         PageLabel("Into the plate", "10 mm"),
         section=BODIES,
     )
     support_height: float | None = declare(
-        "length", "How high the supports lift the part; 10 mm is assumed if not given.", section=SUPPORTS
+        "length",
+        "Height by which the supports lift the part; 10 mm is assumed if not given.",
+        section=SUPPORTS,
     )
     seating: bool | None = declare(
         "flag",
-        "Say whether the part ends up there: how far to open, and how it looks where it does not.",
-        PageLabel("Will it end up there?"),
+        "Show whether the part ends up in its place: how far to open the jaws, and what a wrong "
+        "place looks like.",
+        PageLabel("Does the part end up there?"),
         section=ON_PAPER,
     )
     jaw_force: float | None = declare(
         "force",
-        "Force that closes the vise, or of the clamp, in N or with its unit (3kN, 700lbf), of two clamps "
-        "the sum of "
-        "theirs; the one needed so that no peg lets go if not given.",
+        "Force that closes the vise or tightens the clamp, in N or with its unit (3kN, 700lbf); "
+        "for two clamps the sum of both. If not given, the force that is needed so that no peg "
+        "lets go.",
         section=LOADS,
     )
     jaw: Any = declare(
         "text",
-        "screw: the closed jaw is locked, as a vise's is; constant: it keeps its force (hydraulic, "
-        "pneumatic); or "
-        "how many times as stiff as one contact the locked jaw is.",
+        "What the closed jaw does under load: screw: it is locked, as a vise is; constant: it "
+        "keeps its force (hydraulic, pneumatic); a number: it is locked, and so many times as "
+        "stiff as one contact.",
         default="screw",
         section=LOADS,
         metavar="KIND",
     )
     friction: float | None = declare(
         "number",
-        "Coefficient of friction, to report what friction could add; none counts elsewhere.",
+        "Coefficient of friction, to report what friction could add; all other figures count none.",
         PageLabel("Friction", "none"),
         section=LOADS,
         metavar="MU",

@@ -106,7 +106,7 @@ class ClusterWorkers:
         report = event[1]
         if isinstance(report, dict) and report.get("action") == "remove-worker":
             busy = report.get("processing-tasks") or {}
-            again = f" {len(busy)} tasks it had in hand are given to others." if busy else ""
+            again = f" Other workers get the {len(busy)} tasks that it had in hand." if busy else ""
             self.watcher.notify(f"The worker at {report.get('worker')} is lost.{again}")
 
     def run(self, tasks: Iterator[Task], stop: Event) -> Iterator[Outcome]:
@@ -211,23 +211,22 @@ class ClusterWorkers:
             if is_killed(future):
                 times = error.allowed_failures + 1
                 self.watcher.notify(
-                    f"{times} workers ended while they had {task.title} in hand; it is given up."
+                    f"{times} workers ended while they worked on {task.title}, so it is given up."
                 )
-                words = (
-                    f"{times} workers ended while they had this in hand: "
-                    "it may need more memory than they have."
-                )
+                words = f"{times} workers ended while they worked on this: it may need more memory than they have."
                 return Outcome(task.name, None, words)
             words = " ".join(str(error).split())
-            return Outcome(task.name, None, f"The cluster refused this ({type(error).__name__}: {words}).")
+            return Outcome(
+                task.name, None, f"The cluster refused this task ({type(error).__name__}: {words})."
+            )
         self.gone = self.gone or "lost"
         return None
 
     def give_up(self, stop: Event) -> None:
         """End the run: there is no scheduler any more."""
         self.gone = (
-            f"the scheduler at {self.address or 'this machine'} is lost; what is done is kept: start it, "
-            "and then the same command again to go on."
+            f"the scheduler at {self.address or 'this machine'} is lost. The answers so far are kept: "
+            "start the scheduler, and then the same command again to go on."
         )
         self.watcher.notify(f"T{self.gone[1:]}")
         stop.set()
@@ -256,7 +255,8 @@ def checked_address(address: str) -> str:
     is_port = port.isascii() and port.isdigit() and int(port[:6]) < 1 << 16
     if kind not in ("", "tcp", "tls", "ws", "wss", "ucx") or not (host and is_port):
         raise InputError(
-            f"{address!r} is no address of a scheduler: give the one it says, such as tcp://10.0.0.5:8786."
+            f"{address!r} is no address of a scheduler: give the address that the scheduler printed, "
+            "such as tcp://10.0.0.5:8786."
         )
     return f"{kind or 'tcp'}://{place}"
 

@@ -166,7 +166,9 @@ class Report:
 
     def line(self, row: Row, picture: str, sheet: Path | None) -> str:
         """The HTML of a row."""
-        state = STATES[row["state"]][0] + (", but none for a workshop" if row["fit"] is False else "")
+        state = STATES[row["state"]][0] + (
+            ", but none that a workshop can use" if row["fit"] is False else ""
+        )
         why = " ".join(filter(None, (row["reason"], row["remarks"])))
         cells = [
             cell(picture, key=""),
@@ -218,7 +220,7 @@ class Report:
             for sentence in (self.counts, *summary.sentences):
                 stream.write(f"<p>{escaped(sentence)}</p>\n")
             if self.left_out:
-                stream.write(f"<p>{self.left_out:,} further jobs are in the table of results only.</p>\n")
+                stream.write(f"<p>The table of results lists {self.left_out:,} further jobs.</p>\n")
             if summary.events:
                 items = "".join(f"<li>{escaped(event)}</li>\n" for event in summary.events)
                 stream.write(f"<h2>What happened on the way</h2>\n<ul>\n{items}</ul>\n")

@@ -160,10 +160,10 @@ class Counting(Protocol):
     """Who counts along."""
 
     def stage(self, doing: str, count: int, seconds: float) -> None:
-        """So many tasks are to be done, which are estimated to take a processor so long."""
+        """Begin a stage of ``count`` tasks, which are predicted to take ``seconds`` of one processor."""
 
     def one_done(self, seconds: float) -> None:
-        """One of them is done, for which so many seconds were reckoned."""
+        """Count one of these tasks as done, which was predicted to take ``seconds``."""
 
 
 @define(eq=False)
@@ -255,7 +255,7 @@ class BatchRun:
             raise InputError(f"{error} {GO_ON}") from error
 
 
-GO_ON = "What is done is kept: make room, and start the same command again to go on."
+GO_ON = "The answers so far are kept: make room, and start the same command again to go on."
 
 
 def run_batch(requests: Iterable[Request], best: int, work: BatchRun) -> Batch:
@@ -279,7 +279,7 @@ def run_batch(requests: Iterable[Request], best: int, work: BatchRun) -> Batch:
         def task_of(job: Job) -> Task:
             record = work.store.read(job.part.name)
             if record is None:
-                raise InputError("The record of its part is no more: start the batch again.")
+                raise InputError("The record of its part is gone: start the batch again.")
             return job.answering(record, best)
 
         outcomes, batch.kept = work.do("Searching", jobs, lambda job: job.estimate, task_of)

@@ -249,15 +249,18 @@ def done(task: Task, worker: str = "") -> Outcome:
     except Exception as error:
         if lacks_memory(error):
             failure = (
-                "This needs more memory than its worker may take: "
-                "give it to fewer workers, or to a larger machine."
+                "This task needs more memory than its worker may take: use fewer workers, or a larger "
+                "machine."
             )
         elif isinstance(error, OSError):
-            failure = f"The system refused something the work needs: {error.strerror or error}."
+            failure = (
+                f"The operating system refused something that this task needs: {error.strerror or error}."
+            )
             has_no_room = error.errno in NO_ROOM
         else:
             failure = (
-                f"A mistake of workhold, not of yours ({type(error).__name__}: {error}); please report it."
+                f"workhold has a fault ({type(error).__name__}: {error}), which is not your mistake; "
+                "please report it."
             )
     return Outcome(task.name, record, failure, perf_counter() - start, worker, has_no_room)
 
@@ -273,8 +276,8 @@ def make_ready(task: Task) -> None:
     """
     if task.program != program():
         raise UnfitWorkerError(
-            f"The worker has another workhold than the one that asks ({program()} and {task.program}): "
-            "install the same on both."
+            f"The worker has another version of workhold than the command ({program()} and "
+            f"{task.program}): install the same version on both."
         )
     try:
         task.prepare()

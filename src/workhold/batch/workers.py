@@ -129,10 +129,12 @@ class LocalWorkers:
             assert task is not None
             self.drop(one)
             words = (
-                f"This was given up after {one.seconds:,.0f} s, the most that it may take: "
-                "allow it more, or make the part or the question simpler."
+                f"This task was stopped after {one.seconds:,.0f} s, the longest time that it may take: "
+                "allow more seconds, or simplify the part or the question."
             )
-            self.watcher.notify(f"{one.title} was ended: {task.title} took longer than {one.seconds:,.0f} s.")
+            self.watcher.notify(
+                f"{one.title} was ended, because {task.title} took longer than {one.seconds:,.0f} s."
+            )
             yield Outcome(task.name, None, words, one.seconds, one.title)
 
     def hand_out(self, waiting: deque[Task]) -> None:
@@ -213,13 +215,15 @@ class LocalWorkers:
         how = ended_by(one)
         if times < MOST_TRIES:
             self.watcher.notify(
-                f"{one.title} ended {how} while it worked on {task.title}, which is tried again."
+                f"{one.title} ended {how} while it worked on {task.title}. Another worker tries it again."
             )
             return None
-        self.watcher.notify(f"{one.title} ended {how} while it worked on {task.title}, for the second time.")
+        self.watcher.notify(
+            f"{one.title} ended {how} while it worked on {task.title}. This is the second time."
+        )
         words = (
-            f"Two workers ended, the last {how}, while they worked on this: "
-            "it may need more memory than there is."
+            f"Two workers ended, the last one {how}, while they worked on this: it may need more "
+            "memory than there is."
         )
         return Outcome(task.name, None, words, worker=one.title)
 

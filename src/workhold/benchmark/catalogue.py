@@ -141,7 +141,7 @@ def query_of(entry: SetEntry) -> Query:
     """What is asked to make the list of a set; refuses a workpiece's file that is not the manifest's."""
     content = data_bytes(f"parts/{entry.part}.json")
     if sha256(content).hexdigest() != manifest()["workpieces"][entry.part]["sha256"]:
-        raise InputError(f"the benchmark's workpiece {entry.part} has been changed: install workhold anew.")
+        raise InputError(f"the benchmark's workpiece {entry.part} has been changed: install workhold again.")
     part, given = json.loads(content), dict(entry.toolkit)
     toolkit = toolkit_of(given.pop("kind"), given)
     return Query(Workpiece.from_loops(part["name"], part["loops"]), toolkit, listing=entry.listing)

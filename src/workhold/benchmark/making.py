@@ -159,7 +159,8 @@ def compared_entry(
     head, lines = made
     if sums_of(head, lines)["holes"] != known.sums["holes"]:
         raise InputError(
-            f"the list of {known.name} made here is not the one of the manifest: install workhold anew."
+            f"the list of {known.name} made here differs from the one in the manifest: install "
+            "workhold again."
         )
     complete = [entered_fixture(json.loads(line)) for line in lines]
     return compared(

@@ -118,7 +118,7 @@ def entry_of(text: str, usual: str) -> Entry:
     try:
         content = json_value(text)
     except InputError as error:
-        raise InputError(f"this is no JSON of the form in docs/benchmark.md: {error}") from error
+        raise InputError(f"this JSON does not have the form in docs/benchmark.md: {error}") from error
     if not isinstance(content, dict) or not isinstance(content.get("fixtures"), list):
         raise InputError("there is no list of fixtures in it: give an object with the key fixtures.")
     name = content.get("set", usual)
@@ -175,10 +175,10 @@ def rows_of(text: str) -> tuple[Entered, ...]:
         (name for name in names if re.fullmatch(r"peg[1-9]\d?", name)), key=lambda name: int(name[3:])
     )
     if table is None or not {"theta_deg", "x", "y"} <= names or not pegs:
-        raise InputError("the columns are not theta_deg, x, y, peg1, peg1_x, peg1_y and so on: name them so.")
+        raise InputError("the columns must be named theta_deg, x, y, peg1, peg1_x, peg1_y and so on.")
     for name in (f"{peg}_{axis}" for peg in pegs for axis in "xy"):
         if name not in names:
-            raise InputError(f"the column {name} is missing: name a column for each place of a peg so.")
+            raise InputError(f"the column {name} is missing: add a column of this name for each peg.")
     return tuple(numbered(row.row, as_object(row, pegs)) for row in table.rows())
 
 

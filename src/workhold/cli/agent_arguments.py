@@ -39,7 +39,7 @@ Positive = Annotated[float, Field(gt=0)]
 Rank = Annotated[int, Field(ge=1, description="which fixture; 1 is the best")]
 ResultPath = Annotated[str, Field(description="path of a result file, as design reports it")]
 MayReplace = Annotated[bool, Field(description="replace a file that workhold has not written")]
-ClosingForce = Annotated[float | None, Field(ge=0, description="with which the vise is closed, in N")]
+ClosingForce = Annotated[float | None, Field(ge=0, description="force that closes the vise, in N")]
 
 
 class ToolArguments(BaseModel):
@@ -58,7 +58,8 @@ class LoadArguments(ToolArguments):
     )
     part_number: int | str | None = Field(
         default=None,
-        description="which part of several, from 1 by decreasing area, or the name of a STEP file's solid",
+        description="number of the part if the file has several, from 1 by decreasing area, or the name of a "
+        "STEP file's solid",
     )
     picture: bool = Field(default=False, description="show a picture, too")
 
@@ -95,20 +96,24 @@ class ProgramArguments(ToolArguments):
 
     path: str = Field(description="path of the program (G-code)")
     tools: str | None = Field(
-        default=None, description="path of its table of tools; what the program's comments say if not given"
+        default=None, description="path of the program's table of tools; the program's comments if not given"
     )
     z_zero: Literal["top", "bottom"] | float = Field(
-        default="top", description="where its Z0 is, or a height above the part's lower side in mm"
+        default="top",
+        description="height at which the program has Z0: top or bottom of the part, or a height above its "
+        "lower side in mm",
     )
     thickness: Positive | None = Field(
-        default=None, description="of the part, in mm; that of its solid if not given"
+        default=None, description="thickness of the part, in mm; that of its solid if not given"
     )
-    peg_height: Positive | None = Field(default=None, description="of pegs, in mm; as the part if not given")
+    peg_height: Positive | None = Field(
+        default=None, description="height of the pegs, in mm; as high as the part if not given"
+    )
     cutting: CuttingArguments | None = Field(
-        default=None, description="how tools cut, for their forces on the part"
+        default=None, description="how the tools cut, which gives their forces on the part"
     )
     stock: StockArguments | None = Field(
-        default=None, description="what the part is cut from; 5 mm around the outline and on top if not given"
+        default=None, description="raw stock of the part; 5 mm around the outline and on top if not given"
     )
 
     def reading(self, height: float | None) -> dict[str, Any]:
@@ -136,7 +141,7 @@ class DesignArguments(LoadArguments):
         description="fields of the toolkit that are given or changed, such as pitch, columns, rows, "
         "peg_radius, min_gap, max_opening, travel, clamps, wall_offset",
     )
-    types: list[str] | None = Field(default=None, description="of a vise I, II or both")
+    types: list[str] | None = Field(default=None, description="for a vise: type I, II or both")
     avoid: list[int] = Field(
         default=[], description="faces not to touch, by number, such as those to be machined"
     )
@@ -151,17 +156,19 @@ class DesignArguments(LoadArguments):
     prefer: Literal["square", "strong", "precise", "roomy"] | None = Field(
         default=None, description="what comes first"
     )
-    loads: list[LoadTable] = Field(default=[], description="what acts on the part while it is held")
+    loads: list[LoadTable] = Field(default=[], description="loads on the part while it is held")
     program: ProgramArguments | None = Field(
         default=None, description="list only fixtures that the tools of this program keep clear of"
     )
     count: int = Field(default=5, ge=0, le=100, description="how many fixtures to report")
     out: str | None = Field(
-        default=None, description="path of the result file, .json or .npz; else a temporary one"
+        default=None, description="path of the result file, .json or .npz; a temporary file if not given"
     )
     force: MayReplace = False
     seconds: Positive = Field(
-        default=120.0, description="longest search; what was found by then is reported as incomplete"
+        default=120.0,
+        description="longest time of the search; the fixtures found by then are reported, marked as "
+        "incomplete",
     )
 
 
@@ -170,10 +177,10 @@ class ShowArguments(ToolArguments):
 
     result_file: ResultPath
     rank: Rank = 1
-    loads: list[LoadTable] = Field(default=[], description="instead of those of the result")
+    loads: list[LoadTable] = Field(default=[], description="loads to use instead of those of the result")
     jaw_force: ClosingForce = None
     seating: bool = Field(
-        default=False, description="work out whether the part ends up there, and where else it can rest"
+        default=False, description="find whether the part settles in its place, and where else it can rest"
     )
     picture: bool = Field(default=True, description="show a picture, too")
 

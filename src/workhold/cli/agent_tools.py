@@ -103,9 +103,9 @@ def explain(asked: DesignArguments, folder: Path, cancel: Event) -> Answer:
     found = sum(result.found.values())
     if found or not result.complete:
         why = (
-            f"There are {found:,} fixtures: design lists them."
+            f"There are {found:,} fixtures; the tool design lists them."
             if found
-            else "The search was ended before any was found."
+            else "The search ended before it found a fixture."
         )
         return Answer({"found": found, "complete": bool(result.complete), "sentence": why})
     from workhold.search.explaining import explain as explained
@@ -160,8 +160,9 @@ def passed_by(asked: ProgramArguments | None, workpiece: Workpiece) -> dict[str,
     high = asked.peg_height or asked.thickness if solid is None else solid.peg_height
     if high is None:
         raise InputError(
-            "the part is an outline without heights, so nobody knows what of the program passes over the pegs: "
-            "give its thickness, and peg_height where pegs are not as high."
+            "the part is an outline without heights, so it is not known which moves of the program "
+            "pass over the pegs: give the part's thickness, and peg_height if the pegs are not as "
+            "high."
         )
     return {"program": Program.read(asked.path, **asked.reading(height)), "peg_height": high}
 
@@ -222,11 +223,11 @@ def sheet(asked: SheetArguments, folder: Path, cancel: Event) -> Answer:
 
 TOOLS: Mapping[str, AgentTool] = {
     "load": AgentTool(
-        "Read a part and list its numbered faces; numbers of faces are what avoid takes.", LoadArguments, load
+        "Read a part and list its numbered faces; avoid takes these numbers.", LoadArguments, load
     ),
     "design": AgentTool(
-        "Find every way to hold a part in a vise, on a plate with clamps or on a fence, proven complete; "
-        "reports the best and writes all to a result file.",
+        "Find every way to hold a part in a vise, on a plate with clamps or on a fence. The list "
+        "is proven complete. Report the best fixtures, and write all to a result file.",
         DesignArguments,
         design,
     ),
@@ -243,8 +244,8 @@ TOOLS: Mapping[str, AgentTool] = {
         sheet,
     ),
     "explain": AgentTool(
-        "Explain why there is no way to hold a part, which rule took the last candidates away, and which "
-        "changes would help.",
+        "Explain why there is no way to hold a part: which rule removed the last candidates, and "
+        "which changes would help.",
         DesignArguments,
         explain,
     ),

@@ -82,10 +82,13 @@ class BatchOutputWords:
     """The options of what is kept of a batch, as typed."""
 
     out: str = option(
-        OUTPUT, "DIR", "The folder for tables, report and records; the same again goes on.", default=""
+        OUTPUT,
+        "DIR",
+        "Folder for the tables, the report and the records; the same folder again goes on with the run.",
+        default="",
     )
     best: str = option(
-        OUTPUT, "K", "How many fixtures of each job to keep; all are counted.", default=USUAL_BEST
+        OUTPUT, "K", "Number of fixtures to keep of each job; all are counted.", default=USUAL_BEST
     )
     sheets: bool = flag(OUTPUT, "Write the setup sheet of each first choice as PDF.", "--sheets")
     force: bool = FORCE
@@ -100,13 +103,13 @@ class WorkWords:
     seconds: str = option(
         WORK,
         "S",
-        "How long one job may take at most; its row then says so, and the others go on.",
+        "Longest time of one job; its row then says so, and the other jobs go on.",
         default=USUAL_SECONDS,
     )
     cluster: str | None = option(
         WORK,
         "ADDRESS",
-        "Work on a Dask cluster instead, by the address of its scheduler, such as tcp://10.0.0.5:8786.",
+        "Work on a Dask cluster instead; give the address of its scheduler, such as tcp://10.0.0.5:8786.",
     )
     local_cluster: str | None = option(
         WORK, "N", "Work on a Dask cluster of N processes on this machine instead."
@@ -114,8 +117,9 @@ class WorkWords:
     records: str | None = option(
         WORK,
         "URL|DIR",
-        "Where records are kept, if not in the folder of --out: a folder that all workers of a cluster see, "
-        "or an object store such as s3://bucket/batch. Workers write there themselves.",
+        "Folder for the records, if it is not in the folder of --out: a folder that all workers "
+        "of a cluster see, or an object store such as s3://bucket/batch. The workers write there "
+        "themselves.",
     )
 
     def place(self) -> Workplace:
@@ -124,16 +128,20 @@ class WorkWords:
         processes = optional_count("--local-cluster", self.local_cluster)
         if sum(word is not None for word in (self.workers, self.cluster, self.local_cluster)) > 1:
             raise InputError(
-                "--workers, --cluster and --local-cluster are three places to work: give one of them."
+                "--workers, --cluster and --local-cluster each choose where the work is done: give only "
+                "one of them."
             )
         on_cluster = self.cluster is not None or processes is not None
         if on_cluster and find_spec("distributed") is None:
             raise InputError(
-                "a cluster takes Dask, which is not installed: install distributed>=2024.8 and fsspec>=2024.6."
+                "a cluster needs Dask, which is not installed: install distributed>=2024.8 and "
+                "fsspec>=2024.6."
             )
         longest = positive_number("--seconds", self.seconds)
         if on_cluster and self.seconds != USUAL_SECONDS:
-            raise InputError("--seconds is of the workers of this machine: a cluster has no such limit.")
+            raise InputError(
+                "--seconds limits the workers of this machine, and a cluster has no such limit: leave it out."
+            )
         return Workplace(count, longest, self.cluster, processes, self.records)
 
 
@@ -208,7 +216,7 @@ class BatchAnswer:
 
     @property
     def sentence(self) -> str:
-        before = f"; {self.done.kept:,} were known from before" if self.done.kept else ""
+        before = f"; {self.done.kept:,} were known already" if self.done.kept else ""
         parts, fresh = plural(len(self.done.parts), "part"), plural(self.done.fresh, "answer")
         return f"{parts}, {fresh} found in {self.spent:.1f} s{before}."
 
@@ -228,8 +236,8 @@ def batch(
 ) -> None:
     """Try many parts in many toolkits: every part with every toolkit, into tables, a report and result files.
 
-    What is done is kept as it comes: the same command again, after whatever ended the first, goes on where
-    that stopped. A part that cannot be read is a row with the reason.
+    Every answer is kept as soon as it is found. Whatever ended the run, the same command goes on where it
+    stopped. A part that cannot be read becomes a row with the reason.
 
     Example: workhold batch parts/ --toolkit plate-20mm,clamp-plate-20mm --out results
     """
@@ -269,7 +277,7 @@ def ask(asked: BatchTask) -> BatchAnswer:
     store = FolderStore(asked.folder / RECORDS) if records is None else store_at(records)
     measured = Measured(asked.folder / MEASURED)
     start = perf_counter()
-    with ask_to_stop("what is done is kept, tables and report are written") as stop:
+    with ask_to_stop("the answers so far are kept, and the tables and the report are written") as stop:
         keep_what_is_found()
         if asked.place.cluster is None:
             compile_kernels(stop)
@@ -300,7 +308,7 @@ def report(asked: BatchTask, answer: BatchAnswer) -> None:
     else:
         print_tables(found.counts, answer.sentence, f"Written to {folder}: {', '.join(names)}.")
     if not has_parquet():
-        print_remark("the tables are comma-separated values: with pyarrow>=18 installed they are Parquet.")
+        print_remark("the tables are comma-separated values; install pyarrow>=18 to get Parquet.")
     if answer.gone:
         raise InputError(answer.gone)
     if not done.is_complete:
@@ -317,10 +325,10 @@ def write_all(asked: BatchTask, answer: BatchAnswer) -> Report:
     headline = f"{plural(len(done.parts), 'part')} in {plural(toolkits, 'toolkit')}"
     sentences = [
         answer.sentence,
-        f"Made by workhold {__version__}; the tables beside this page have every figure.",
+        f"workhold {__version__} has made this page; the tables beside it have every figure.",
     ]
     if not done.is_complete:
-        sentences.append("The run was interrupted: the same command again goes on.")
+        sentences.append("The run was interrupted; the same command again goes on.")
     where = folder / SHEETS if asked.written.sheets and done.is_complete else None
     summary = Summary(headline, sentences, answer.events)
     return write_results(done, answer.store, answer.measured, folder, REPORT, summary, where)

@@ -37,20 +37,20 @@ TOLERANCE = "0.001"
 class BenchmarkWords:
     """The options of all actions, as typed."""
 
-    out: str | None = option(None, "DIR", "Of run: the folder to write the sets into.")
-    parquet: bool = flag(None, "Of run: write sets of 5,000 fixtures or more as Parquet.", "--parquet")
+    out: str | None = option(None, "DIR", "For run: the folder into which the sets are written.")
+    parquet: bool = flag(None, "For run: write sets of 5,000 fixtures or more as Parquet.", "--parquet")
     set_: str | None = option(
-        None, "NAME", "Of check: the set that the files are for, where they do not say.", "--set"
+        None, "NAME", "For check: the set to which the files belong, if they do not say it.", "--set"
     )
     tolerance: str = option(
         None,
         "MM",
-        "Of check: how far pegs may be from where the complete list has them.",
+        "For check: how far a peg may be from its place in the complete list.",
         default=TOLERANCE,
     )
     symmetric: bool = flag(
         None,
-        "Of check: one fixture stands for all that a rotation of the part carries into it.",
+        "For check: count one fixture for all those that a rotation of the part carries into each other.",
         "--symmetric",
     )
     threads: str | None = option(None, "N", "Threads to use; all processors if not given.")
@@ -82,8 +82,8 @@ def benchmark(
         list[str] | None,
         typer.Argument(
             metavar="[NAMES]...",
-            help="Of list and run: sets, workpieces, or words that a set's name contains; all if not given. "
-            "Of check: files with another program's fixtures, JSON or CSV.",
+            help="For list and run: sets, workpieces, or words that a set's name contains; all if not "
+            "given. For check: files with another program's fixtures, JSON or CSV.",
         ),
     ] = None,
     *,
@@ -115,7 +115,7 @@ def parse(action: str, names: Sequence[str], words: BenchmarkWords) -> Benchmark
     threads = optional_count("--threads", words.threads)
     tolerance = positive_number("--tolerance", words.tolerance)
     if words.out is not None and asked != "run":
-        raise InputError(f"--out is of run alone: leave it out, or say run instead of {asked}.")
+        raise InputError(f"--out belongs to run: leave it out, or say run instead of {asked}.")
     return BenchmarkTask(asked, names, words, threads, tolerance)
 
 
@@ -174,7 +174,7 @@ def make_sets(asked: BenchmarkTask, chosen: Sequence[SetEntry]) -> list[MadeSet]
     if words.parquet:
         load_arrow()
     write_common(chosen, folder)
-    with ask_to_stop("the sets that are done are kept") as cancel:
+    with ask_to_stop("the finished sets are kept") as cancel:
         compile_kernels(cancel)
         with progress_bar("Making sets", "fixtures") as progress:
             made = made_sets(
@@ -202,9 +202,9 @@ def report_made(asked: BenchmarkTask, chosen: Sequence[SetEntry], made: Sequence
         ]
         if rounded:
             few = ", ".join(one.entry.name for one in rounded[:5])
-            sentences.append(f"The same fixtures, but for rounding of this machine: {few}.")
+            sentences.append(f"The same fixtures, except that this machine rounds otherwise: {few}.")
         total = sum(one.size for one in made)
-        same = "all as the manifest has them" if not other and not rounded else f"{len(other)} of them differ"
+        same = "all equal to the manifest" if not other and not rounded else f"{len(other)} of them differ"
         done = f"{plural(len(made), 'set')} with {plural(total, 'fixture')} written to {asked.words.out}"
         print_tables(*sentences, f"{done}, {same}.")
     if len(made) < len(chosen):
@@ -227,7 +227,7 @@ def compare(asked: BenchmarkTask) -> list[ComparedFile]:
     for entry in entries:
         set_named(entry.set_name)
     done: list[ComparedFile] = []
-    with ask_to_stop("what is compared is printed") as cancel:
+    with ask_to_stop("the results so far are printed") as cancel:
         compile_kernels(cancel)
         with progress_bar("Comparing", "files") as progress:
             for number, (name, entry) in enumerate(zip(files, entries, strict=True), 1):

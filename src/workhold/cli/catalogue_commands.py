@@ -64,7 +64,7 @@ def toolkits(
     name: Annotated[
         str | None,
         typer.Argument(
-            metavar="[VISE]", help="Show all figures of this one: a name, or a TOML file of your own."
+            metavar="[VISE]", help="Show all figures of this toolkit: a name, or a TOML file of your own."
         ),
     ] = None,
     unit: str | None = SHOWN_UNIT,
@@ -72,9 +72,9 @@ def toolkits(
 ) -> None:
     """List the vises, plates and fences that come with workhold, or show all figures of one.
 
-    Those named clamp- are plates with a lattice of dowel holes, three locators and a clamp, two-clamp- with
-    two, fence- with a fence and one locator. The others are vises with such a plate on each jaw; their number
-    of columns is a usual one: your jaws may have more or fewer.
+    Names that begin with clamp- are plates with a lattice of dowel holes, three locators and a side clamp;
+    two-clamp- have two clamps, and fence- have a fence and one locator. The others are vises with such a plate
+    on each jaw. Their number of columns is only a usual one: your jaws may have more or fewer.
 
     Example: workhold toolkits plate-one-inch --unit inch
     """
@@ -137,14 +137,14 @@ def figures_table(loaded: LoadedToolkit, unit: Unit) -> Table:
         table.add_row("hole diameter", limits_words(loaded.tolerance.fit.hole, unit))
         assumed = " (assumed: no source says)" if loaded.tolerance.fit.position_assumed else ""
         table.add_row(
-            "hole off its place by at most",
+            "largest error of a hole's place",
             f"{unit.figure(loaded.tolerance.fit.position, finest)} {of}{assumed}",
         )
     assumed = " (assumed: no pin and hole are given)" if loaded.tolerance.fit is None else ""
     table.add_row(
-        "peg's surface off by at most", f"{unit.figure(loaded.tolerance.peg, finest)} {of}{assumed}"
+        "largest error of a peg's surface", f"{unit.figure(loaded.tolerance.peg, finest)} {of}{assumed}"
     )
-    table.add_row("part's face off by at most", f"{unit.figure(loaded.tolerance.face, finest)} {of}")
+    table.add_row("largest error of a face of the part", f"{unit.figure(loaded.tolerance.face, finest)} {of}")
     return table
 
 
@@ -204,17 +204,17 @@ class FeatureWords:
     toolkit: str | None = option(
         None,
         "NAME|FILE",
-        "What the part will be held in: of a STEP file the faces as design --toolkit numbers them, with pegs no "
-        "higher than they must be.",
+        "Toolkit that will hold the part: faces of a STEP file get the numbers that design "
+        "--toolkit gives them, with pegs no higher than they must be.",
         "--toolkit",
     )
     peg_radius: str | None = option(
-        None, "LENGTH", "Draw also where the centres of pegs of this radius can be."
+        None, "LENGTH", "Also draw where the centres of pegs of this radius can be."
     )
     parts: bool = flag(
-        None, "List, and draw, the parts of a file that holds several; of a STEP file its solids.", "--parts"
+        None, "List and draw the parts of a file that holds several, or the solids of a STEP file.", "--parts"
     )
-    layers: bool = flag(None, "List the layers of a DXF file with what is on them.", "--layers")
+    layers: bool = flag(None, "List the layers of a DXF file with their contents.", "--layers")
     json_: bool = JSON
 
 

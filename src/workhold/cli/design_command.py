@@ -59,13 +59,14 @@ OF_ONE = declarations_of(SearchQuestion, [SEARCH])
 TYPE = option(
     SEARCH,
     "I|II|both",
-    "Of a vise: I: two pegs on each jaw; II: three on the left, one on the right.",
+    "For a vise: I is two pegs on each jaw; II is three on the left jaw and one on the right.",
     "--type",
     default="both",
 )
 ALL = flag(
     SEARCH,
-    "List all fixtures, however many: of more than 200,000 only the best 1,000 are listed else.",
+    "List all fixtures, however many there are; otherwise, of more than 200,000 only the "
+    "best 1,000 are listed.",
     "--all",
 )
 ENGINE = option(
@@ -103,11 +104,13 @@ class OutputWords:
     out: str | None = option(OUTPUT, "FILE", "Write all fixtures to this file; - is the terminal.")
     format_: str | None = FORMAT
     draw: str | None = option(
-        OUTPUT, "DIR", "Draw the best twelve and a sheet of thumbnails into this folder, or the nearest miss."
+        OUTPUT,
+        "DIR",
+        "Draw the best twelve fixtures and a sheet of thumbnails, or the nearest miss, into this folder.",
     )
     force: bool = FORCE
-    list_: str = option(OUTPUT, "N", "How many to list on the terminal.", "--list", default="5")
-    unfit: bool = flag(OUTPUT, "List also what is no fixture for a workshop, in red.", "--unfit")
+    list_: str = option(OUTPUT, "N", "Number of fixtures to list on the terminal.", "--list", default="5")
+    unfit: bool = flag(OUTPUT, "Also list fixtures that no workshop can use, in red.", "--unfit")
     supports: bool = flag(
         OUTPUT,
         "Also find three supports and a clamp on top for the best twenty, as supports does.",
@@ -116,8 +119,8 @@ class OutputWords:
     sheet: str | None = option(
         OUTPUT,
         "FILE",
-        "Write the setup sheet of the first choice into this file (.pdf, .svg, .png), with --supports on "
-        "its supports.",
+        "Write the setup sheet of the first choice into this file (.pdf, .svg, .png); with "
+        "--supports the sheet has the supports.",
     )
     json_: bool = JSON
 
@@ -234,7 +237,7 @@ def design(
 
     In a vise four pegs stand in holes of the two jaws: two on each (type I), or three on the left and one on
     the right (type II). On a plate three locators stand in holes, and a clamp pushes along a row or a column,
-    or two do. Lengths are in millimetres, or in the unit of --unit, or carry their own: 0.5in.
+    or two clamps do. Lengths are in millimetres or in the unit of --unit; a length may carry its own: 0.5in.
 
     Example: workhold design part.dxf --vise plate-20mm --out part.json
     """
@@ -289,7 +292,7 @@ def ask(asked: DesignTask) -> DesignAnswer:
     query, engine, output, estimated = asked.query, asked.engine, asked.output, None
     start, is_first_run = perf_counter(), False
     # What was found is decided for a moment more (``proof.deciding``); the rest of it is left.
-    with ask_to_stop("what was found is kept as far as it is soon proven") as cancel:
+    with ask_to_stop("the fixtures found so far are kept, if their proof takes little time") as cancel:
         if engine == "curves":
             from workhold.cli.warming import compile_kernels
 
@@ -387,14 +390,14 @@ def as_many_as_asked(asked: DesignTask, cancel: Event) -> tuple[Query, int | Non
     size = f"{max(count * BYTES[output.form] / 1e6, 1.0):,.0f} MB{name}"
     if not asked.every:
         print_remark(
-            f"there are about {about} fixtures, {size}: these are the best {LISTED:,}; --all lists all."
+            f"there are about {about} fixtures, {size}. Listed are the best {LISTED:,}; --all lists all."
         )
         return query, count
     if output.form != "npz" and (not name or count * BYTES[output.form] > MOST_TEXT):
         columns = f"{count * BYTES['npz'] / 1e6:,.0f} MB"
         raise InputError(
-            f"--all of about {about} fixtures takes {size}: write them to a file whose name ends in .npz, "
-            f"which takes {columns} and is written as they are found, such as --out all.npz."
+            f"--all of about {about} fixtures takes {size}: write them to a file whose name ends in "
+            f".npz, which takes {columns} and is written while they are found, such as --out all.npz."
         )
     print_remark(f"there are about {about} fixtures, {size}.")
     return asked.query, count
@@ -448,7 +451,7 @@ def report_found(result: Result, spent: str, output: Output, unit: Unit) -> None
         print_tables(f"Written to {out}.", stream=output.stream)
     if not result.complete:
         marked = "" if out is None else f", and {out} is marked so"
-        print_remark(f"interrupted: this is a part of the fixtures only{marked}.")
+        print_remark(f"interrupted: these are only some of the fixtures{marked}.")
 
 
 def further_data(asked: DesignTask, result: Result) -> dict[str, Any]:

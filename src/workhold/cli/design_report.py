@@ -122,7 +122,9 @@ def print_explanation(
         table = Table(("rule", ">sets of four contacts", ">removed", ">left"))
         for removal in explanation.removals:
             table.add_row(removal.rule, f"{removal.before:,}", f"{removal.removed:,}", f"{removal.after:,}")
-        print_tables(table, f"The last were removed by: {explanation.last_rule}.", stream=stream)
+        print_tables(
+            table, f"The rule that removed the last of them: {explanation.last_rule}.", stream=stream
+        )
     elif explanation.no_contacts not in said:
         print_tables(str(explanation.no_contacts or ""), stream=stream)
     if explanation.asked_words:

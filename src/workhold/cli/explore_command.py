@@ -94,8 +94,8 @@ def explore(
 ) -> None:
     """Try PART in many toolkits: how many fixtures each has, and the figures of its first choice.
 
-    The lists of figures are combined with each other, and with each toolkit that is named. Where none is
-    named, all presets that have such figures are tried.
+    The command combines the lists of figures with each other, and with each toolkit that you name. If you
+    name none, it tries all presets that have such figures.
 
     Example: workhold explore part.dxf --pitch 8,10,12.5 --columns 1,2 --peg-radius 3
     """
@@ -162,7 +162,7 @@ def ask(asked: ExploreTask) -> list[Explored]:
     from workhold.search.design import explore as try_all
 
     found: list[Explored] = []
-    with ask_to_stop("what was tried so far is kept") as cancel:
+    with ask_to_stop("the results so far are kept") as cancel:
         compile_kernels(cancel)
         with search_progress() as progress:
             for item in try_all(asked.queries, cancel):
@@ -236,7 +236,9 @@ def print_explored(
         table.add_row(item.name, f"{about}{item.fixtures:,}", *values, *counts)
     print_tables(table)
     if any(item.about is not None for item in found):
-        print_tables("~: about so many; where there are many, only the first choice is sought.")
+        print_tables(
+            "~ marks an estimate: where a toolkit has many fixtures, only its first choice is searched for."
+        )
     for item in found:
         if item.reason:
             print_tables(f"{item.name}: {item.reason}")

@@ -66,38 +66,38 @@ class FamilyWords:
     max_loss: str | None = option(
         FAMILY,
         "LOSS",
-        "Accept no larger loss than this, such as 1.25; the plan is then that of the fewest set-ups.",
+        "Accept no larger loss than this, such as 1.25; the plan then has the fewest set-ups.",
     )
     setups: str | None = option(
-        FAMILY, "K", "The plan is that of at most K set-ups, as good as those can be."
+        FAMILY, "K", "The plan has at most K set-ups, and the least loss that so few allow."
     )
     limit: list[str] | None = option(
         FAMILY,
         "FIGURE=VALUE",
-        "Use no fixture whose figure is worse, such as location-error=0.05 (mm, N or degrees). May be "
-        "repeated.",
+        "Use no fixture with a worse figure than this, such as location-error=0.05 (mm, N or "
+        "degrees). May be repeated.",
     )
-    unfit: bool = flag(FAMILY, "Use also what is no fixture for a workshop.", "--unfit")
+    unfit: bool = flag(FAMILY, "Also use fixtures that no workshop can use.", "--unfit")
     both_sides: bool = flag(
-        FAMILY, "Hold every part turned over as well, for the second operation.", "--both-sides"
+        FAMILY, "Also hold every part turned over, for the second operation.", "--both-sides"
     )
     zero: str | None = option(
         FAMILY,
         "POINT",
-        "The parts' zero: corner (lower left, as drawn), centre, hole N, or X,Y of the drawing. If not "
-        "given, the origin of the drawing where that is on the part, else the corner.",
+        "The parts' zero: corner (lower left, as drawn), centre, hole N, or X,Y of the drawing. "
+        "If not given, the origin of the drawing if that lies on the part, else the corner.",
     )
     same_zero: bool = flag(
-        FAMILY, "All parts of a set-up have their zero at one place and are turned alike.", "--same-zero"
+        FAMILY, "All parts of a set-up have their zero at the same place and the same turn.", "--same-zero"
     )
     time_limit: str = option(
         FAMILY,
         "SECONDS",
-        "How long to prove that there are no fewer set-ups; then what is known is reported.",
+        "Longest time to prove that no fewer set-ups do; then the results so far are reported.",
         default=SECONDS,
     )
     type_: str = option(
-        FAMILY, "I|II|both", "Of a vise: which arrangements of pegs to use.", "--type", default=EVERY_TYPE
+        FAMILY, "I|II|both", "For a vise: the arrangements of pegs to use.", "--type", default=EVERY_TYPE
     )
     threads: str | None = option(FAMILY, "N", "Threads to use; all processors if not given.")
 
@@ -141,7 +141,7 @@ class FamilyOutputWords:
                 f"--sheets {self.sheets} names no kind of sheet: let the name end in .pdf, .svg or .png."
             )
         if self.sheets is not None and not has_plan:
-            raise InputError("--sheets needs a plan: say which with --setups or --max-loss.")
+            raise InputError("--sheets needs a plan: choose one with --setups or --max-loss.")
         outputs = [name for name in (self.out, self.draw, self.sheets) if name is not None]
         resolved = [Path(name).resolve() for name in outputs]
         for place, name in enumerate(outputs):
@@ -193,9 +193,10 @@ def family(
 ) -> None:
     """Report which peg patterns hold many of PARTS, and what each fewer set-up costs in quality.
 
-    A loss is a fixture's location error, or the first figure of --rank-by, over the best that the part has
-    here: 1 is the best, 2 is twice as bad. For each number of set-ups the least worst loss is reported. Give
-    --setups or --max-loss to see which pegs stand where and how each part lies.
+    The loss of a fixture is its location error, or the first figure of --rank-by, divided by the best that the
+    part has in this toolkit: 1 is the best, 2 is twice as bad. For each number of set-ups the report gives the
+    smallest loss within which all parts can be held. Give --setups or --max-loss to see where the pegs stand
+    and how each part lies.
 
     Example: workhold family drawings --vise plate-20mm --max-loss 1.25
     """
@@ -305,14 +306,15 @@ def print_family(answer: FamilyAnswer, unit: Unit) -> None:
     sentences = [
         f"{plural(len(found.members), 'part')}, {plural(len(found.table.words), 'pattern')} that hold at "
         f"least one of them; {spent}.",
-        f"The loss is the {loss_figure_words(found.figure)} over the best that each part has {toolkit.wording.inside}.",
+        f"The loss is the {loss_figure_words(found.figure)} divided by the best that each part "
+        f"has {toolkit.wording.inside}.",
     ]
     if not all(plan.point.is_least and plan.point.at_least == plan.point.setups for plan in found.plans):
-        sentences.append("Time was over before all of it was proven: a longer --time-limit may show less.")
+        sentences.append("The time was up before all of it was proven: a longer --time-limit may show less.")
     print_tables(*sentences)
     if plan is None:
         print_tables(
-            "See the plan of a line with --setups K, or of the fewest set-ups within a loss with --max-loss."
+            "Show the plan of a line with --setups K, or of the fewest set-ups within a loss with --max-loss."
         )
         return
     print_plan(plan, found, unit)
@@ -323,7 +325,7 @@ def print_plan(plan: Plan, found: Family, unit: Unit) -> None:
     for count, setup in enumerate(plan.setups, 1):
         holes = ", ".join(peg.hole for peg in setup.standing.fixture.placed)
         heading = f"Set-up {count} of {len(plan.setups)}: {holes}"
-        place = "" if count == 1 else f" ({setup.moved} to place, the rest stands)"
+        place = "" if count == 1 else f" ({setup.moved} to place, the others stay)"
         print_tables("", f"{heading}{place}", setup_table(setup, found, unit))
         for one in setup.holdings:
             if not one.in_place:
@@ -332,7 +334,9 @@ def print_plan(plan: Plan, found: Family, unit: Unit) -> None:
 
     if any(one.turned for setup in plan.setups for one in setup.holdings):
         print_tables(
-            "", "A number with ' is that of the list after half a turn of everything, which swaps the jaws."
+            "",
+            "A number with ' is the fixture's number in the list after half a turn of everything, "
+            "which swaps the jaws.",
         )
 
 

@@ -30,7 +30,7 @@ __all__ = ["SCHEMAS", "doctor", "schema", "schema_of"]
 
 # The extras, each with what it is good for.
 USES = {
-    "numba": "Compiles the kernels, where the package has none for this machine.",
+    "numba": "Compiles the kernels, if the package has none for this machine.",
     "step": "Reads parts from STEP files, and writes set-ups as STEP assemblies.",
     "build123d": "Reads parts of build123d, and gives it fixtures as assemblies.",
     "batch": "Writes the tables of batch as Parquet, and finds the fewest set-ups of a family.",
@@ -68,10 +68,10 @@ class InstallationRow:
 
 
 def doctor(json_: bool = JSON) -> None:
-    """Report what is installed, what is missing, and what each would be good for.
+    """Report what is installed, what is missing, and what each missing library would be good for.
 
-    Nothing is changed. Only NumPy and the other libraries of the core are needed to search; extras add
-    what is listed.
+    The command changes nothing. A search needs only NumPy and the other libraries of the core; each extra adds
+    what the list says.
 
     Example: workhold doctor
     """
@@ -93,7 +93,7 @@ def table(findings: list[InstallationRow]) -> Table:
     """The findings, one line each; what is missing is red on a terminal."""
     rows: list[tuple[str, ...]] = [(found.what, found.state, found.use) for found in findings]
     missing = {number for number, found in enumerate(findings) if found.remedy}
-    return Table(("part", "state", "what it is good for"), rows, missing)
+    return Table(("part", "state", "what it does"), rows, missing)
 
 
 def kernels() -> InstallationRow:
@@ -109,7 +109,7 @@ def kernels() -> InstallationRow:
     if folder is None:
         remedy = "set WORKHOLD_CACHE_DIR to a folder that can be written."
         return InstallationRow(
-            "kernels", "compiled anew in every process: no folder can be written", use, remedy
+            "kernels", "compiled again in every process: no folder can be written", use, remedy
         )
     state = "compiled on this machine" if is_built() else "to be compiled on the first run"
     return InstallationRow("kernels", f"{state}, kept in {folder}", use)
@@ -138,7 +138,7 @@ def extras(is_built: bool) -> Iterator[InstallationRow]:
         if extra == "step" and found and (fault := step_fault()):
             lacking, remedy = lacking or [f"{found[0][0]} does not load"], fault
         states = lacking or [state for state, _ in found]
-        unknown = "not known: this copy was not installed as a package"
+        unknown = "not known, because this copy was not installed as a package"
         yield InstallationRow(extra, ", ".join(states) or unknown, use, remedy)
 
 
@@ -208,9 +208,9 @@ def toolkit_schema() -> dict[str, Any]:
 # What each schema is of.
 SCHEMAS = {
     "part": "a part in JSON",
-    "toolkit": "a vise, a plate or a fence, as its TOML file says it",
+    "toolkit": "a vise, a plate or a fence, as its TOML file gives it",
     "loads": "a loads file, TOML or JSON",
-    "query": "a search as it is asked over HTTP",
+    "query": "a search, as a client sends it over HTTP",
     "result": "a result file in JSON",
 }
 

@@ -108,7 +108,9 @@ def toml_entries(text: str) -> Iterator[dict[str, Any]]:
         raise InputError("its jobs are no tables: write [[job]] above each.")
     if len(content) > MOST_COLUMNS:
         # Each job has a copy of them.
-        raise InputError(f"more than {MOST_COLUMNS:,} entries stand above its jobs: leave out what is none.")
+        raise InputError(
+            f"more than {MOST_COLUMNS:,} entries stand above its jobs: leave out those that are not needed."
+        )
     budget = Budget(LIMITS["jobs"], len(text))
     for job in jobs:
         budget.spend()
@@ -194,10 +196,13 @@ def jobs_of(parts: list[str], words: QueryWords, reading: PartWords) -> list[Fam
         for job in [] if name in plain else read_jobs(Path(name)):
             if job.toolkits is not None:
                 raise InputError(
-                    f"{job.place} names a toolkit: the parts of a family share that of the command line."
+                    f"{job.place} names a toolkit, but all parts of a family use the toolkit of the command "
+                    "line: leave it out."
                 )
             if job.options_of(ProgramWords):
-                raise InputError(f"{job.place} names a program: a family of parts is planned without any.")
+                raise InputError(
+                    f"{job.place} names a program, but a family of parts is planned without one: leave it out."
+                )
             own_words, own_reading = job.over(words), job.over(reading)
             try:
                 own_words.asked(length_unit(own_reading.unit))

@@ -55,7 +55,7 @@ COMMANDS = {
         "Show how to set up fixture N of a result: the holes for the pegs, the opening and the part's pose."
     ),
     "seat": (
-        "Report whether the part ends up in the pose of fixture N when the vise or the clamp is tightened."
+        "Report whether the part ends up in the pose of fixture N when you tighten the vise or the clamp."
     ),
     "supports": (
         "Report where three supports hold the part up under fixture N, and where a clamp presses it down."
@@ -81,7 +81,8 @@ COMMANDS = {
     "features": "List the numbered faces of PART, as pictures and result files name them.",
     "parts": "List the built-in parts.",
     "program": (
-        "Report what was understood of a program for the mill: tools, lengths, heights, time, lines left out."
+        "Report what workhold understood of a program for the mill: tools, lengths, heights, "
+        "time, lines left out."
     ),
     "toolkits": "List the vises, plates and fences that come with workhold, or show all figures of one.",
     "drill": "Write the plates of a vise's jaws with their dowel holes and bolt holes, to drill them from.",
@@ -92,9 +93,9 @@ COMMANDS = {
         "Offer load, design, show, sheet and explain as tools to an agent, over the Model Context Protocol."
     ),
     "workbench": (
-        "Answer FreeCAD's workbench: design, and the bodies and pictures of the fixture that is put in."
+        "Answer FreeCAD's workbench: design, and give the bodies and pictures of the chosen fixture."
     ),
-    "doctor": "Report what is installed, what is missing, and what each would be good for.",
+    "doctor": "Report what is installed, what is missing, and what each missing library would be good for.",
     "completion": "Print the script that lets a shell complete the commands and options of workhold.",
 }
 
@@ -288,4 +289,7 @@ def report_fault(error: Exception) -> None:
             place = f"in {file.name}"
         except OSError:
             place = "shown with WORKHOLD_TRACEBACK=1"
-    say(f"fault: a mistake of workhold, not of yours ({what}); please report it with the traceback {place}.")
+    say(
+        f"fault: workhold has a mistake, which is not yours ({what}); please report it with the "
+        f"traceback {place}."
+    )

@@ -39,7 +39,7 @@ __all__ = [
 ResultArgument = Annotated[
     str, typer.Argument(metavar="RESULT", help="A result file (JSON or npz) written by workhold design.")
 ]
-RankArgument = Annotated[str, typer.Argument(metavar="N", help="Which fixture, by rank: 1 is the best.")]
+RankArgument = Annotated[str, typer.Argument(metavar="N", help="Rank of the fixture; 1 is the best.")]
 
 
 def asked_rank(text: str) -> int:
@@ -67,9 +67,10 @@ CALLED = {row.name: row.option for row in OF_READING} | {
 LENGTHS_UNIT = option(
     None,
     "UNIT",
-    "Unit of lengths given and shown (mm, cm, m, inch), and of a drawing that does not say its own; mm "
-    "if not given. A length may also carry its unit: 0.5in. For an SVG drawing in pixels, how many make "
-    "an inch: px72, px90, px96; lengths are then in mm.",
+    "Unit of the lengths that you type and see (mm, cm, m, inch), and of a drawing that does "
+    "not give its own; mm if not given. A length may also carry its unit: 0.5in. For an SVG "
+    "drawing in pixels it is the number of pixels in an inch: px72, px90, px96; lengths are "
+    "then in mm.",
 )
 
 PartArgument = Annotated[

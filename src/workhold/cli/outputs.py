@@ -42,7 +42,7 @@ __all__ = [
     "write_picture",
 ]
 
-FORCE = flag(None, "Replace files of these names that workhold has not written.", "--force")
+FORCE = flag(None, "Replace files of these names even if workhold has not written them.", "--force")
 
 # What the permission to replace a file is called here.
 CALLED = "--force"
@@ -150,7 +150,7 @@ def refuse_both(as_json: bool, out: str | None) -> None:
     """Refuses two things on standard output."""
     if as_json and out == STANDARD_OUTPUT:
         raise InputError(
-            "--json and a file on the terminal (-) are two things in one place: leave one of them out."
+            "--json and the result file would both go to the terminal (-): leave one of them out."
         )
 
 

@@ -27,15 +27,19 @@ if TYPE_CHECKING:
 
 __all__ = ["program"]
 
-PLACE, READING = "Where it runs", "How it is read"
+PLACE, READING = "Where it runs", "How to read it"
 
 
 # What is asked beside a part, in the words and sections of a program alone.
 OWN: dict[str, dict[str, Any]] = {
-    "zero": {"section": PLACE, "typed": "Where the program's X0 Y0 is on the part.", "metavar": "X,Y"},
+    "zero": {
+        "section": PLACE,
+        "typed": "Point of the part at which the program has X0 Y0.",
+        "metavar": "X,Y",
+    },
     "z_zero": {"section": PLACE},
     "rapid": {
-        "typed": "Whether rapid moves are straight, or may go anywhere in the box of their ends.",
+        "typed": "Path of rapid moves: straight, or anywhere in the box between their ends.",
         "section": READING,
     },
 }
@@ -45,11 +49,9 @@ OF_RUN = [
     for row in sorted((row for row in OF_PROGRAM if row.name in ORDER), key=lambda row: ORDER.index(row.name))
 ]
 RUN_TOOLS = option(
-    READING, "FILE", "Table of tools: TOML, CSV, or LinuxCNC's; what the program's comments say if not given."
+    READING, "FILE", "Table of tools: TOML, CSV, or LinuxCNC's; the program's comments if not given."
 )
-RUN_THICKNESS = option(
-    PLACE, "LENGTH", "How thick the part is; heights are those of the program if not given."
-)
+RUN_THICKNESS = option(PLACE, "LENGTH", "Thickness of the part; without it heights are those of the program.")
 
 
 @frozen(
@@ -83,9 +85,9 @@ def program(
     unit: str | None = SHOWN_UNIT,
     json_: bool = JSON,
 ) -> None:
-    """Report what was understood of a program for the mill: tools, lengths, heights, time, lines left out.
+    """Report what workhold understood of a program for the mill: tools, lengths, heights, time, lines left out.
 
-    What cannot be read is refused with its line. Nothing is searched, and the part is not needed.
+    A program that cannot be read is refused with the line. The command does not search, and needs no part.
 
     Example: workhold program bracket.nc --tools tools.toml --draw bracket.png
     """
@@ -172,8 +174,8 @@ def stock_words(program: Program, unit: Unit) -> str:
     shape = "the part's outline" if stock.shape == "outline" else "the block around the part"
     around = f"{shape} with {unit.text(stock.side)} around"
     if stock.height is None:
-        return f"Only what meets the stock counts: {around}."
-    return f"Only what meets the stock counts: {around} and {unit.text(stock.top)} on top."
+        return f"Only cuts that meet the stock count: {around}."
+    return f"Only cuts that meet the stock count: {around} and {unit.text(stock.top)} on top."
 
 
 def report(read: ReadProgram, unit: Unit, from_z_zero: bool) -> None:
@@ -221,8 +223,8 @@ def report(read: ReadProgram, unit: Unit, from_z_zero: bool) -> None:
         f"{program.name}: {read.lines:,} lines in {program.unit}, {len(program.moves):,} moves.",
         table,
         f"The tips go from {spans} {short}; heights are above {above}.",
-        f"Cutting takes {clock(total)} at the feeds that are written; rapid moves, dwells and tool changes "
-        "come on top.",
+        f"Cutting takes {clock(total)} at the program's feeds; rapid moves, dwells and tool "
+        "changes come on top.",
         *program.notes,
         *force_table(program, unit),
     )

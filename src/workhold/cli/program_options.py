@@ -45,8 +45,8 @@ BY_WORDS = ("zero", "z_zero")
 STOCK = option(
     FORCES,
     "SHAPE,SIDE,TOP",
-    "What the part is cut from, on which alone tools press: its outline, or the block around it, with so much "
-    "around and on top; outline,5,5 if not given. Give block, 0,0 or block,2,1.",
+    "Raw stock, on which alone tools press: the part's outline, or the block around it, with "
+    "stock around it and on top; outline,5,5 if not given. Give block, 0,0 or block,2,1.",
 )
 PROGRAM_FILE = option(
     PROGRAM,
@@ -56,12 +56,13 @@ PROGRAM_FILE = option(
 TOOLS = option(
     PROGRAM,
     "FILE",
-    "Table of its tools: TOML, CSV, or LinuxCNC's; what the program's comments say if not given.",
+    "Table of the program's tools: TOML, CSV, or LinuxCNC's; the program's comments if not given.",
 )
 THICKNESS = option(
     PROGRAM,
     "LENGTH",
-    "How thick the part is; that of its solid if not given. Pegs are as high, or as --peg-height says.",
+    "Thickness of the part; that of its solid if not given. Pegs are as high as the part, or "
+    "as --peg-height says.",
 )
 # What the questions of a program's reader are called here.
 CALLED = {"start": "--start X,Y,Z"}
@@ -135,7 +136,7 @@ class ProgramWords:
             ]
             if given:
                 raise InputError(
-                    f"--{given[0].replace('_', '-')} says something of a program: name it with --program."
+                    f"--{given[0].replace('_', '-')} belongs to a program: name the program with --program."
                 )
         solid = None if workpiece is None else workpiece.solid
         if self.program is None:
@@ -146,8 +147,8 @@ class ProgramWords:
             thick, high = thick or solid.height, solid.peg_height
         if thick is None and (self.z_zero == "top" or high is None):
             raise InputError(
-                "the part is an outline without heights, so nobody knows what of --program passes over the "
-                "pegs: give its --thickness, and --peg-height where pegs are not as high."
+                "the part is an outline without heights, so it is not known which moves of --program "
+                "pass over the pegs: give its --thickness, and --peg-height where pegs are not as high."
             )
         zero = zero_on(workpiece, self.zero, unit)
         heights = {"thickness": None if solid is not None else thick, "peg_height": high or thick}
@@ -183,7 +184,7 @@ def asked_stock(text: str, unit: Unit) -> dict[str, Any]:
             return given
     else:
         rest = [first, *rest]
-    remedy = "the stock: give outline or block, what it has around and on top, such as 0,2, or block,0,2."
+    remedy = "the stock: give outline or block, the stock around and on top, such as 0,2, or block,0,2."
     side, top = two_lengths("--stock", ",".join(rest), unit, remedy)
     return given | {"side": side, "top": top}
 

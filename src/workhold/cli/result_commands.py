@@ -49,7 +49,7 @@ def convert(
     """Write a result file in another form: JSON, columns (npz) for a great many fixtures, or CSV for a
     spreadsheet.
 
-    From JSON to columns and back the same bytes come out.
+    A file that goes from JSON to columns and back has the same bytes again.
 
     Example: workhold convert part.npz part.json
     """
@@ -100,21 +100,24 @@ class VerifyAnswer:
 def verify(
     result_file: ResultArgument,
     list_: str = option(
-        None, "N", "How many fixtures that are not proven to list on the terminal.", "--list", default="5"
+        None, "N", "Number of fixtures to list on the terminal that are not proven.", "--list", default="5"
     ),
     complete: bool = flag(
-        None, "Also search again, and compare: which fixtures, how many, and the account.", "--complete"
+        None,
+        "Also search again, and compare the fixtures, their number, and the account of the search.",
+        "--complete",
     ),
     threads: str | None = option(None, "N", "Threads of that search; as many as processors if not given."),
     json_: bool = JSON,
 ) -> None:
     """Prove or refute every fixture of a result, and every number written with it.
 
-    Each fixture is derived again from workpiece, toolkit, pegs and faces alone, in arithmetic whose rounding
-    errors are bounded, with nothing of the search. Coincidences such as an opening of just the smallest gap
-    are decided: the edge of every rule stands 1e-9 mm off them. What lies exactly on such an edge is
-    undecided. What a file alone cannot show, such as fixtures left out, --complete does, by the search of the
-    file's own query. The exit code is 0 when nothing is refuted and 2 otherwise.
+    The command derives each fixture again from the workpiece, the toolkit, the pegs and the faces alone, in
+    arithmetic that bounds its rounding errors. It uses nothing of the search. It decides coincidences, such as
+    an opening of exactly the smallest gap, because the edge of every rule stands 1e-9 mm off them. A case that
+    lies exactly on such an edge is undecided. A file alone cannot show, for example, that no fixture was left
+    out; --complete checks this with a new search of the file's query. The exit code is 0 if nothing is
+    refuted, and 2 otherwise.
 
     Example: workhold verify part.json
     """
@@ -191,7 +194,7 @@ def scope(outcome: Verification, asked: bool, listing: Listing) -> list[str]:
     if asked:
         return ["The search was interrupted, so nothing was compared."]
     points = not_shown(listing.query.toolkit, listing.query.seating is not None)
-    return ["What a file alone cannot show, and --complete does:", *(f"  - {point}" for point in points)]
+    return ["A file alone cannot show this; --complete checks it:", *(f"  - {point}" for point in points)]
 
 
 def summary(outcome: Verification) -> str:

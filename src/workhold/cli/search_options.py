@@ -77,7 +77,7 @@ def parse_load(text: str, unit_scale: float = 1.0) -> Load:
 
 
 LOAD = option(LOADS, "LOAD", LOAD_HELP)
-LOADS_FILE = option(LOADS, "FILE", "Loads from a TOML file.")
+LOADS_FILE = option(LOADS, "FILE", "TOML file with loads.")
 # Of loads on a fixture that is known, as its sheet has them.
 OF_LOADS = declarations_of(SheetQuestion, [LOADS])
 JAW_FORCE, FRICTION = (option_of(row) for row in OF_LOADS if row.name in ("jaw_force", "friction"))
@@ -111,8 +111,8 @@ BESIDE = {
             option(
                 RULING_OUT,
                 "FILE",
-                "Of a solid's second side: the result of the first, whose faces to avoid were cut there; they are "
-                "avoided here, too.",
+                "For a solid's second side: the result of the first. Faces that the first set-up avoids, "
+                "because it cuts them, are avoided here too.",
             )
         )
     },
@@ -121,27 +121,28 @@ BESIDE = {
         option(
             RANKING,
             "FIGURES",
-            "What makes a fixture good, the first counting most, such as penalty,tilt, instead of the usual "
-            "order: no warning; location error in steps of a tenth, more where the part is turned, hangs over or "
-            "is held from inside a hole; as drawn; then warnings, penalty, clamp-amplification (or "
-            "load-reaction), closure-margin, edge-distance. Also location-error, tilt, smallest-face, "
-            "wrench-radius, end-distance, jaw-force-needed, with a program program-clearance, and of two clamps "
-            "clamp-freedom.",
+            "Figures that order the fixtures, the first counting most, such as penalty,tilt, instead "
+            "of the usual order: no warning; location error in steps of a tenth, more where the part "
+            "is turned, hangs over or is held from inside a hole; as drawn; then warnings, penalty, "
+            "clamp-amplification (or load-reaction), closure-margin, edge-distance. Further figures "
+            "are location-error, tilt, smallest-face, wrench-radius, end-distance, jaw-force-needed, "
+            "with a program program-clearance, and for two clamps clamp-freedom.",
         )
     ),
     "prefer": one_word(
         option(
             RANKING,
             "square|strong|precise|roomy",
-            "Instead of --rank-by, what you want most: the part square to the jaws, gentle pegs, the best "
-            "location, or contacts far from edges and from the program's tools.",
+            "What you want most, instead of --rank-by: the part square to the jaws, gentle pegs, the "
+            "best location, or contacts far from edges and from the program's tools.",
         )
     ),
     "tolerance": one_word(
         option(
             RANKING,
             "PEG[,FACE]",
-            "How far pegs and faces may be off, for the location error; 0.01mm if neither this nor --vise says.",
+            "Largest errors of pegs and faces, for the location error; 0.01mm if neither this nor "
+            "--vise gives one.",
         )
     ),
 }
@@ -199,8 +200,8 @@ def without_faces_cut(restrictions: Restrictions, workpiece: Workpiece, before: 
     if own is None or other is None or not (own.faces and other.faces):
         lacking = "PART" if own is None else before
         raise InputError(
-            f"--not-on-faces-cut-in needs the faces of one solid in both, and {lacking} has none: read both "
-            "from the STEP file, with --peg-height."
+            f"--not-on-faces-cut-in needs the faces of the same solid in both set-ups, and {lacking} "
+            "has none: read both from the STEP file, with --peg-height."
         )
     cut = query.workpiece.numbered.faces_over(query.restrictions.avoid)
     avoid = workpiece.numbered.segments_under(cut)
@@ -252,6 +253,6 @@ class SeatingWords:
         asked = read_words(OF_SEATING, self, unit)
         if asked["seating"] is None and any(asked.values()):
             raise InputError(
-                "--opening and --foolproof need --seating K: of how many fixtures, the first, to look at it."
+                "--opening and --foolproof need --seating K: the number of first fixtures to check."
             )
         return asked

@@ -31,15 +31,17 @@ class SeatWords:
     """The options of what is shown of a seating and where it is drawn, as typed."""
 
     side: str = option(
-        None, "WORD", "Which side of the part may lie up: drawn, turned-over, or both.", default="both"
+        None, "WORD", "Side of the part that may lie up: drawn, turned-over, or both.", default="both"
     )
     opening: str | None = option(
         None,
         "LENGTH",
-        "Open the jaws, or draw the clamp back, by this much to put the part in; as far as they go if not "
-        "given.",
+        "Open the jaws, or draw the clamp back, by this much to put the part in; as far as "
+        "possible if not given.",
     )
-    draw: str | None = option(None, "FILE", "Draw how the part can rest into this file, .svg or .png.")
+    draw: str | None = option(
+        None, "FILE", "Draw the places in which the part can rest into this file, .svg or .png."
+    )
     force: bool = FORCE
     unit: str | None = SHOWN_UNIT
     json_: bool = JSON
@@ -78,11 +80,11 @@ class SeatTask:
 
 @spread
 def seat(result_file: ResultArgument, number: RankArgument, *, words: SeatWords) -> None:
-    """Report whether the part ends up in the pose of fixture N when the vise or the clamp is tightened.
+    """Report whether the part ends up in the pose of fixture N when you tighten the vise or the clamp.
 
-    It says how wide open that may be when the part is let go, and how far off the part may lie. It lists
-    where else the part can come to rest, and what is read then. Of two clamps it says how the part is put in
-    by hand and in which order they are tightened.
+    The report says how wide the jaws may stand open when you let the part go, and how far off its place the
+    part may lie. It lists the other places in which the part can come to rest, and what a caliper reads
+    there. For two clamps it says how to put the part in by hand, and in which order to tighten them.
 
     Example: workhold seat part.json 1 --draw seats.svg
     """
@@ -209,7 +211,7 @@ def setting_words(seating: Seating, gauge: Gauge, unit: Unit) -> list[str]:
     more, less = ("more", "less") if gauge.grows else ("less", "more")
     if seating.is_untold:
         words = [
-            "From where on it is caught is not known: put the part in its place, hold it there and "
+            "It is not known how far you may open: put the part in its place, hold it there and "
             f"{ways.close}."
         ]
     elif seating.capture_opening is None:
@@ -218,16 +220,17 @@ def setting_words(seating: Seating, gauge: Gauge, unit: Unit) -> list[str]:
         wide = gauge.at(gauge.fixture.travel + seating.clamping * seating.capture_opening)
         words = [
             f"{ways.open} to {named}{less} than {unit.text(wide)}, which is "
-            f"{unit.text(seating.capture_opening)} from where {ways.hold} the part. Put the part in its "
-            f"place and {ways.close}: on the way it cannot leave for another place."
+            f"{unit.text(seating.capture_opening)} from where {ways.hold} the part. Put the part in "
+            f"its place and {ways.close}: on the way it cannot get to another place."
         ]
     words.append(
-        f"When it has come home the {setting.name} is {unit.text(setting.length)}. While that is {more}, "
-        "the part is stuck short of its pose."
+        f"When the part is in its place, the {setting.name} is {unit.text(setting.length)}. While "
+        f"it is {more}, the part is stuck short of its place."
     )
     if seating.drop_room is not None and not seating.is_untold:
         words.append(
-            f"{ways.done} so far, there is about {unit.text(seating.drop_room)} of room at every peg at once."
+            f"{ways.done} this far, there is about {unit.text(seating.drop_room)} of room at every "
+            "peg at once."
         )
     if seating.cage is not None and seating.placing is not None:
         low, high = seating.cage.theta_deg
@@ -236,13 +239,18 @@ def setting_words(seating: Seating, gauge: Gauge, unit: Unit) -> list[str]:
         )
         along, across = (" to ".join(unit.number(end) for end in ends) for ends in shifts)
         words += [
-            f"It may lie off by {low:.2f} to {high:.2f} degrees and by {along} {unit.abbreviation} along "
-            f"the {ways.whose} way, {across} {unit.abbreviation} across it, as far as the pegs let it.",
-            f"Put so that every point is nearer than {unit.text(seating.placing)} to its place, it comes "
-            "home.",
+            f"The part may lie off its place by {low:.2f} to {high:.2f} degrees and by {along} "
+            f"{unit.abbreviation} along the {ways.whose} way, {across} {unit.abbreviation} across it, "
+            "as far as the pegs let it.",
+            f"If every point of the part is nearer than {unit.text(seating.placing)} to its place, "
+            "the part settles there.",
         ]
-    tap = "." if seating.sticking_friction >= DRY_STEEL else "; dry steel has 0.1 to 0.2, so tap it home."
-    words.append(f"With a friction below {seating.sticking_friction:.3f} it cannot stick near its pose{tap}")
+    tap = (
+        "." if seating.sticking_friction >= DRY_STEEL else "; dry steel has 0.1 to 0.2, so tap the part home."
+    )
+    words.append(
+        f"With a friction below {seating.sticking_friction:.3f} the part cannot stick near its place{tap}"
+    )
     return words
 
 
@@ -254,20 +262,23 @@ def wrong_words(
     words = []
     if seating.capture_opening is not None and opened is not None and opened < seating.capture_opening:
         far = f"{gauge.ways.done} by {unit.text(opened)}"
-        words.append(f"{far}, a part let go in its cage reaches no other place; let go elsewhere it may.")
+        words.append(
+            f"{far}, a part let go near its place reaches no other place; a part let go elsewhere may."
+        )
     if not wrong:
-        words.append("There is no wrong place where it can come to rest.")
+        words.append("There is no wrong place in which the part can come to rest.")
     else:
         near = min(wrong, key=lambda one: abs(one.difference))
         more = gauge.at(near.jaw_separation) > gauge.setting.length
         places = "one wrong place" if len(wrong) == 1 else f"{len(wrong)} wrong places"
         words.append(
-            f"It can come to rest in {places}; the reading nearest to the right one is "
-            f"{unit.text(abs(near.difference))} {'more' if more else 'less'}."
+            f"The part can come to rest in {places}; the reading nearest to the right one is "
+            f"{unit.text(abs(near.difference))} {('more' if more else 'less')}."
         )
     if alike:
         words.append(
-            f"In {alike} more it covers its place all the same, which no reading shows: mark the part."
+            f"In {alike} more places it covers the right place all the same, and no reading shows it: "
+            "mark the part."
         )
     return words
 
@@ -276,7 +287,7 @@ def wrong_words(
 KINDS = {
     "corner": "four pegs, one on a corner",
     "pocket": "a peg in a corner of the part",
-    "curved": "held by curvature",
+    "curved": "held by the curvature of its faces",
     "loose": "not located",
     "unsettled": "not settled",
 }

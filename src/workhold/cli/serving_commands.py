@@ -35,12 +35,15 @@ LIMITS = "Limits"
 HIGHEST_PORT = 65_535
 TOKEN_BYTES = 16
 OPEN_TO_ALL = (
-    "workhold: everybody who reaches this machine can use the page, read what others search for if given its "
-    "name, and keep the processors busy; --ask-token lets in only who has the address."
+    "workhold: everybody who reaches this machine can use the page, keep the processors "
+    "busy, and read another person's search if given its name; --ask-token lets in only "
+    "those who have the address."
 )
 # Processes that search: each takes a hundred megabytes before it begins.
 MOST_SEARCHES = 256
-FIRST_RUN = "workhold: compiling for this machine, which takes a minute or two the first time."
+FIRST_RUN = (
+    "workhold: the kernels are being compiled for this machine, which takes a minute or two the first time."
+)
 
 
 def limit(default: str | None, metavar: str, variable: str, help: str) -> Any:
@@ -55,22 +58,22 @@ class ServerWords:
     """The options of where a server listens and to whom, as typed."""
 
     host: str = option(
-        None, "ADDRESS", "Where to listen; 0.0.0.0 lets other machines in.", default="127.0.0.1"
+        None, "ADDRESS", "Address to listen at; 0.0.0.0 lets other machines in.", default="127.0.0.1"
     )
     port: str = option(None, "PORT", "Port to listen at; 0 takes a free one.", default="8000")
     open_: bool = flag(None, "Open the page in the browser.", "--open")
     allow_host: list[str] | None = option(
-        None, "NAME", "Another name that the server may be called by. May be repeated."
+        None, "NAME", "Another name by which clients may call the server. May be repeated."
     )
     trust_proxy: list[str] | None = option(
-        None, "ADDRESS", "A reverse proxy that says for whom it asks. May be repeated."
+        None, "ADDRESS", "A reverse proxy whose word for the visitor's address is trusted. May be repeated."
     )
     allow_origin: list[str] | None = option(
         None,
         "ORIGIN",
         "A site whose pages may use the server, such as https://shop.example. May be repeated.",
     )
-    ask_token: bool = flag(None, "Let in only who has the address that is printed.", "--ask-token")
+    ask_token: bool = flag(None, "Let in only those who have the address that is printed.", "--ask-token")
 
     def port_number(self) -> int:
         at = whole_number("--port", self.port)
@@ -107,13 +110,15 @@ class LimitWords:
     """The options of how much a server gives, as typed or as the environment says."""
 
     upload_size: str = limit("20", "MB", "UPLOAD_SIZE", "Largest file with a part.")
-    searches: str = limit("2", "N", "SEARCHES", "Searches at the same time.")
-    seconds: str = limit("120", "S", "SECONDS", "Longest search; what was found by then is shown.")
+    searches: str = limit("2", "N", "SEARCHES", "Number of searches that run at the same time.")
+    seconds: str = limit(
+        "120", "S", "SECONDS", "Longest time of a search; the fixtures found by then are shown."
+    )
     memory: str | None = limit(
         None, "MB", "MEMORY", "Most memory of each search: 4096, or less on a small machine."
     )
     fixtures: str = limit("300000", "N", "FIXTURES", "Most fixtures kept of a search, the best ones.")
-    life: str = limit("60", "MINUTES", "LIFE", "How long a search is kept after its last use.")
+    life: str = limit("60", "MINUTES", "LIFE", "Time that a search is kept after its last use.")
 
     def asked(self) -> ServerLimits:
         """The limits of the server; refuses what is no number, and counts that are too small or too large."""
@@ -123,7 +128,7 @@ class LimitWords:
         fixtures = int(positive_number("--fixtures", self.fixtures))
         life = 60 * positive_number("--life", self.life)
         if searches < 1 or fixtures < 1:
-            raise InputError("--searches and --fixtures are counts: give 1 or more.")
+            raise InputError("--searches and --fixtures are numbers: give 1 or more.")
         if searches > MOST_SEARCHES:
             raise InputError(
                 f"--searches {searches:,} is beyond {MOST_SEARCHES}: one for each processor is best."
@@ -146,8 +151,8 @@ class LimitWords:
 def serve(*, words: ServerWords, limits: LimitWords) -> None:
     """Serve the page: from a drawing to a setup sheet in the browser.
 
-    It can be used from this machine only, unless --host says otherwise. The same is there for programs: see
-    /api/openapi.json. Ctrl-C stops it.
+    Only this machine can use the page, unless --host says otherwise. Other programs can use the same server:
+    see /api/openapi.json. Ctrl-C stops it.
 
     Example: workhold serve --open
     """
@@ -177,18 +182,19 @@ REQUIREMENT = "mcp>=2"
 # Of a picture, in pixels.
 WIDTH = 1000
 INSTRUCTIONS = (
-    "workhold finds every way to hold a flat part with round pegs: in a vise whose jaws carry a lattice of "
-    "holes, on a plate with locators and a clamp or two, or on a fence. load a part to see the numbers of "
-    "its faces, design to find all fixtures (avoid the faces that will be machined), show one of them, "
-    "write its sheet; explain where there is none. Lengths are in mm, angles in degrees, forces in N."
+    "workhold finds every way to hold a flat part with round pegs: in a vise whose jaws "
+    "carry a lattice of holes, on a plate with locators and a clamp or two, or on a fence. "
+    "Use load to read a part and see the numbers of its faces, design to find all fixtures "
+    "(avoid the faces that will be machined), show for one of them, sheet to write its setup "
+    "sheet, and explain if there is none. Lengths are in mm, angles in degrees, forces in N."
 )
 
 
 def mcp() -> None:
     """Offer load, design, show, sheet and explain as tools to an agent, over the Model Context Protocol.
 
-    The agent's program starts this command and speaks with it on standard input and output; it is no command
-    for people. It reads and writes the files that the agent names, with the rights of whoever starts it.
+    The agent's program starts this command and speaks with it on standard input and output; people do not
+    type it. It reads and writes the files that the agent names, with the rights of the user who starts it.
 
     Example: workhold mcp
     """
@@ -266,9 +272,9 @@ def outcome(
         return str(error), None, True
     except Exception as error:
         if lacks_memory(error):
-            return "This needs more memory than there is: ask for the best few only.", None, True
+            return "This needs more memory than there is: ask for the best few fixtures only.", None, True
         what = " ".join(f"{type(error).__name__}: {error}".split())[:300].rstrip(".")
-        return f"This is a mistake of workhold, not of yours ({what}); please report it.", None, True
+        return f"workhold has a mistake, which is not yours ({what}); please report it.", None, True
 
 
 SHELLS = ("bash", "zsh", "fish")

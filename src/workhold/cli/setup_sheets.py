@@ -58,7 +58,8 @@ class BodyWords:
     )
     supports: bool = flag(
         None,
-        "In the GLB and STEP also the best three supports under the part and a clamp on top, of the usual sizes.",
+        "Add the best three supports under the part and a clamp on top, of the usual sizes, to "
+        "the GLB and STEP.",
         "--supports",
     )
     thickness: str | None = option(
@@ -101,7 +102,7 @@ def asked_models(
     for option_name, value in of_files.items():
         if not paths and value is not None and value is not False:
             words = option_name.replace("_", "-")
-            raise InputError(f"--{words} is of a file in three dimensions: give --glb or --step too.")
+            raise InputError(f"--{words} belongs to a file in three dimensions: give --glb or --step too.")
     return paths
 
 
@@ -114,7 +115,8 @@ def write_bodies(assembly: Assembly, paths: Sequence[Path], unit: Unit) -> None:
     files, sizes = " and ".join(map(str, paths)), assembly.sizes
     if sizes.is_assumed:
         print_remark(
-            f"in {files} the part is {unit.text(sizes.thickness)} high, as nobody said; give --thickness."
+            f"in {files} the part is taken to be {unit.text(sizes.thickness)} high, because no "
+            "thickness is given: give --thickness."
         )
     if assembly.is_simplified:
         print_remark(
@@ -199,7 +201,7 @@ def first_supported(
     for rank, one in enumerate(found, 1):
         if one.triples:
             if rank > 1:
-                print_remark(f"fixture 1 has no such supports: the sheet is of fixture {rank}.")
+                print_remark(f"no such supports hold up fixture 1, so the sheet shows fixture {rank}.")
             return rank, ChosenSupports.of(one)
     print_remark(
         "no three supports hold the part under any of the best, so the sheet has none: another side up "
@@ -217,9 +219,11 @@ def chosen_of_file(
 
     for name, key in (("--thickness", "thickness"), ("--jaw-force", "jaw_force")):
         if settings[key] is not None:
-            raise InputError(f"{path} says what {name} would: leave it out, or list the supports anew.")
+            raise InputError(
+                f"{path} already gives what {name} would give: leave it out, or list the supports again."
+            )
     if loads:
-        raise InputError(f"{path} has the loads that its supports are for: leave --load out.")
+        raise InputError(f"{path} has the loads for which its supports were chosen: leave --load out.")
     return ChosenSupports.of(read_supports(path), number)
 
 
@@ -239,7 +243,7 @@ def chosen_supports(
     from workhold.supports.asking import requests_by_size, supported_by_size
 
     if thickness is None and result.workpiece.solid is None:
-        raise InputError("how thick the part is, is not known: give --thickness.")
+        raise InputError("the thickness of the part is not known: give --thickness.")
     query = result.query
     requests = requests_by_size(query, thickness)
     (found,), _ = supported_by_size(

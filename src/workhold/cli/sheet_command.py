@@ -31,13 +31,14 @@ __all__ = ["sheet"]
 OF_SHEET = declarations_of(SheetQuestion)
 WITH_SUPPORTS = flag(
     SUPPORTS,
-    "With the best three supports under the part and a clamp on top, of the usual sizes.",
+    "Show the best three supports under the part and a clamp on top, of the usual sizes.",
     "--supports",
 )
 FIRST_SETUP = option(
     SUPPORTS,
     "RESULT",
-    "Of a solid's second side: the result of the first, to say which faces it cuts and locates on.",
+    "For a solid's second side: the result of the first; the sheet then names the faces that "
+    "the first set-up cuts and locates on.",
 )
 
 
@@ -102,7 +103,8 @@ def sheet(
         str,
         typer.Argument(
             metavar="N",
-            help="Which fixture, by rank: 1 is the best; of a file of supports which set of three.",
+            help="Rank of the fixture; 1 is the best. In a file of supports it is the number of the set "
+            "of three.",
         ),
     ],
     out: Annotated[
@@ -123,9 +125,9 @@ def sheet(
     """Write the setup sheet of fixture N of a result: plan to scale, pegs, opening, part zero, quality,
     loads, cautions.
 
-    Loads given here stand instead of those in the result. The paper sizes are A4 and Letter. Where the part's
-    thickness is known, a view from the side has the heights. A .dxf or .step file holds the set-up itself, in
-    mm, for a CAM system; a .csv file lists the pins.
+    Loads given here replace those in the result. The paper sizes are A4 and Letter. If the part's thickness
+    is known, a view from the side shows the heights. A .dxf or .step file holds the set-up itself, in mm, for
+    a CAM system; a .csv file lists the pins.
 
     Example: workhold sheet part.json 1 -o setup.pdf --jaw-force 3000
     """
@@ -213,11 +215,12 @@ def refuse_in_space(
     """Refuses what stands on paper only in a file for a CAM system, and a height of no supports."""
     if for_cam and first_setup is not None:
         raise InputError(
-            f"--first-setup is of a sheet on paper, not of {path}: let the name end in .pdf, .svg or .png."
+            f"--first-setup belongs to a sheet on paper, not to {path}: let the name end in .pdf, "
+            ".svg or .png."
         )
     if supported and not shows_supports:
         raise InputError(
             f"{path} has no supports: let the name end in .pdf, .svg, .png or .step, or leave --supports out."
         )
     if support_height is not None and not supported:
-        raise InputError("--support-height is of supports: give --supports, or leave it out.")
+        raise InputError("--support-height belongs to supports: give --supports, or leave it out.")

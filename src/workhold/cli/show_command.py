@@ -79,8 +79,9 @@ def show(
 ) -> None:
     """Show how to set up fixture N of a result: the holes for the pegs, the opening and the part's pose.
 
-    Its quality is shown as well, and what loads do to it: those of the result, if none are given here. A hole
-    is named by jaw, column letter and row number: L-B3 is the left jaw's second column, third row from below.
+    The output also has its quality, and what the loads do to it: the loads given here, or else those of the
+    result. A hole is named by jaw, column letter and row number: L-B3 is in the left jaw, second column,
+    third row from below.
 
     Example: workhold show part.json 1 --draw setup.png --glb setup.glb
     """
@@ -257,7 +258,8 @@ def bending_words(result: Result, rank: int, unit: Unit, jaw_force: float | None
     error = result[rank - 1].figures.get("location_error")
     return [
         "",
-        f"Pegs bend, {bent.at_force(mover, unit)}, built in at the plate; a real hole gives more:",
+        f"Pegs bend as follows, {bent.at_force(mover, unit)}, if they are built in at the plate; "
+        "in a real hole they give way more:",
         table,
         bent.sentence(mover, unit, error),
         *(f"Beware: {sentence}" for sentence in bent.cautions(mover, unit)),
@@ -300,7 +302,8 @@ def load_tables(
     notes = []
     if with_friction:
         notes.append(
-            "With friction the forces are not determined; what is needed with it is the best to be hoped for."
+            "With friction the forces are not determined; the force that is then needed is the least "
+            "to be hoped for."
         )
     note = (
         f"For {jaw_words(cases[0].jaw_stiffness, toolkit)}, without friction; docs/quality.md explains both."
@@ -356,7 +359,10 @@ def passing_words(
     near, need = passing_of(result, rank - 1), cutting_need_of(result, rank - 1, jaw_force, jaw)
     forces = [] if need is None else need.words(result.toolkit.moving.noun, unit, result.toolkit.travels)
     if near is None:
-        return [f"No tool of {program.name} comes down to where anything holds the part.", *forces]
+        return [
+            f"No tool of {program.name} comes down to the height of anything that holds the part.",
+            *forces,
+        ]
     return [
         f"The tools of {program.name} keep {unit.text(near.distance)} from all that holds the part; "
         f"T{near.tool} comes nearest in line {near.line}, to the {near.element}.",

@@ -58,10 +58,11 @@ def stopped_words(last: int, count: int) -> str:
     ``last`` is the rank of that fixture, ``count`` how many fixtures were asked for.
     """
     skipped = list(range(last + 1, count + 1))
-    rest = f", and under {runs_of(skipped)} none" if skipped else ""
+    rest = f", and under {runs_of(skipped)} at none" if skipped else ""
     return (
-        f"Pads and clamp have so many places that looking was stopped after {MOST_PLACES:,}: under {last} "
-        f"not all sets were looked at{rest}. The command supports looks at all under one fixture."
+        f"Pads and clamp have so many places that the search stopped after {MOST_PLACES:,}: under "
+        f"{last} it did not look at all sets{rest}. The command supports looks at all sets under "
+        "one fixture."
     )
 
 
@@ -99,17 +100,18 @@ def size_notes(
         sizes = f"pads of radius {pad}" if found is usual else f"pads of radius {larger} down to {pad}"
         which = "usual" if found is usual else "least"
         return [
-            f"Under {runs_of(bare)} no three hold the part, with {sizes}.",
-            f"Under {bare[0]}, with the {which}: {why_no_set(found[0], unit)}",
+            f"Under {runs_of(bare)} no three supports hold the part, with {sizes}.",
+            f"Under {bare[0]}, with the {which} sizes: {why_no_set(found[0], unit)}",
         ]
     notes = [
         f"Pads of radius {pad} and a tip of radius {tip}; the command supports lists more, with other sizes."
     ]
     if bare:
-        notes.append(f"Under {runs_of(bare)} no three hold the part.")
+        notes.append(f"Under {runs_of(bare)} no three supports hold the part.")
     if found is not usual:
         notes.append(
-            f"Larger ones hold the part under none of these, so under 1: {why_no_set(usual[0], unit)}"
+            "Larger pads and tips hold the part under none of these fixtures. Under 1: "
+            f"{why_no_set(usual[0], unit)}"
         )
     elif bare:
         notes.append(f"Under {bare[0]}: {why_no_set(found[bare[0] - 1], unit)}")
@@ -124,7 +126,7 @@ def with_friction(found: Supports, count: int | None, friction: float | None) ->
     if friction is None:
         return []
     if not found.loads:
-        raise InputError("--friction is asked of loads, of which there are none: give --load too.")
+        raise InputError("--friction needs loads, and there are none: give --load too.")
     return [found.clamp_with_friction(friction, rank) for rank in range(1, len(found.triples[:count]) + 1)]
 
 
@@ -136,8 +138,9 @@ def friction_words(friction: float, helped: list[float], unit: Unit) -> str:
     forces = ", ".join(unit.force_words(force) for force in helped)
     sets = "that set" if len(helped) == 1 else "these sets, in their order,"
     return (
-        f"With a friction of {friction:g} at every contact the clamp of {sets} could do with {forces} at "
-        "best. With friction the forces are not determined: clamp for the force without it."
+        f"With a friction of {friction:g} at every contact the clamp of {sets} could hold with "
+        f"{forces} at best. With friction the forces are not determined: clamp with the force "
+        "without friction."
     )
 
 

@@ -62,27 +62,30 @@ KEEP_OFF = ("--keep-out-below", "--keep-out-above")
 PART = "Heights of the part"
 
 
-THICKNESS = option(PART, "LENGTH", "How thick the part is; that of its solid if not given.")
+THICKNESS = option(PART, "LENGTH", "Thickness of the part; that of its solid if not given.")
 BAND = option(
     PART,
     "LOW:HIGH",
-    "Heights at which pegs may press on its faces; those of its solid, or all, if not given.",
+    "Heights at which pegs may press on the part's faces; those of its solid, or all, if not given.",
 )
 BELOW = option(
     SUPPORTS_SECTION, "ZONE", "A place that no pad may stand under, circle=X,Y,RADIUS or polygon=X,Y;X,Y;X,Y."
 )
-ABOVE = option(CLAMP_SECTION, "ZONE", "A place that the tip may not stand on, such as where the cutter goes.")
-CLAMP_AT = option(CLAMP_SECTION, "X,Y", "Where the clamp presses; its best place if not given.")
+ABOVE = option(
+    CLAMP_SECTION, "ZONE", "A place on which the tip may not stand, such as where the cutter goes."
+)
+CLAMP_AT = option(CLAMP_SECTION, "X,Y", "Place of the clamp; the best one if not given.")
 LOADS_IN_SPACE = option(
     "Loads",
     "LOAD",
-    "A load as in show, and with it z=HEIGHT or z=LOW..HIGH, axial=FORCE or axial=LOW..HIGH downward, "
-    "and tilt=ABOUTX,ABOUTY; those of the result, at the part's upper side, if not given.",
+    "A load as in show, with these words besides: z=HEIGHT or z=LOW..HIGH, axial=FORCE or "
+    "axial=LOW..HIGH downward, and tilt=ABOUTX,ABOUTY. If not given, the loads of the result "
+    "act at the part's upper side.",
 )
 SUPPORT_HEIGHT = option(
     SUPPORTS_SECTION,
     "LENGTH",
-    "How far supports stand out of the plates, in --glb and --step; the toolkit's, or 10mm, if not given.",
+    "Standout of the supports above the plates, in --glb and --step; the toolkit's, or 10mm, if not given.",
 )
 # What is asked of supports and of the clamp, as toolkits have it.
 OF_HARDWARE = [row for table in (PADS, CLAMP) for row in table.fields if row.typed]
@@ -167,7 +170,7 @@ def supports(
     number_: RankArgument,
     *,
     words: SupportWords,
-    triples: str = option(None, "K", "How many sets of three to list.", default="3"),
+    triples: str = option(None, "K", "Number of sets of three to list.", default="3"),
     out: str | None = option(None, "FILE", "Write all sets of three, with every figure, into this file."),
     glb: str | None = option(
         None, "FILE", "Write the fixture on the best set in three dimensions into this .glb file."
@@ -180,8 +183,9 @@ def supports(
 ) -> None:
     """Report where three supports hold the part up under fixture N, and where a clamp presses it down.
 
-    Pegs hold a part in the plane and resist no tipping. Three supports and a clamp inside their triangle do,
-    at whatever heights the pegs press. The sets are in order of the clamp force that the loads ask for.
+    Pegs hold a part in the plane, but they do not keep it from tipping. Three supports, and a clamp that
+    presses inside their triangle, do, whatever the heights at which the pegs press. The list begins with the
+    set whose clamp needs the least force under the loads.
 
     Example: workhold supports part.json 1 --thickness 12 --load "force=150 at=20,15 z=8..12 axial=-20..60"
     """
@@ -248,7 +252,7 @@ def ask(asked: SupportsTask) -> Supports:
     from workhold.supports.asking import supported_by_size
 
     with (
-        ask_to_stop("the best of what was looked at is kept") as cancel,
+        ask_to_stop("the best of the sets so far is kept") as cancel,
         progress_bar("Looking for supports", "of 1 fixture") as show,
     ):
         (found,), _ = supported_by_size(
@@ -266,7 +270,9 @@ def ask(asked: SupportsTask) -> Supports:
             asked.printed.text(found.request.pad_radius),
             asked.printed.text(found.request.tip_radius),
         )
-        print_remark(f"the usual sizes find no place: the pads have a radius of {pad}, the tip one of {tip}.")
+        print_remark(
+            f"the usual sizes find no place, so the pads have a radius of {pad} and the tip one of {tip}."
+        )
     return found
 
 
@@ -298,12 +304,12 @@ def asked_thickness(wanted: bool, text: str | None, workpiece: Workpiece, unit: 
     """
     if not wanted:
         if text is not None and workpiece.solid is not None:
-            raise InputError("how thick the part is, its solid says: leave --thickness out.")
+            raise InputError("the solid gives the part's thickness: leave --thickness out.")
         return None
     solid = workpiece.solid
     high = optional_length("--thickness", text, unit) or (None if solid is None else solid.height)
     if high is None:
-        raise InputError("how thick the part is, is not known: give --thickness.")
+        raise InputError("the thickness of the part is not known: give --thickness.")
     return high
 
 
@@ -346,7 +352,7 @@ def before_first(listed: Sequence[Triple]) -> list[str]:
     """Says how holes before column A or row 1 are named, where there are such."""
     if all(min(pad.column, pad.row) >= 0 for triple in listed for pad in triple.supports):
         return []
-    return ["A hole before column A or row 1 stands as (column,row), where A1 is (1,1)."]
+    return ["A hole before column A or row 1 is written as (column,row), where A1 is (1,1)."]
 
 
 def report(
@@ -379,7 +385,7 @@ def report(
     if written:
         print_tables(f"Written to {', '.join(written)}.")
     if found.stopped:
-        print_remark("stopped before all sets were looked at: there may be better ones.")
+        print_remark("stopped before all sets were examined: there may be better ones.")
 
 
 def print_sets(found: Supports, listed: Sequence[Triple], rank: int, unit: Unit) -> None:
@@ -399,8 +405,8 @@ def notes_of(found: Supports, listed: Sequence[Triple], unit: Unit) -> list[str]
     from workhold.supports.words import listing_notes
 
     notes = [
-        "The clamp presses at that point of the part's coordinates. Its force times the tipping arm is the "
-        f"moment that tips the part; where the last figure is at least {unit.text(STEADY)}, the part stands "
-        "before it is clamped."
+        "The clamp presses at this point of the part's coordinates. Its force times the tipping "
+        "arm is the tipping moment that it resists. If the last figure is at least "
+        f"{unit.text(STEADY)}, the part stands before it is clamped."
     ]
     return notes + before_first(listed) + listing_notes(found, listed, unit, KEEP_OFF)

@@ -56,8 +56,8 @@ MOST_FURTHER = 8
 # Undecided candidates, and other heights of the pegs, that are named on the terminal.
 MOST_NAMED = 3
 UNDECIDED = (
-    "  Every fixture listed holds; one more may exist at such a place. Nearly equal sizes are the cause: "
-    "another peg radius or pitch decides it."
+    "  Every fixture in the list holds the part; one more may exist at such a place. Nearly "
+    "equal sizes cause this: another peg radius or pitch decides it."
 )
 
 
@@ -91,8 +91,8 @@ def unfit_sentence(unfit: int) -> str:
     """Says how many fixtures are not shown because they are none for a workshop, and how to see them."""
     are = "is no fixture" if unfit == 1 else "are no fixtures"
     return (
-        f"{unfit:,} of them {are} for a workshop (the part may lie anywhere, or one peg hardly holds) and "
-        "not shown: see them with --unfit."
+        f"{unfit:,} of them {are} for a workshop (the part may lie anywhere, or one peg hardly "
+        "holds) and not shown: --unfit shows them."
     )
 
 
@@ -218,7 +218,7 @@ def standing_sentences(fixture: Fixture, result: Result, unit: Unit) -> list[str
     words = overhang_words(moved_on(fixture, toolkit, move), toolkit, result.workpiece, unit.text)
     moved = ""
     if move != (0, 0):
-        moved = f"The setup sheet has all of it in the middle of the {toolkit.plates[0].noun}, "
+        moved = f"The setup sheet puts the whole set-up in the middle of the {toolkit.plates[0].noun}, "
         moved += f"{moved_words(move)}."
     return [said for said in (moved, words) if said]
 
@@ -271,7 +271,7 @@ def pair_sentences(fixture: Fixture) -> list[str]:
     ]
     return [
         order,
-        f"Forces are stated for {' and '.join(each)} of the clamp force, which is that of both.",
+        f"Forces are stated for {' and '.join(each)} of the clamp force, which is the sum of both clamps.",
     ]
 
 
@@ -299,8 +299,8 @@ def jumps_sentence(workpiece: Workpiece) -> list[str]:
     shown = ", ".join(further[:MOST_FURTHER]) + (" and more" if len(further) > MOST_FURTHER else "")
     one = len(further) == 1
     return [
-        f"No face is called {shown}: {'that is a further piece' if one else 'these are further pieces'} of "
-        "a face drawn in pieces, such as a circle in two halves, and a face has the number of its first "
+        f"No face has the number {shown}: {'that is a further piece' if one else 'these are further pieces'} "
+        "of a face drawn in pieces, such as a circle in two halves, and a face has the number of its first "
         "piece."
     ]
 
@@ -379,10 +379,11 @@ def slides_always(workpiece: Workpiece, rows: Sequence[HeightRow]) -> list[str]:
     if any(row.touchable > 0 and not row.slides for row in rows):
         return []
     return [
-        "All that pegs of any height can touch of the part are flat faces parallel to one another, such as "
-        "the ends and shoulders of a shaft that lies: nothing keeps it from sliding along them, in this or "
-        "any other toolkit. Round sides that lie are touched by no peg: hold it in vee blocks or soft jaws "
-        "with its end against a stop, or turn another side up (--axis)."
+        "Pegs of any height can touch only flat faces that are parallel to one another, such as "
+        "the ends and shoulders of a shaft that lies. Nothing keeps the part from sliding along "
+        "them, in this or any other toolkit. Pegs do not touch round sides that lie: hold the "
+        "part in vee blocks or soft jaws with its end against a work stop, or turn another side "
+        "up (--axis)."
     ]
 
 
@@ -405,7 +406,7 @@ def other_heights(workpiece: Workpiece, rows: Sequence[HeightRow], unit: Unit) -
     longest = sorted(others, key=lambda row: (-row.touchable, -row.high))[:MOST_NAMED]
     named = [f"--peg-height {unit.number(row.high)}" for row in longest]
     turned = other_way_up(solid.axis)
-    offers = f"its other side up (--axis={turned}): workhold features shows what each of them offers."
+    offers = f"its other side up (--axis={turned}): workhold features shows what pegs can touch in each."
     if not named:
-        return [f"What may help is {offers}"]
-    return [f"What may help is another outline, that of {', '.join(named)}, or {offers}"]
+        return [f"This may help: {offers}"]
+    return [f"Another outline may help, that of {', '.join(named)}, or {offers}"]

@@ -58,7 +58,7 @@ def typed_options() -> dict[str, Any]:
     """Makes the attributes of :class:`ToolkitWords` in the order of the help, from the field table."""
     out = {
         "vise": option(
-            TOOLKIT_SECTION, "NAME|FILE", "The same as --toolkit; the options below change what it says."
+            TOOLKIT_SECTION, "NAME|FILE", "The same as --toolkit; the options below change its values."
         ),
         "toolkit": TOOLKIT,
     }

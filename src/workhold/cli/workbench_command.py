@@ -115,7 +115,7 @@ def workbench(
         typer.Argument(metavar="FOLDER", help="The folder with order.json, where the answer goes as well."),
     ],
 ) -> None:
-    """Answer FreeCAD's workbench: design, and the bodies and pictures of the fixture that is put in.
+    """Answer FreeCAD's workbench: design, and give the bodies and pictures of the chosen fixture.
 
     Example: workhold workbench /tmp/order
     """

@@ -87,8 +87,8 @@ class CopiesTask:
 def copies(result_file: ResultArgument, number: RankArgument, *, words: CopiesWords) -> None:
     """Report how many copies of fixture N a plate holds at once, and where each stands.
 
-    The fixture is repeated by whole columns and rows, so that parts, pegs and clamps of the copies are clear
-    of each other.
+    The command repeats the fixture by whole columns and rows, so that the parts, pegs and clamps of the
+    copies keep clear of each other.
 
     Example: workhold copies part.json 1 --columns 20 --rows 15 --draw plate.png
     """
@@ -210,7 +210,7 @@ def drill(
 ) -> None:
     """Write the plates of a vise's jaws with their dowel holes and bolt holes, to drill them from.
 
-    Holes that are blocked are not drilled. The file is in mm, the plates side by side.
+    Blocked holes are left out. The file is in mm, and the plates lie side by side.
 
     Example: workhold drill --vise plate-20mm --rows 6 --bolts '10,10;10,90' --bolt-diameter 6.6 -o plates.dxf
     """

@@ -48,7 +48,7 @@ def write_hardware(column: TextColumn, sheet: Sheet) -> None:
     ]
     column.table(["", f"Ø {lengths.sign}", f"length {lengths.sign}"], rows, BODY)
     if any(item.note == OF_TIP for item in items):
-        column.paragraph("Ø of a clamp: that of its tip.", NOTE)
+        column.paragraph("The Ø of a clamp is that of its tip.", NOTE)
     plate = sheet.toolkit.plates[0]
     if sheet.dowel:
         column.paragraph(f"{plate.peg.capitalize()}s: {sheet.dowel}.", NOTE)
@@ -73,7 +73,7 @@ def write_hardware(column: TextColumn, sheet: Sheet) -> None:
         shorter = dowel_for(sheet.toolkit.peg_diameter, pressed + heights.supported_by)
         what = "shorter ones" if shorter is None else f"dowels of {shorter.name}"
         column.paragraph(
-            f"No {plate.peg} presses above {lengths.words(pressed)}, so {what} do as well.", NOTE
+            f"No {plate.peg} is pressed above {lengths.words(pressed)}, so {what} are long enough too.", NOTE
         )
 
 

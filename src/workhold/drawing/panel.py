@@ -291,7 +291,7 @@ def draw_peg_table(column: TextColumn, fixture: Fixture, toolkit: Toolkit, lengt
     column.y += 2
     column.words(toolkit.datum.centres(pegs_words(toolkit)), 11, fill=GREY)
     of = "both clamps' force" if len(fixture.travels) > 1 else "clamping force"
-    column.words(f"Force: on the part, per unit of {of}.", 11, fill=GREY)
+    column.words(f"Forces act on the part, for each unit of {of}.", 11, fill=GREY)
     column.rule()
 
 

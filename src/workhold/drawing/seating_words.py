@@ -125,11 +125,11 @@ class SeatingSentences:
         capture, room = seating.capture_opening, seating.drop_room
         widest = inf if seating.most is None else seating.most
         if seating.is_untold:
-            steps = ["From where on the part is caught is not known: put it in its place and hold it there."]
+            steps = ["It is not known how far you may open: put the part in its place and hold it there."]
         elif capture is None or room is None:
             steps = [f"{ways.open} as far as you like: the part cannot get to another place on these pegs."]
         elif self.own.jaw_separation + self.seating.clamping * capture > widest:
-            steps = [f"{ways.open} as far as possible: nowhere on the way can the part get to another place."]
+            steps = [f"{ways.open} as far as possible: the part cannot get to another place on the way."]
         else:
             steps = [
                 f"{ways.open} to {self.reads(self.short_of(capture))} {most}, {self.bound(capture)} from "
@@ -139,18 +139,18 @@ class SeatingSentences:
         if within is not None:
             shift, turn = within
             steps.append(
-                f"Put the part in within {self.bound(shift)} and {down(turn)}° of its place, as far as the "
-                "pegs let it: from there it comes home."
+                f"Put the part in within {self.bound(shift)} and {down(turn)}° of its place, as far as "
+                "the pegs let it: from there it settles in its place."
             )
         steps.append(
-            f"{ways.close.capitalize()}. Right is {right}. While {more} is read, the part is stuck short of "
-            "its place: tap it home."
+            f"{ways.close.capitalize()}. The right reading is {right}. While the reading is {more}, "
+            "the part is stuck short of its place: tap it home."
         )
         least = f"{seating.sticking_friction:.2f}"
         if seating.sticking_friction < DRY_STEEL:
             steps.append(
-                f"It can stick from a friction of {least} on, and dry steel has 0.1 to 0.2: tap it home "
-                "meanwhile."
+                f"The part can stick if the friction is {least} or more, and dry steel has 0.1 to 0.2: "
+                "tap it home as you close."
             )
         return steps
 
@@ -162,16 +162,16 @@ class SeatingSentences:
         wrong, over = self.wrong, sum(seat.mirrored for seat in self.wrong)
         turned = "" if not over else f", {f'{over} of them ' if over < len(wrong) else ''}turned over"
         places = "one wrong place" if len(wrong) == 1 else f"{len(wrong)} wrong places"
-        words = [f"The same pegs{reach} hold the part in no wrong place."]
+        words = [f"There is no wrong place in which the same pegs{reach} hold the part."]
         if wrong:
-            hint = "see how the part lies, the reading alone does not show it"
+            hint = "look how the part lies, because the reading alone does not show it"
             if abs(wrong[0].difference) >= CLOSE_READING:
                 hint = "the reading shows it"
             words = [f"The same pegs{reach} can hold the part in {places}{turned}: {hint}."]
         if self.alike:
             words.append(
-                f"In {self.alike} more it lies turned round or over and covers its place all the same, which "
-                "no reading shows it: mark the part."
+                f"In {self.alike} more places it lies turned round or upside down and covers the right "
+                "place all the same. No reading shows that: mark the part."
             )
         return [*words, *map(sentence, seating.unsettled)]
 
@@ -179,39 +179,43 @@ class SeatingSentences:
         """A sentence on how a closing ended, see ``seating.closing_simulation.ENDINGS``, with the reading."""
         read, stop = self.reads(self.gauge.at(travelled)), STOPPED[self.gauge.carrier.measure]
         if seat is not None and ending == "right":
-            return f"It comes home: {read}."
+            return f"The part is in its place: {read}."
         if seat is not None and ending == "same place":
             way = "turned over" if seat.mirrored else "turned round"
-            return f"It covers its place, but {way}: {read}, which shows nothing. Mark the part."
+            return (
+                f"The part covers its place, but {way}: {read}. The reading does not show it: mark the part."
+            )
         if seat is not None:
             unsure = {"loose": " that does not locate it", "unsettled": " that is not settled"}
             kind = unsure.get(seat.kind, "")
             off = self.difference(seat)
-            read_as = "as when it is right" if off == "the same" else f"{off} than when it is right"
-            return f"It comes to rest in a wrong place{kind}: {read}, {read_as}."
+            read_as = (
+                "the same as in the right place" if off == "the same" else f"{off} than in the right place"
+            )
+            return f"The part comes to rest in a wrong place{kind}: {read}, {read_as}."
         return {
             "stop": f"The part lies loose beside the pegs: {stop}, {read}.",
             "outside": f"The part slips out: {stop}, {read}.",
-            "elsewhere": f"It comes to rest where a nudge moves it on: {read}.",
-        }.get(ending, f"The way could not be followed to its end; the last reading is {read}.")
+            "elsewhere": f"The part comes to rest, but a nudge moves it on: {read}.",
+        }.get(ending, f"The motion could not be followed to its end; the last reading is {read}.")
 
     def cautions(self) -> list[tuple[str, str]]:
         """The cautions: of each its kind, "capture" or "reading", and a sentence."""
         seating, found = self.seating, list[tuple[str, str]]()
         if seating.is_untold:
-            words = "From where on the part is caught is not known: hold it in its place meanwhile."
+            words = "It is not known how far you may open: hold the part in its place while you close."
             found.append(("capture", words))
         elif seating.capture_opening is not None and seating.is_hardly_caught:
             words = (
-                f"The part is caught from next to nothing: {self.gauge.ways.done.lower()} by "
+                f"The part settles only from very close: {self.gauge.ways.done.lower()} by "
                 f"{self.bound(seating.capture_opening)} it may come to rest elsewhere. Hold it in its "
-                "place meanwhile, and compare the reading."
+                "place while you close, and compare the reading."
             )
             found.append(("capture", words))
         if self.wrong and abs(self.wrong[0].difference) < CLOSE_READING:
             off = self.difference(self.wrong[0])
             off = "no different" if off == "the same" else f"only {off}"
-            words = f"In a wrong place the reading is {off}: see by the picture that the part lies right."
+            words = f"In a wrong place the reading is {off}: compare the part with the picture."
             found.append(("reading", words))
         return found
 

@@ -153,7 +153,7 @@ LINE, READING, SMALL = 12.5, 11.0, 9.5
 
 def write_seating(column: TextColumn, sheet: Sheet) -> None:
     """Writes how far to open, where to put the part and what to read; or how to put it into two clamps."""
-    heading(column, "Will it end up there?")
+    heading(column, "Does the part end up there?")
     put_in, steps = sheet.details.by_hand, list[str]()
     if sheet.seating is not None:
         steps = sheet.seating.steps(sheet.workpiece)
@@ -203,7 +203,7 @@ def write_wrong_seats(column: TextColumn, sheet: Sheet) -> None:
     rest = len(words.wrong) - (len(shown) - 1)
     if rest:
         which = "one more is" if rest == 1 else f"{rest} more are"
-        column.paragraph(f"Drawn are the nearest readings; {which} off by more.", NOTE)
+        column.paragraph(f"The pictures show the nearest readings; {which} off by more.", NOTE)
 
 
 def caption(words: SeatingSentences, seat: Seat) -> list[str]:

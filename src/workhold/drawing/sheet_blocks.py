@@ -89,7 +89,7 @@ def write_pegs(column: TextColumn, sheet: Sheet) -> None:
         write_flush(column, sheet, wall)
     if words := overhang_words(sheet.fixture, toolkit, sheet.workpiece, sheet.lengths.words):
         column.paragraph(words, NOTE, bold=True)
-    added = "" if sheet.is_closed_at_once else f", both {noun}s added up, in the ratio stated below"
+    added = "" if sheet.is_closed_at_once else f"; this force is the sum of both {noun}s, in the ratio below"
     column.paragraph(f"{per} of {noun} force{added}, without friction.", NOTE)
     write_flats(column, sheet)
     write_dowel(column, sheet)
@@ -111,7 +111,7 @@ def write_flush(column: TextColumn, sheet: Sheet, wall: Carrier) -> None:
     lies = f"with {ends[0]}" if len(ends) == 1 else f"from {ends[0]} to {ends[1]}"
     words = f"The part lies flush on the {wall.noun} {lies}."
     if wall.width is not None:
-        words += f" That is {sheet.lengths.words(wall.width)} wide."
+        words += f" The {wall.noun} is {sheet.lengths.words(wall.width)} wide."
     if edge is not None:
         words += f" Row 1 of the {plate.noun} is {sheet.lengths.words(edge)} from the {wall.noun}."
     column.paragraph(words, NOTE)
@@ -134,7 +134,7 @@ def put_words(sheet: Sheet) -> str:
 
 def touch_words(sheet: Sheet) -> str:
     touch = listed([f"{peg.touching} at {peg.hole}" for peg in sheet.fixture.pegs])
-    return f"{touch}. A strip of paper at each must not pull out."
+    return f"{touch}. A strip of paper must not pull out at any of them."
 
 
 def write_opening(column: TextColumn, sheet: Sheet) -> None:
@@ -231,8 +231,8 @@ def write_order(column: TextColumn, sheet: Sheet) -> None:
     freedom = fixture.quality["clamp_freedom"]
     column.fact("clamp freedom, of 90°", f"{freedom:.1f}°", bold=True)
     column.paragraph(
-        f"{freedom_words(freedom).capitalize()}. Forces here are stated for {second} with {ratio:.2f} times "
-        f"the force of {first}, the middle of what holds.",
+        f"{freedom_words(freedom).capitalize()}. The forces on this sheet are for {second} with "
+        f"{ratio:.2f} times the force of {first}, the middle of the range that holds.",
         NOTE,
     )
 
@@ -270,7 +270,7 @@ def clamping_words(sheet: Sheet) -> str:
         return order_words(fixture)
     shares = zip(clamp_names(fixture), clamp_shares(fixture), strict=True)
     each = [f"{unit.force_words(share * force)} at {name}" for name, share in shares]
-    return f"{order_words(fixture)} {listed(each)} make the {unit.force_words(force)} given."
+    return f"{order_words(fixture)} {listed(each)} add up to the {unit.force_words(force)} given."
 
 
 CLAMPS = MovingBlocks(clamp_writers, clamp_steps)
@@ -292,7 +292,7 @@ def write_jaws(column: TextColumn, sheet: Sheet) -> None:
         where = f"A to {column_letters(first.column_count - 1)} from left to right, on each {first.noun}"
     example = f"{peg.hole} is the {first.title}'s column {column_letters(peg.column)}, row {peg.row + 1}"
     column.paragraph(f"{example}. Each {first.noun} has {size}.", BODY)
-    rows = f"Row 1 is the lowest; any row of the vise will do, the same for both {first.noun}s."
+    rows = f"Row 1 is the lowest. It can be any row of the vise, the same one on both {first.noun}s."
     if first.rows is not None:
         rows = f"Row 1 is the lowest of {first.rows}."
     column.paragraph(f"Columns: {where}. {rows}", BODY)
@@ -327,7 +327,7 @@ def place_words(sheet: Sheet) -> str:
     where = (
         "as asked" if sheet.details.is_asked_place else f"in the middle of the {sheet.toolkit.plates[0].noun}"
     )
-    return f"All stands {moved_words(sheet.details.moved)} than the fixture is listed, {where}."
+    return f"The whole set-up stands {moved_words(sheet.details.moved)} than in the list, {where}."
 
 
 def moving_words(sheet: Sheet) -> str:
@@ -342,7 +342,9 @@ def moving_words(sheet: Sheet) -> str:
                 ways.append(f"up to {plural(spare, noun)} further {way}")
     if not ways:
         return f"The set-up fits the {sheet.toolkit.noun} in this place only."
-    return f"All of it may stand {listed(ways)}; places are then measured from {sheet.datum.substitute}."
+    return (
+        f"The whole set-up may stand {listed(ways)}; then measure all places from {sheet.datum.substitute}."
+    )
 
 
 ON_THE_SHEET = (
@@ -442,7 +444,7 @@ def write_loads(column: TextColumn, sheet: Sheet) -> None:
     column.paragraph(f"{header[1].capitalize()}: {what}, without friction.", NOTE)
     if not sheet.is_closed_at_once:
         column.paragraph(
-            f"The {moving.noun} force is that of both {moving.noun}s added up, in the ratio stated.", NOTE
+            f"The {moving.noun} force is the sum of both {moving.noun}s, in the ratio above.", NOTE
         )
     if details.friction is not None:
         column.paragraph(
@@ -451,8 +453,8 @@ def write_loads(column: TextColumn, sheet: Sheet) -> None:
             NOTE,
         )
     column.paragraph(
-        f"Under each {pegs_words(sheet.toolkit)}: its largest force on the part at a {moving.noun} force "
-        f"of {at}.",
+        f"The column of each {pegs_words(sheet.toolkit)} has its largest force on the part at a "
+        f"{moving.noun} force of {at}.",
         NOTE,
     )
 
@@ -481,8 +483,9 @@ def write_bending(column: TextColumn, sheet: Sheet) -> None:
     column.fact("moves the part by up to", lengths.words(bent.movement))
     column.fact("with forces at the top", lengths.words(bent.worst_movement))
     column.paragraph(
-        f"{at[0].upper()}{at[1:]}, beside the location error. Built in at the {sheet.plates_noun}, Ø "
-        f"{lengths.short(bent.most.diameter)}; a real hole gives more.",
+        f"{at[0].upper()}{at[1:]}, on top of the location error. The pegs are taken as built in "
+        f"at the {sheet.plates_noun}, Ø {lengths.short(bent.most.diameter)}; in a real hole they "
+        "give way more.",
         NOTE,
     )
 
@@ -538,7 +541,7 @@ def write_title(column: TextColumn, sheet: Sheet) -> None:
     column.paragraph(fixture_words(sheet.fixture, sheet.toolkit), BODY)
     x0, y0, x1, y1 = sheet.workpiece.bounds
     outside = f"{sheet.lengths.number(x1 - x0)} × {sheet.lengths.words(y1 - y0)}"
-    column.words(f"Outside {outside}, as drawn", BODY, gap=0.3)
+    column.words(f"Size {outside}, as drawn", BODY, gap=0.3)
 
 
 def write_zero(column: TextColumn, sheet: Sheet) -> None:
@@ -551,7 +554,9 @@ def write_zero(column: TextColumn, sheet: Sheet) -> None:
     column.fact("turned by θ, counter-clockwise", degrees_text(turn, 4), bold=True)
     drawn = ", y ".join(map(lengths.words, zero.point))
     place = "" if sheet.zero_shown else " It lies outside the plan."
-    column.paragraph(f"In the part's drawing it is at x {drawn}.{place} x runs to the right, y upward.", NOTE)
+    column.paragraph(
+        f"In the part's drawing the zero is at x {drawn}.{place} x runs to the right, y upward.", NOTE
+    )
     # Haas takes three places behind the point (Mill Operator's Manual, G68).
     word = f"{turn:z.3f}"
     turning = f"G68 X0 Y0 R{word}" if float(word) else "no G68, as the part is not turned"
@@ -565,8 +570,8 @@ def write_zero(column: TextColumn, sheet: Sheet) -> None:
     )
     unit = "G20" if sheet.lengths.unit is INCH else "G21"
     column.paragraph(
-        f"{sheet.datum.name} at machine {' and '.join(map(lengths.words, machine))}, x along the "
-        "machine's X:",
+        f"{sheet.datum.name} is at machine {' and '.join(map(lengths.words, machine))}, and x "
+        "runs along the machine's X:",
         NOTE,
     )
     column.y += 3

@@ -143,7 +143,9 @@ class SheetDetails:
 
 # Two zeros this near to each other, in mm, are one.
 ZERO_OFF = 0.001
-UNFIT = "No fixture for a workshop: the part may lie anywhere, or one peg hardly holds. Choose another."
+UNFIT = (
+    "No workshop can use this fixture: the part may lie anywhere, or one peg hardly holds. Choose another."
+)
 
 
 @frozen
@@ -232,8 +234,13 @@ def cautions_of(
     program, zero = details.program, details.zero
     if program is not None and zero is not None and dist(zero.point, program.zero) > ZERO_OFF:
         x, y = (lengths.number(value) for value in program.zero)
-        words = f"The program's X0 Y0 is at x {x}, y {y} {lengths.sign} of the drawing, not this sheet's"
-        found.append(Caution("zero", f"{words}: set the machine's zero there, or post it anew."))
+        words = (
+            f"The program's X0 Y0 is at x {x}, y {y} {lengths.sign} of the drawing, and this sheet's "
+            "is elsewhere"
+        )
+        found.append(
+            Caution("zero", f"{words}: set the machine's zero at the program's, or post the program again.")
+        )
     for peg, distance in zip(fixture.pegs, distances, strict=True):
         if is_near_edge(distance):
             place = f"{peg.hole} touches {peg.touching} only {lengths.words(distance)} from its end"
@@ -241,7 +248,7 @@ def cautions_of(
     if is_weak(margin):
         weakest = min(fixture.pegs, key=lambda peg: peg.force)
         words = (
-            f"{weakest.hole} has only {margin:.2%} of the hold (even would be {100 // len(fixture.pegs)}%)"
+            f"{weakest.hole} has only {margin:.2%} of the hold (an even share is {100 // len(fixture.pegs)}%)"
         )
         found.append(Caution("closure", f"Weak closure: {words}."))
     largest = max(fixture.pegs, key=lambda peg: peg.force)
@@ -249,7 +256,7 @@ def cautions_of(
         alone, moving = len(fixture.travels) == 1, toolkit.moving
         pushers = f"the {moving.pushers}" if alone else f"both {moving.noun}s together"
         words = f"{largest.hole} pushes {largest.force:.1f} times as hard as {pushers}: tighten gently"
-        found.append(Caution("amplification", f"{words}, it may mark {largest.touching}."))
+        found.append(Caution("amplification", f"{words}, because it may mark {largest.touching}."))
     if is_astray(error, off):
         words = f"Pegs and faces within tolerance may still shift the part by {lengths.words(error)}"
         found.append(Caution("location", f"{words}: probe it after clamping."))
@@ -266,7 +273,7 @@ def cautions_of(
             name, peg = case.load.name or f"load {number}", fixture.pegs[case.needed.peg]
             more = lengths.unit.force_above(case.needed.value)
             words = (
-                f"Under {name} {peg.hole} lets go at the {lengths.unit.force_words(details.jaw_force)} given"
+                f"Under {name}, {peg.hole} lets go at the {lengths.unit.force_words(details.jaw_force)} given"
             )
             found.append(Caution("load", f"{words}: clamp with more than {more} {lengths.unit.force}."))
     if details.cutting is not None and (details.cutting.room or 0.0) < 0.0:
@@ -281,7 +288,7 @@ def cautions_of(
         found.append(
             Caution(
                 "pose",
-                f"The same {holes} hold this part in {ways}: make sure of angle and faces.",
+                f"The same {holes} hold this part in {ways}: check the angle and the faces.",
             )
         )
     return found

@@ -119,22 +119,25 @@ class SideFigure:
     @property
     def notes(self) -> list[str]:
         heights, words = self.view.heights, self.lengths.words
-        notes = [f"Heights in {self.lengths.sign} above the plane on which the part lies."]
+        notes = [
+            "Heights above the plane on which the part lies, in "
+            f"{'inches' if self.lengths.sign == 'in' else self.lengths.sign}."
+        ]
         if heights.head_room is None:
             notes.append("The part is drawn as a prism of its outline.")
         elif heights.known_up_to < heights.thickness:
             notes.append(
-                f"Up to {words(heights.known_up_to)} the part is drawn as wide as all that pegs can meet; "
-                "above, in pale colour, its true shape may be less: only its height is known, and the level "
-                "upper faces, dashed."
+                f"Up to {words(heights.known_up_to)} the part is drawn as wide as everything that pegs "
+                "can meet. Above, in pale colour, its true shape may be less: only its height and its "
+                "level upper faces (dashed) are known."
             )
         else:
             notes.append(
                 "The part is drawn as wide as its outline at every height; its true shape may be less."
             )
-        notes.append("Thick lines on the part: where pegs press, over the heights of their faces.")
+        notes.append("Thick lines on the part show where pegs press, over the heights of their faces.")
         if any(one.is_hidden for one in self.view.contacts):
-            notes.append("Grey names: behind the part.")
+            notes.append("Things with grey names are behind the part.")
         assumed = [
             f"{name} {words(value)}"
             for key, name, value in (
@@ -145,7 +148,7 @@ class SideFigure:
             if key in heights.assumed
         ]
         if assumed:
-            notes.append(f"Assumed, as nobody said: {'; '.join(assumed)}.")
+            notes.append(f"Assumed, because no value is given: {'; '.join(assumed)}.")
         return notes
 
     def largest(self, width: float, most: float, plan: float) -> float:

@@ -40,11 +40,13 @@ TOP_NAME = "clamp on top"
 # Where no load says how much clamp force is wanted, the margin is stated for so many units of force.
 ROUND_FORCE = 100.0
 FROM_THE_SIDE = (
-    "What begins above the plane on which the part lies comes in from the side once the part is down: "
-    "nothing promises that the part passes it on its way."
+    "Anything that begins above the plane on which the part lies comes in from the side once "
+    "the part is down. The program has not checked that the part passes it on its way."
 )
 
-HANGS = "The clamp presses where the part has air below: put something under it there, or it bends."
+HANGS = (
+    "The clamp presses where there is air below the part: put something under the part there, or it bends."
+)
 
 
 @frozen
@@ -195,8 +197,8 @@ def write_forces(column: TextColumn, sheet: Sheet, chosen: ChosenSupports) -> No
         fact_or_field(column, "clamp force wanted", None)
     if clamp.lift > 0:
         column.paragraph(
-            f"The {noun}s may lift the part off a support by where they press: at least {clamp.lift:.2f} "
-            "times their force on top holds it.",
+            f"The {noun}s may lift the part off a support, because of the heights at which they "
+            f"press: at least {clamp.lift:.2f} times their force on top holds it down.",
             NOTE,
         )
 
@@ -211,17 +213,23 @@ def tipping_words(chosen: ChosenSupports, unit: Unit) -> str:
     force = force if force > 0 else ROUND_FORCE * unit.newtons
     moment = force * chosen.clamp.arm
     words = f"{moment:.0f} N mm" if unit.newtons == 1 else unit.moment_words(moment)
-    return f"With {what} the clamp alone holds up to {words} of tipping."
+    return f"With {what} the clamp alone resists a tipping moment of up to {words}."
 
 
 def holding_up_words(sheet: Sheet, chosen: ChosenSupports) -> str:
     triple = chosen.triple
     inside = f"the centre of its area is {sheet.lengths.words(triple.standing)} inside their triangle"
     if triple.stands:
-        return f"Unclamped it stands on the three: {inside}."
+        return f"Before it is clamped the part stands on the three supports: {inside}."
     if triple.standing >= 0:
-        return f"Unclamped it tips at a touch, as {inside}: hold it down until it is clamped."
-    return "Unclamped it does not stand on the three: hold it down until it is clamped."
+        return (
+            f"Before it is clamped the part tips at a touch, because {inside}: hold it down until it "
+            "is clamped."
+        )
+    return (
+        "Before it is clamped the part does not stand on the three supports: hold it down until "
+        "it is clamped."
+    )
 
 
 def counting_words(sheet: Sheet, chosen: ChosenSupports) -> list[str]:
@@ -229,14 +237,15 @@ def counting_words(sheet: Sheet, chosen: ChosenSupports) -> list[str]:
     recounted, sentences = chosen.recounted, list[str]()
     if recounted.move != (0, 0):
         sentences.append(
-            f"So that supports have holes near the middle of the {sheet.plates_noun}, all stands "
-            f"{moved_words(recounted.move)} than the fixture is listed."
+            f"So that supports have holes near the middle of the {sheet.plates_noun}, the whole "
+            f"set-up stands {moved_words(recounted.move)} than in the list."
         )
     travelled = recounted.fixture.travel - chosen.supports.fixture.travel
     if sheet.toolkit.moving.has_lattice and abs(travelled) > 1e-6:
         sentences.append(
-            f"Supports stand between the pegs, so the opening is {sheet.lengths.words(abs(travelled))} "
-            f"{'wider' if travelled > 0 else 'narrower'} than the fixture was listed with."
+            "Supports stand between the pegs, so the opening is "
+            f"{sheet.lengths.words(abs(travelled))} {('wider' if travelled > 0 else 'narrower')} than "
+            "in the list."
         )
     return sentences
 

@@ -150,23 +150,26 @@ def side_words(workpiece: Workpiece, fixture: Fixture, lengths: LengthUnit) -> s
     if is_own_mirror_image([face.segment for face in workpiece.faces]):
         if workpiece.solid is not None:
             up = f"{workpiece.solid.axis.replace('-', '−')} of the file points up"
-            return f"Turned over, the part would fit the same pegs: make sure that {up}."
+            return f"Upside down the part would fit the same pegs too: make sure that {up}."
         return (
-            "The outline is its own mirror image: either side up looks alike and lies in the same pegs. If "
-            "the sides differ, mark the upper one first."
+            "The outline is its own mirror image: the part looks alike and lies in the same pegs "
+            "either side up. If the sides differ, mark the upper one first."
         )
     marks = distinguishing_marks(workpiece)
     if marks is None:
         return (
-            "The outline differs from its mirror image, but by nothing that is plain to see: mark the upper "
-            "side first, and hold the part beside the plan."
+            "The outline differs from its mirror image, but the difference is hard to see: mark the "
+            "upper side first, and hold the part beside the plan."
         )
     (x, y), places = fixture.pose.apply(*workpiece.center), []
     for mark in marks:
         there = fixture.pose.apply(mark.place[0] + workpiece.center[0], mark.place[1] + workpiece.center[1])
         eighth = round(atan2(there[1] - y, there[0] - x) / (pi / 4)) % 8
         places.append(f"{mark.words(lengths)} at the {EIGHTHS[eighth]}")
-    return f"Lying as in the plan, it has {places[0]} and {places[1]}. Turned over, it never has."
+    return (
+        f"The right way up, lying as in the plan, the part has {places[0]} and {places[1]}. "
+        "Upside down it never has both there."
+    )
 
 
 def write_side_up(column: TextColumn, sheet: Sheet) -> None:
@@ -189,7 +192,8 @@ def side_up_words(solid: SolidOutline, before: FirstSide | None) -> list[str]:
         return [f"The same side is up as in the first set-up: {up} of the file.", *face_words(before)]
     was = before.up_before.replace("-", "−")
     return [
-        f"Second side up: {up} of the file points up, {was} did before. The part is {before.turned}.",
+        f"This is the second side: {up} of the file points up, and {was} did before. The part is "
+        f"{before.turned}.",
         *face_words(before),
     ]
 
@@ -202,7 +206,7 @@ def face_words(before: FirstSide) -> list[str]:
             f"set-up cuts {cut} of the solid."
         )
     elif before.cut_of_solid:
-        found.append(f"What the first set-up cuts ({cut} of the solid) is not in reach of the pegs here.")
+        found.append(f"The pegs cannot reach the faces that the first set-up cuts ({cut} of the solid).")
     else:
         found.append("The first set-up names no face that it cuts.")
     if before.shared:
@@ -212,7 +216,7 @@ def face_words(before: FirstSide) -> list[str]:
             "fixture."
         )
     else:
-        found.append("No face is touched in both set-ups: what one locates on, the other does not.")
+        found.append("No face is touched in both set-ups: they locate on different faces.")
     return found
 
 

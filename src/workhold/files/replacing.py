@@ -100,7 +100,7 @@ def refuse_replacing(path: Path, inputs: Iterable[str | Path | None], force: boo
     if not path.is_file():
         return
     if any(is_same(path, given) for given in inputs if given is not None):
-        raise InputError(f"{path} is also what is read: give the output another name.")
+        raise InputError(f"{path} is also an input: give the output another name.")
     if not force and not is_own(path):
         raise InputError(f"{path} was not written by workhold: give another name, or {called} to replace it.")
 

@@ -135,7 +135,7 @@ class CsvTable:
             if last >= len(self.names):
                 raise InputError(
                     f"{self.place(line=line)} has {last + 1} cells under {len(self.names)} names: put a cell "
-                    f"with {called(self.mark)} in double quotes, or leave out what is too much."
+                    f"with {called(self.mark)} in double quotes, or leave out the cells that are too many."
                 )
             for k in given:
                 if not self.names[k]:

@@ -23,8 +23,8 @@ from workhold.fixels.table import (
 
 # The names of kinds that people give, and what they are.
 NAMES: Mapping[str, str] = {
-    "vise": "closing clamps the part",
-    "opening-vise": "opening does, from inside its holes or around a waist",
+    "vise": "a vise that clamps the part by closing",
+    "opening-vise": "a vise that clamps by opening, from inside the part's holes or around a waist",
     "gripper": "a vise of one column",
     "plate": "three locators on a plate of holes, and a clamp or two",
     "fence": "a straight wall that the part lies flush against, one locator and a clamp",
@@ -91,7 +91,7 @@ BODY_RADIUS = ToolkitField(
     figure="radius of the pegs' bodies",
     follows="peg_radius",
     at_least="peg_radius",
-    below="body radius {value:g} is not one of a peg of radius {least:g}: give that or more, in mm.",
+    below="body radius {value:g} is less than the peg radius {least:g}: give the peg radius or more, in mm.",
     lifted=Lifted("bodies that would overlap", "bodies", "with pegs without a shoulder"),
     least="0",
     belongs_to="jaws",
@@ -100,8 +100,8 @@ FLAT = ToolkitField(
     "flat",
     "flat",
     (
-        "Pegs with a flat so far from their centre, turned so that it lies on straight faces, and half its "
-        "width."
+        "Distance of a peg's flat from the peg's centre, and half the flat's width. The peg is "
+        "turned so that the flat lies on straight faces."
     ),
     (PageLabel("Centre to flat", "round, no flat"),),
     entry="write its distance from a peg's centre, or that and half its width, such as [2.5, 1.5]",
@@ -154,8 +154,8 @@ MAX_OPENING = ToolkitField(
 JAW_WIDTH = ToolkitField(
     "jaw_width",
     "length",
-    "Of a flat jaw: how wide the jaws are, the peg plate in their middle; endless if not given. Needs the "
-    "number of columns.",
+    "For a flat jaw: the width of the jaws, with the peg plate in their middle; endless if "
+    "not given. Needs the number of columns.",
     (PageLabel("Width of the jaws", "endless"),),
     figure="width of the jaws",
     unset="endless",
@@ -175,7 +175,7 @@ ROW_OFFSET = ToolkitField(
 CLAMPS = ToolkitField(
     "clamps",
     "count",
-    "2: two clamps that are needed together, as for a plain rectangle square to the plate; 1 if not given.",
+    "1 or 2 clamps; two are needed together, as for a plain rectangle square to the plate. 1 if not given.",
     (PageLabel("Clamps", "1", is_usual=True, choices=(Choice(1, "one"), Choice(2, "two, needed together"))),),
     default=1,
     figure="clamps, needed together",
@@ -201,8 +201,8 @@ CLAMP_RADIUS = ToolkitField(
 TRAVEL = ToolkitField(
     "travel",
     "span",
-    "Least and most from the hole that the clamp is bolted in to its tip; any, with nothing asked of its "
-    "body, if not given.",
+    "Stroke of the clamp: the least and the most from the hole of its bolt to its tip. If "
+    "not given, any stroke does, and the clamp's body is not checked.",
     (PageLabel("Stroke", "any"),),
     figure="from the clamp's hole to its tip",
     unset="any",
@@ -215,9 +215,10 @@ TRAVEL = ToolkitField(
 DIRECTION = ToolkitField(
     "directions",
     "directions",
-    "In which the clamp may push: among -x, +x, -y, +y, such as {option}=-x,-y; all that a turn of the "
-    "plate does not make of another one, if not given. Of two clamps pairs, such as {option}=-x:-y,-x:+y, or "
-    "single ones for all pairs of them.",
+    "Directions in which the clamp may push: among -x, +x, -y, +y, such as {option}=-x,-y. "
+    "If not given, all directions that a turn of the plate does not make equal to another "
+    "one. For two clamps give pairs, such as {option}=-x:-y,-x:+y, or single directions for "
+    "all pairs of them.",
     (
         PageLabel("The clamp pushes", "all that differ", several=True, choices=WAYS, when=ONE_CLAMP),
         PageLabel("The clamps push", "across each other", several=True, choices=PAIRS, when=TWO_CLAMPS),
@@ -231,7 +232,7 @@ DIRECTION = ToolkitField(
 WALL_OFFSET = ToolkitField(
     "wall_offset",
     "length",
-    "Of a fence: distance from its wall to the first row of holes' centres; must be given.",
+    "For a fence: distance from its wall to the centres of the first row of holes; must be given.",
     (PageLabel("Fence to row 1", is_usual=True),),
     figure="from the fence to the first row of holes",
     default=REQUIRED,
@@ -253,8 +254,8 @@ def heights_of(carrier: str, whose: str, belongs_to: str) -> ToolkitField:
     return ToolkitField(
         f"{carrier}_heights",
         "heights",
-        f"Between which {whose} can touch, above the plane on which the part lies; as all pegs do, up to the "
-        "peg height, if not given.",
+        f"Heights between which {whose} can touch, above the plane on which the part lies. If not "
+        "given, they reach up to the peg height, as all pegs do.",
         (PageLabel(f"Heights of {whose}", "as all pegs"),),
         figure=f"heights of {whose}",
         entry="write the lower and the upper end above the plane on which the part lies, such as [6, 14]",

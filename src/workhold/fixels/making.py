@@ -165,7 +165,7 @@ def direction_names(value: str | Iterable[Any] | None) -> tuple[Any, ...]:
         return ()
     names = list(value) if isinstance(value, Iterable) and not isinstance(value, str) else [value]
     if not names:
-        raise InputError(f"there is no direction for the clamp: choose among {', '.join(DIRECTIONS)}.")
+        raise InputError(f"the clamp has no direction: choose among {', '.join(DIRECTIONS)}.")
     if any(isinstance(name, str) for name in names):
         for name in names:
             refuse_direction(name)
@@ -186,7 +186,7 @@ def refuse_direction(name: Any) -> None:
     """Refuses what is no direction of a clamp."""
     if not isinstance(name, str) or name not in DIRECTIONS:
         raise InputError(
-            f"direction {name!r} is none in which a clamp moves: choose among {', '.join(DIRECTIONS)}."
+            f"a clamp cannot move in the direction {name!r}: choose among {', '.join(DIRECTIONS)}."
         )
 
 
@@ -194,14 +194,13 @@ CONVERTERS: dict[str, Callable[[Any], Any]] = {
     "pitch": pair,
     "span": partial(
         two_lengths,
-        wrong="travel {value} is not two lengths: give the least and the most that the clamp stretches, "
-        "in mm.",
+        wrong="travel {value} is not two lengths: give the least and the most stroke of the clamp, in mm.",
     ),
     "flat": flat_of,
     "heights": partial(
         two_lengths,
-        wrong="heights {value} are not two: give the lower and the upper end of what touches the part, "
-        "in mm.",
+        wrong="heights {value} are not two lengths: give the lower and the upper end of the part that "
+        "touches, in mm.",
     ),
     "directions": direction_names,
 }
@@ -245,15 +244,15 @@ def refuse_out_of_bounds(toolkit: Any, row: ToolkitField) -> None:
         case "span" if value is not None:
             if not 0 <= value[0] <= value[1] < inf:
                 raise InputError(
-                    f"{row.words} {value[0]:g} to {value[1]:g} is none that a clamp has: give the least and "
-                    "the most from its hole to its tip, in mm."
+                    f"{row.words} {value[0]:g} to {value[1]:g} is not possible: give the least and the most "
+                    "from the clamp's hole to its tip, in mm."
                 )
             refuse_long(row.words, value[1])
         case "heights" if value is not None:
             if not 0 <= value[0] < value[1] < inf:
                 raise InputError(
-                    f"{row.words} {value[0]:g} to {value[1]:g} are none: give the lower end, 0 or more, and "
-                    "then the upper one, in mm above the plane on which the part lies."
+                    f"{row.words} {value[0]:g} to {value[1]:g} are not possible: give the lower end, 0 or "
+                    "more, and then the upper one, in mm above the plane on which the part lies."
                 )
             refuse_long(row.words, value[1])
         case "pitch":

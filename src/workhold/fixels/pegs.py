@@ -55,7 +55,7 @@ def flat_of(value: Any) -> Flat | None:
     )
     if not 1 <= len(numbers) <= 2 or any(isinstance(number, (str, Mapping)) for number in numbers):
         raise InputError(
-            f"flat {value!r} is none: give its distance from the peg's centre, and half its width, in mm."
+            f"flat {value!r} cannot be used: give its distance from the peg's centre, and half its width, in mm."
         )
     return Flat(*numbers)
 
@@ -66,8 +66,8 @@ def resolved_flat(flat: Flat | None, peg_radius: float) -> Flat | None:
         return None
     if not (isfinite(flat.distance) and 0 <= flat.distance <= peg_radius):
         raise InputError(
-            f"a flat {flat.distance:g} mm from the centre is none of a peg of radius {peg_radius:g}: give 0 "
-            "or more, and no more than the radius."
+            f"a peg of radius {peg_radius:g} mm cannot have a flat {flat.distance:g} mm from its "
+            "centre: give 0 or more, and no more than the radius."
         )
     widest = sqrt(peg_radius**2 - flat.distance**2)
     half_width = widest if flat.half_width != flat.half_width else flat.half_width
@@ -75,8 +75,8 @@ def resolved_flat(flat: Flat | None, peg_radius: float) -> Flat | None:
         # Rounded down, so that it can be given.
         most = floor(widest * 1e3) / 1e3
         raise InputError(
-            f"half a width of {half_width:g} mm is none of a flat {flat.distance:g} mm from the centre of a "
-            f"peg of radius {peg_radius:g}: give up to {most:.10g}."
+            f"a flat {flat.distance:g} mm from the centre of a peg of radius {peg_radius:g} mm cannot "
+            f"have half a width of {half_width:g} mm: give up to {most:.10g}."
         )
     return evolve(flat, half_width=half_width)
 

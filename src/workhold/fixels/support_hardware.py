@@ -65,8 +65,8 @@ PADS = FieldTable(
             "0",
             "radius of the supports' pads",
             "Pad radius",
-            "Radius of the supports' round pads; the toolkit's, or 4mm, or less where the holes ask for it, if "
-            "not given.",
+            "Radius of the supports' round pads. If not given, the toolkit's, or 4mm, or less where "
+            "the distance of the holes asks for less.",
             SUPPORTS_SECTION,
         ),
         length_row(
@@ -114,24 +114,24 @@ CLAMP = FieldTable(
             "above 0",
             "radius of the head of the clamp on top",
             "Head radius",
-            "Radius of the clamp's head, within which nothing of the part rises above the face; the toolkit's, or "
-            "one and a half times the tip's, if not given.",
+            "Radius of the clamp's head. Within this radius nothing of the part rises above the "
+            "face. If not given, the toolkit's, or one and a half times the tip's radius.",
             CLAMP_SECTION,
         ),
         ToolkitField(
             "reach",
             "rings",
-            "Where the tip of the clamp on top can stand.",
+            "Places in which the tip of the clamp on top can stand.",
             (PageLabel("Reaches about x, y from least to most", "anywhere"),),
-            typed="A ring about a point of the toolkit in which the tip can stand; the toolkit's, or everywhere, if "
-            "not given.",
+            typed="A ring about a point of the toolkit, in which the tip of the clamp can stand. If not "
+            "given, the toolkit's rings, or everywhere.",
             section=CLAMP_SECTION,
         ),
     ),
 )
 LIMITS = FieldTable(
     PINS,
-    "What pins may take",
+    "Limits of pins",
     (
         ToolkitField(
             "stress_limit",
@@ -164,7 +164,7 @@ def refuse_wrong(hardware: Hardware) -> None:
             for ring in value or ():
                 if len(ring) != 4 or not all(map(isfinite, ring)) or not 0 <= ring[2] <= ring[3]:
                     raise InputError(
-                        f"{words} is no list of rings: give of each x, y, the least and the most distance."
+                        f"{words} is no list of rings: give for each ring x, y, the least and the most distance."
                     )
                 for one in ring:
                     refuse_long(words, one)
@@ -291,5 +291,5 @@ def hardware_of(name: str, value: Any) -> Hardware | None:
         given = value.get(row.name)
         if given is not None and isinstance(given, list | tuple) != (row.form == "rings"):
             wanted = "a list of rings [x, y, least, most]" if row.form == "rings" else "one number"
-            raise InputError(f"{words}{row.words} is not what it should be: give {wanted}.")
+            raise InputError(f"{words}{row.words} cannot be used: give {wanted}.")
     return kind(**value)

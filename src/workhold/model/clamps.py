@@ -235,8 +235,9 @@ def order_words(fixture: Fixture) -> str:
             "force: more lifts the part off a locator."
         )
     return (
-        f"Bring both up together, in small turns: {second} with {inside(low, ceil)} to {inside(high, floor)} "
-        f"times the force of {first}. Neither may be tightened alone: it lifts the part off a locator."
+        f"Bring both clamps up together, in small turns: {second} with {inside(low, ceil)} to "
+        f"{inside(high, floor)} times the force of {first}. Tighten neither alone: it lifts the "
+        "part off a locator."
     )
 
 
@@ -247,7 +248,7 @@ def freedom_words(degrees: float) -> str:
     ('any two forces hold', 'no torque wrench is needed', 'both forces have to be right: use a torque wrench')
     """
     if degrees >= 90.0 - 1e-9:
-        return "any two forces hold"
+        return "the part is held whatever the two forces are"
     return (
         "no torque wrench is needed"
         if degrees >= EASY

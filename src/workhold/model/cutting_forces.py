@@ -112,7 +112,9 @@ class CuttingForces:
         is_one = (first >= 0.0) & (first < last) & (last <= 1.0)
         rise = (own[1:] > own[:-1]) | ((own[1:] == own[:-1]) & (first[1:] >= last[:-1]))
         if not (is_one.all() and rise.all() and ((own >= 0) & (own < count)).all()):
-            raise InputError("a stretch of a cut is none: give shares from 0 to 1, the lower one first.")
+            raise InputError(
+                "a stretch of a cut cannot be used: give shares from 0 to 1, the lower one first."
+            )
 
     @property
     def acts(self) -> NDArray[np.bool_]:

@@ -72,7 +72,7 @@ class CutMaterial:
     def __attrs_post_init__(self) -> None:
         if not (0.0 < real(self.kc) <= MOST_SPECIFIC and 0.0 <= real(self.mc) < 1.0):
             raise InputError(
-                f"a material with kc1.1 {self.kc:g} and mc {self.mc:g} is none: give N/mm2 up to "
+                f"a material with kc1.1 {self.kc:g} and mc {self.mc:g} cannot be used: give N/mm2 up to "
                 f"{MOST_SPECIFIC:g} and a number from 0 to below 1, such as 1500,0.22."
             )
 
@@ -264,8 +264,8 @@ class Cylinder:
         if not (0.0 <= self.low < self.high and isfinite(self.high) and 0.0 < self.radius < inf):
             raise InputError(
                 f"a cylinder of a tool from {self.low:g} to {self.high:g} mm with a radius of "
-                f"{self.radius:g} mm is none: give heights above the tip, the lower one first, and a "
-                "positive radius."
+                f"{self.radius:g} mm is not possible: give heights above the tip, the lower one first, "
+                "and a positive radius."
             )
         refuse_long("a tool's length", self.high)
         refuse_long("a tool's radius", self.radius)

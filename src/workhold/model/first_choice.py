@@ -46,13 +46,13 @@ FACTORS = (
         "quarter_turn",
         1.05,
         "turned by 90°, 180° or 270°",
-        "The program has to be turned, or the part is put in wrong; jaws that are equal do not ask for it.",
+        "The program has to be turned as well, or the part is put in wrong; equal jaws do not need the turn.",
     ),
     Factor(
         "other_angle",
         1.5,
         "turned aslant",
-        "Nobody can square the part up with a square or an indicator along the axes of the machine.",
+        "A square or an indicator along the machine's axes cannot square the part up.",
     ),
     Factor(
         "face_end",
@@ -64,19 +64,19 @@ FACTORS = (
         "clamp_in_hole",
         1.25,
         "clamped from inside a hole",
-        "The clamp stands where the hole is machined, is hard to reach, and its chips stay.",
+        "The clamp stands where the hole is machined, it is hard to reach, and chips collect there.",
     ),
     Factor(
         "dowel_in_bore",
         1.1,
         "located from inside a hole",
-        "The hole has to be there and true before, the part has to be threaded over the dowel.",
+        "The hole must already be there and true, and the part must be threaded over the dowel.",
     ),
     Factor(
         "hangs_over",
         1.1,
         "hanging over the plate",
-        "What hangs over is not held up under the tool, and is in the way beside the plate.",
+        "The overhang is not supported under the tool, and it is in the way beside the plate.",
     ),
 )
 

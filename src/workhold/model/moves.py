@@ -333,10 +333,10 @@ def packed_piece(entries: Mapping[str, Any]) -> bytes:
     line, tool, kind = int(entries["line"]), int(entries["tool"]), entries["kind"]
     path = tuple((real(x), real(y), real(bulge)) for x, y, bulge in entries["path"])
     if kind not in (RAPID, CUT) or not path or line.bit_length() > 62:
-        raise InputError(f"a piece of line {line} of the program is none: leave it out.")
+        raise InputError(f"a piece of line {line} of the program cannot be used: leave it out.")
     (x, y, bulge), (to_x, to_y, _) = path[0], path[len(path) // 2]
     if len(path) > 2 and path != box_path((x, y), (to_x, to_y)):
-        raise InputError(f"a piece of line {line} of the program is none: leave it out.")
+        raise InputError(f"a piece of line {line} of the program cannot be used: leave it out.")
     ends = (x, y, bulge, to_x, to_y, *pair_of(entries["z"]))
     if not all(map(isfinite, ends)):
         raise InputError(f"a move of line {line} of the program ends nowhere: correct it.")

@@ -82,9 +82,9 @@ def met_by(workpiece: Workpiece, toolkit: Toolkit) -> Workpiece:
         own = known.get(role)
         if own is None or own.solid is None or (own.solid.low, own.solid.peg_height) != (low, high):
             raise InputError(
-                f"the {role} of this {toolkit.noun} touches from {low:g} to {high:g} mm, and "
-                f"{workpiece.name} was read without these heights: read the file of the solid with them, as "
-                "workhold design does, or in Python load(..., heights=toolkit.heights)."
+                f"the {role} of this {toolkit.noun} touches from {low:g} to {high:g} mm, but "
+                f"{workpiece.name} was read without these heights: read the file of the solid with them, "
+                "as workhold design does, or in Python load(..., heights=toolkit.heights)."
             )
         chosen.append((role, own))
     outlines = tuple(chosen)

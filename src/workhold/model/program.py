@@ -128,13 +128,15 @@ class Program:
 
     def __attrs_post_init__(self) -> None:
         if self.unit not in UNITS or self.rapid not in WAYS:
-            raise InputError(f"a program is in {' or '.join(UNITS)}, its rapid moves {' or '.join(WAYS)}.")
+            raise InputError(
+                f"the unit of a program is {' or '.join(UNITS)}, and its rapid moves are {' or '.join(WAYS)}."
+            )
         for what, value in (("zero", self.zero[0]), ("zero", self.zero[1]), ("z_zero", self.z_zero)):
             if not isfinite(value):
                 raise InputError(f"{what} of the program is no place: give a length in mm.")
             refuse_long(f"{what} of the program", value)
         if not 0.0 <= self.clearance < inf:
-            raise InputError(f"the clearance {self.clearance:g} is none: give 0 or more, in mm.")
+            raise InputError(f"the clearance {self.clearance:g} cannot be used: give 0 or more, in mm.")
         missing = set(np.unique(self.moves.tool).tolist()) - set(self.tools)
         if missing:
             raise InputError(f"the program uses T{min(missing)}, which is not among its tools.")

@@ -150,7 +150,7 @@ FIGURES = (
         "jaw_force_needed",
         "N",
         False,
-        "The jaw force, the jaw locked by its screw, above which no peg lets go under any load.",
+        "The force of a jaw that its screw locks, above which no peg lets go under any load.",
         1,
     ),
     Figure(
@@ -166,13 +166,13 @@ FIGURES = (
         True,
         "The smallest face touched: the length of a straight one, the radius of an arc.",
     ),
-    Figure("warnings", "", False, "How many things there are to beware of.", 0),
+    Figure("warnings", "", False, "The number of warnings.", 0),
     Figure("penalty", "", False, "Points for location error, tilt, a strong peg and a small face.", 0),
     Figure(
         "clamp_freedom",
         "deg",
         True,
-        "By how much the forces of two clamps may differ: 90 is any two forces.",
+        "How much the forces of two clamps may differ: at 90 any two forces hold the part.",
         1,
     ),
     Figure(
@@ -218,18 +218,31 @@ SEATING_FIGURES = (
         "capture_opening",
         "mm",
         True,
-        "How far jaws may stand open, or a clamp be drawn back, for the part to come home.",
+        "How far the jaws may stand open, or the clamp be drawn back, so that the part still "
+        "settles in its place.",
     ),
-    Figure("drop_room", "mm", True, "The room at every peg when that is done so far."),
-    Figure("way_out", "mm", True, "How far it is done before the part can leave all pegs."),
-    Figure("placing", "mm", True, "How near to its place every point must be put for the part to come home."),
-    Figure("sticking_friction", "", True, "The friction below which the part cannot stick near its seat."),
-    Figure("wrong_seats", "", False, "In how many other places the same pegs can hold the part.", 0),
+    Figure("drop_room", "mm", True, "The room at every peg when they stand open so far."),
+    Figure(
+        "way_out",
+        "mm",
+        True,
+        "How far the jaws open, or the clamp is drawn back, before the part can leave all pegs.",
+    ),
+    Figure(
+        "placing",
+        "mm",
+        True,
+        "How near to its place every point of the part must be put so that the part settles there.",
+    ),
+    Figure("sticking_friction", "", True, "The friction below which the part cannot stick near its place."),
+    Figure(
+        "wrong_seats", "", False, "The number of other places in which the same pegs can hold the part.", 0
+    ),
     Figure(
         "reading",
         "mm",
         True,
-        "What a measurement of the opening, or of the clamp, must resolve to show a wrong seat.",
+        "The difference of opening, or of the clamp, that a measurement must resolve to show a wrong place.",
     ),
 )
 # Of fixtures that a program is asked to pass; it stands in the last column of their figures.
@@ -341,8 +354,8 @@ def chosen_ranking(
             )
         if RANKED[number] in SEATING_FIGURES and not seated:
             raise InputError(
-                f"the {RANKED[number].words} is known of fixtures whose seating is worked out: give of how "
-                "many, such as seating 100."
+                f"the {RANKED[number].words} is known only for fixtures whose seating is worked out: give "
+                "their number, such as seating 100."
             )
         if number in (LOAD_REACTION, JAW_FORCE_NEEDED) and not loaded:
             raise InputError(
@@ -398,7 +411,7 @@ def preferred_ranking(preference: str, loaded: Loaded, has_program: bool = False
     """
     word = preference.strip().lower()
     if word not in PREFERENCES:
-        raise InputError(f"{preference!r} is nothing to prefer: choose {', '.join(PREFERENCES)}.")
+        raise InputError(f"the preference {preference!r} is not known: choose {', '.join(PREFERENCES)}.")
     order = PREFERENCES[word]
     if word == "roomy" and has_program:
         order = (order[0], PROGRAM_FIGURE.key, *order[1:])

@@ -148,8 +148,8 @@ class Query(SearchQuestion):
                 object.__setattr__(self, "peg_height", None)
         if not self.knows_heights and not set(PIN_KEYS).isdisjoint(self.rank_by):
             raise InputError(
-                "how far pegs bend is known where it is known how high they touch the part: give its thickness, "
-                "or how high the pegs are."
+                "how far pegs bend depends on how high they touch the part, which is not known: give the "
+                "part's thickness, or the height of the pegs."
             )
         if self.listing is not None and not pairs:
             raise InputError(
@@ -160,8 +160,8 @@ class Query(SearchQuestion):
         self.refuse_untouchable()
         if self.has_seating_rules and self.seating is None:
             raise InputError(
-                "which fixtures catch the part at an opening, or are foolproof, their seating states, and "
-                "that is worked out for the first ones only: give of how many, such as seating 100."
+                "an opening, or foolproof, needs the seating of fixtures, which is worked out for the "
+                "first ones only: give their number, such as seating 100."
             )
 
     def refuse_untouchable(self) -> None:
@@ -171,8 +171,8 @@ class Query(SearchQuestion):
             return
         if toolkit.travels > 1:
             raise InputError(
-                "which faces are to be touched is not asked of two clamps: take one clamp, or list all and choose "
-                "among them."
+                "faces to touch cannot be asked for with two clamps: take one clamp, or list all and "
+                "choose among them."
             )
         if len(faces) > toolkit.peg_count:
             raise InputError(
@@ -295,14 +295,15 @@ def height_of_pegs(given: float | None, workpiece: Workpiece) -> float:
     solid = workpiece.solid
     if given is None and solid is None:
         raise InputError(
-            f"{workpiece.name} is an outline without heights, so nobody knows what of the program passes "
-            "over the pegs: give its thickness, and the peg height where pegs are not as high as the part."
+            f"{workpiece.name} is an outline without heights, so it is not known which moves of the "
+            "program pass over the pegs: give its thickness, and the peg height where pegs are not "
+            "as high as the part."
         )
     height = given if given is not None else solid.peg_height if solid is not None else 0.0
     if solid is not None and height != solid.peg_height:
         raise InputError(
-            f"pegs of {height:g} mm are asked for, and the outline is what pegs of {solid.peg_height:g} mm "
-            "can meet: read the part with the peg height."
+            f"pegs of {height:g} mm are asked for, but the outline is the one that pegs of "
+            f"{solid.peg_height:g} mm can meet: read the part with the peg height that is asked for."
         )
     return height
 

@@ -133,8 +133,8 @@ class Load:
     def __attrs_post_init__(self) -> None:
         if not isfinite(self.force) or self.force < 0:
             raise InputError(
-                f"force {self.force:g} is not a size in N: give 0 or more, and where it points as a "
-                "direction."
+                f"force {self.force:g} cannot be used: give its size in N, 0 or more, and its direction "
+                "by itself."
             )
         if not isfinite(self.moment):
             raise InputError(

@@ -180,4 +180,4 @@ class Explanation:
             return ""
         alone = all(len(help.rules) < 2 for help in self.helps)
         rules = " or ".join(self.taken_by) if alone else f"{listed(self.taken_by)} together"
-        return f"The last fixtures are taken by what was asked for: {rules}."
+        return f"What was asked for rules out the last fixtures: {rules}."

@@ -221,7 +221,7 @@ class Seating:
         caught = (
             "never lost" if self.capture_opening is None else f"caught below {self.capture_opening:.3f} mm"
         )
-        caught = "from where on it is caught is not known" if self.is_untold else caught
+        caught = "it is not known how far you may open" if self.is_untold else caught
         wrong = len(self.wrong_within())
         return f"{caught}, {wrong:,} wrong seat{'s' * (wrong != 1)}"
 
@@ -289,13 +289,13 @@ class Seating:
         """Warnings, one sentence each without a full stop; lengths in mm."""
         out, reading = list[str](), self.reading_of()
         if self.is_untold:
-            out.append("from where on the part is caught is not known")
+            out.append("it is not known how far you may open without losing the part")
         elif self.is_hardly_caught:
             out.append(
                 f"the part is caught only while {self.opened} by less than {self.capture_opening:.3f} mm"
             )
         if reading is not None and round(reading, DECIMALS) < CLOSE_READING:
-            words = f"only {reading:.3f} mm otherwise, which a caliper hardly shows"
+            words = f"only {reading:.3f} mm differently, which a caliper hardly shows"
             out.append(f"a wrong seat reads {'the same' if reading < SAME_READING else words}")
         return tuple(out)
 

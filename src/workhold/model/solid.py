@@ -65,7 +65,7 @@ def loops_of(values: Iterable[Iterable[Iterable[Any]]]) -> Loops:
     """Loops of (x, y, bulge) as tuples of floats; refuses anything else."""
     loops = tuple(tuple(tuple(real(one) for one in vertex) for vertex in loop) for loop in values)
     if any(len(vertex) != 3 or not all(map(isfinite, vertex)) for loop in loops for vertex in loop):
-        raise InputError("a loop of the solid is none: give x, y and bulge of every vertex.")
+        raise InputError("a loop of the solid cannot be used: give x, y and bulge of every vertex.")
     return loops
 
 
@@ -90,8 +90,8 @@ def runs_of(values: Iterable[Iterable[Any]]) -> tuple[RunRows, ...]:
         is_whole = all(len(row) == 3 for row in rows) and all(map(isfinite, flat))
         if not is_whole or (rows and not is_run(rows)):
             raise InputError(
-                "a run of heights of the solid is none: give shares of the segment from 0 to 1 that rise, "
-                "one and three more for every piece, each with the lower end first."
+                "a run of heights of the solid cannot be used: give shares of the segment from 0 to 1 "
+                "that rise, one and three more for every piece, each with the lower end first."
             )
         found.append(tuple((share, low, high) for share, low, high in rows))
     return tuple(found)
@@ -201,7 +201,9 @@ class SolidOutline:
                 )
         for band in self.bands:
             if band is not None and not (isfinite(band[0]) and 0.0 <= band[0] <= band[1] < 1e9):
-                raise InputError(f"the band {band[0]:g} to {band[1]:g} mm is none: give its lower end first.")
+                raise InputError(
+                    f"the band {band[0]:g} to {band[1]:g} mm cannot be used: give its lower end first."
+                )
 
     @classmethod
     def of_entries(cls, solid: Mapping[str, Any], workpiece: Mapping[str, Any]) -> SolidOutline:

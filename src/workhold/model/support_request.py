@@ -310,7 +310,7 @@ class SupportRequest:
         """
         solid = workpiece.solid
         if thickness is None and solid is None:
-            raise InputError("how thick the part is, is not known: give its thickness in mm.")
+            raise InputError("the thickness of the part is not known: give it in mm.")
         pads = toolkit.supports if toolkit is not None and toolkit.supports is not None else SupportPads()
         clamp = toolkit.top_clamp if toolkit is not None and toolkit.top_clamp is not None else TopClamp()
         pad_radius = pads.pad_radius if pad_radius is None else pad_radius

@@ -391,7 +391,7 @@ def to_model(shape: Any, workpiece: Workpiece, fixture: Fixture) -> Any:
 
     solid = workpiece.solid
     if solid is None:
-        raise InputError("the part was not read from a solid, so nobody knows where its model lies.")
+        raise InputError("the part was not read from a solid, so it is not known where its model lies.")
     turned = along(shape, solid.axis)
     low, high = bounding_box(turned)
     x0, y0, x1, y1 = workpiece.bounds

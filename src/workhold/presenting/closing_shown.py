@@ -43,7 +43,7 @@ def closing_shown(picture: LivePicture) -> dict[str, Any]:
         seating = fixture.seating or solver.of(fixture)
         return closed(picture, solver, seating)
     except InputError as error:
-        return picture.closing(words=f"The part is held in its place meanwhile: {error}")
+        return picture.closing(words=f"The part is held in its place while it is clamped: {error}")
 
 
 def closed(picture: LivePicture, solver: Solver, seating: Seating) -> dict[str, Any]:
@@ -54,7 +54,7 @@ def closed(picture: LivePicture, solver: Solver, seating: Seating) -> dict[str, 
     opening = min(picture.opened, most)
     if opening < VISIBLE:
         caught = f"The part is caught only while {seating.opened} by less than {opening / OF_CAPTURE:.3f} mm"
-        return picture.closing(words=f"{caught}: hold it in its place meanwhile.")
+        return picture.closing(words=f"{caught}: hold it in its place while you close.")
     for pose in starts(picture, fixture, seating):
         try:
             way = simulate_closing(solver, fixture, seating.seats, pose, opening)
@@ -68,7 +68,7 @@ def closed(picture: LivePicture, solver: Solver, seating: Seating) -> dict[str, 
                 for one, travelled in zip(way.poses[::-1][::every], way.travels[::-1][::every], strict=True)
             ]
             return picture.closing(keyframes[::-1], sentences.ended(way.ending, way.seat, way.travels[-1]))
-    return picture.closing(words="The part is held in its place meanwhile.")
+    return picture.closing(words="The part is held in its place while it is clamped.")
 
 
 def starts(picture: LivePicture, fixture: Fixture, seating: Seating) -> Iterator[Pose]:

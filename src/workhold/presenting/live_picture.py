@@ -257,7 +257,7 @@ class LivePicture:
                 "arrow": None,
                 "forces": [],
                 "holds": None,
-                "words": "Press on the part and drag: a force pushes there.",
+                "words": "Press on the part and drag to push it with a force.",
             }
         (case,) = load_cases(
             self.fixture, self.result.workpiece, self.result.toolkit, [push.load], jaw_force, None, jaw
@@ -277,7 +277,7 @@ class LivePicture:
             given = f"that {mover} force" if jaw_force is None and needed > 0 else f"{case.jaw_force:,.0f} N"
             words.append(f"Forces are for {given} of {jaw_words(case.jaw_stiffness, self.result.toolkit)}.")
         else:
-            words.append(f"With {case.jaw_force:,.0f} N it lets go.")
+            words.append(f"With {case.jaw_force:,.0f} N a peg lets go.")
         return {
             "arrow": self.arrow(push),
             "size": f"{push.size:,.0f} N",

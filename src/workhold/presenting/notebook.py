@@ -208,8 +208,8 @@ def supports_html(supports: Supports) -> str:
         for rank, triple in enumerate(supports.triples[:MOST_SETS], 1)
     ]
     notes = [
-        "The clamp presses at that point of the part's coordinates; where the last figure is at least "
-        f"{MILLIMETRE.text(STEADY)}, the part stands before it is clamped."
+        "The clamp presses at this point of the part's coordinates. If the last figure is at "
+        f"least {MILLIMETRE.text(STEADY)}, the part stands before it is clamped."
     ]
     if loaded:
         notes.append(f"Forces are for a closing force of {supports.jaw_force:.0f} N, without friction.")
@@ -260,7 +260,7 @@ def seating_html(seating: Seating) -> str:
             )
         )
     of = unit.abbreviation
-    pieces.append(paragraph("Where closing can come to rest:"))
+    pieces.append(paragraph("Places in which the part can come to rest:"))
     pieces.append(
         table((">seat", f">differs {of}", ">turned by", "side", f">held {of}", "how it lies"), rows)
     )
@@ -320,9 +320,11 @@ def why_none(result: Result) -> WhyNone:
     from workhold.search.explaining import explain
 
     if len(result):
-        raise InputError("there are fixtures: why there is none is asked of a result without one.")
+        raise InputError("there are fixtures: ask a result without fixtures why it has none.")
     if sum(result.found.values()) or not result.complete:
-        raise InputError(f"that there is none, was not found out. {' '.join(map(str, result.notes))}".strip())
+        raise InputError(
+            f"it is not proven that there is no fixture. {' '.join(map(str, result.notes))}".strip()
+        )
     return WhyNone(result.query, explain(result.query))
 
 

@@ -306,14 +306,16 @@ def rules_asked(problem: Problem, unit: Unit) -> list[Rule]:
 
     def untouched(c: ContactSets) -> tuple[int, str]:
         names = listed([str(face) for face in query.restrictions.touch])
-        return int(c.margin.argmax()), f"it would hold, but does not touch all that was asked: {names}."
+        return int(
+            c.margin.argmax()
+        ), f"it would hold, but it does not touch all the faces that must be touched: {names}."
 
     def imprecise(c: ContactSets) -> tuple[int, str]:
         errors = measured(table(c), problem).quality[:, LOCATION_ERROR]
         index, most = int(np.nanargmin(errors)), query.max_location_error or 0.0
         return index, (
-            f"it would hold with a location error of {unit.text(errors[index])}, and the largest that was asked "
-            f"for is {unit.figure(most)} {unit.abbreviation}."
+            f"it would hold with a location error of {unit.text(errors[index])}, but at most "
+            f"{unit.figure(most)} {unit.abbreviation} is asked for."
         )
 
     if query.restrictions.touch:
@@ -376,7 +378,9 @@ def unclamped(frame: Frame, c: ContactSets) -> tuple[int, str]:
 
 def no_place(noun: str, words: str, c: ContactSets) -> tuple[int, str]:
     """The best of what cannot be placed."""
-    return int(c.margin.argmax()), f"it would hold, but what was asked for of the {noun} forbids it: {words}."
+    return int(
+        c.margin.argmax()
+    ), f"it would hold, but the limits that were given for the {noun} forbid it: {words}."
 
 
 def on_the_edge(c: ContactSets) -> tuple[int, str]:

@@ -264,7 +264,7 @@ class OwnSetUp:
             return f"No pose of {query.workpiece.name} touches {named} at the same time, within their faces."
         how = "in one pose" if poses == 1 else f"in {poses} poses"
         why = (
-            "what moves would have to pull"
+            "the jaw or clamp would have to pull"
             if pulls == 0
             else f"{'one contact' if pulls == 1 else f'{pulls} contacts'} would have to pull the part instead of "
             "pressing on it"

@@ -224,8 +224,9 @@ def balances_without_a_locator(edges: Array, share: Array, ratio: float) -> bool
 
 
 WHY = (
-    "Neither of the two clamps holds the part alone, so from where they bring it home is not known: put it "
-    "in its place by hand. The locators alone fix that place."
+    "Neither of the two clamps holds the part alone, so it is not known from how far off "
+    "they would bring it to its place: put it there by hand. The locators alone fix that "
+    "place."
 )
 # Friction is given to so many decimals, rounded down.
 DECIMALS = 3
@@ -319,12 +320,12 @@ class ByHand:
         touched = listed(
             [f"{peg.touching} at {place_of(peg, self.toolkit)}" for peg in self.fixture.pegs[:LOCATORS]]
         )
-        out = "If none comes out, the part lies against all of them."
-        return f"Pull at a slip of paper at each: {touched}. {out}"
+        out = "If no slip comes out, the part lies against all of them."
+        return f"Pull at a slip of paper at each of these: {touched}. {out}"
 
     def hold_words(self) -> str:
         """Until when to hold the part."""
-        hold = "Hold the part in its place until both are tight"
+        hold = "Hold the part in its place until both clamps are tight"
         first, names = first_clamps(self.fixture), clamp_names(self.fixture)
         loose = [
             f"{name} alone does not press it on {listed(places_of(pegs, self.toolkit))}"
@@ -342,19 +343,19 @@ class ByHand:
         together = f"{second} with {ratio:{'.2f' if ratio >= SMALL else '.2g'}} times the force of {first}"
         if least == inf:
             return [
-                f"Tightened together, {together}, both bring home a part a little off a locator, whatever "
-                "the friction."
+                f"Tightened together, {together}, both clamps bring a part that is a little off a locator "
+                "back to it, whatever the friction."
             ]
         friction = f"{floor(least * 10.0**DECIMALS) / 10.0**DECIMALS:.{DECIMALS}f}"
         steel = "dry steel has 0.1 to 0.2"
         if least >= DRY_STEEL:
             return [
-                f"Tightened together, {together}, both bring home a part a little off a locator while "
-                f"friction is below {friction}; {steel}."
+                f"Tightened together, {together}, both clamps bring a part that is a little off a locator "
+                f"back to it while friction is below {friction}; {steel}."
             ]
         return [
-            f"From a friction of {friction} on the part can stay a little off a locator also under both "
-            f"clamps, {together}; {steel}, so tap it home meanwhile."
+            f"If the friction is {friction} or more, the part can stay a little off a locator even "
+            f"under both clamps, {together}; {steel}, so tap it home as you tighten."
         ]
 
     def after_words(self, text: Callable[[float], str]) -> str:
@@ -364,8 +365,8 @@ class ByHand:
         lengths = [
             f"a {one.name} of {text(one.length)} at {name}" for one, name in zip(settings, names, strict=True)
         ]
-        wrong = "if not, the part lies against them another way"
-        return f"Try the paper again. Right is {listed(lengths)}; {wrong}."
+        wrong = "with other lengths the part lies against the locators another way"
+        return f"Try the paper again. The right lengths are {listed(lengths)}; {wrong}."
 
 
 def by_hand(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> ByHand:

@@ -97,9 +97,9 @@ def simulate_closing(
     travel = solver.toolkit.moving.travel
     assert travel is not None
     if pattern.frame.sign > 0.0 and travel.most is not None and start[3] > travel.most + LEVEL:
-        raise InputError("what moves does not go so far: open it by less.")
+        raise InputError("the jaw or clamp does not open so far: open it by less.")
     if not pattern.stop <= start[3] <= pattern.widest:
-        raise InputError("pegs meet before what moves stands there: open it more, or less.")
+        raise InputError("pegs meet before the jaw or clamp gets there: open it more, or less.")
     into = entered(solver, fixture, pattern, start, turned_over)
     # What is pushed out of a peg may be let go in a tighter place than it was put in; the jaws stand as they
     # stood.

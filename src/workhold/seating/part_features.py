@@ -254,6 +254,6 @@ def refuse_own_outlines(workpiece: Workpiece) -> None:
     if workpiece.outlines:
         role, _ = workpiece.outlines[0]
         raise InputError(
-            "what a part does while it is clamped is stated where everything meets one outline of it, and "
+            "the seating is worked out only if everything meets the same outline of the part, and "
             f"the {role} has heights of its own: leave the seating out, or these heights."
         )

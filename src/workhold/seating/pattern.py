@@ -141,16 +141,18 @@ def refuse_unseated(toolkit: Toolkit) -> None:
     InputError
         With two clamps, where no peg stands still, for pegs with a flat, and for pegs without a radius.
     """
-    words = "what a part does while it is clamped is stated"
+    words = "the seating is worked out only"
     if not toolkit.closes_at_once:
-        raise InputError(f"{words} of one clamp: with two the part is put against its locators by hand.")
+        raise InputError(
+            f"{words} for one clamp: with two clamps you push the part against its locators by hand."
+        )
     if all(plate.travel is not None for plate in toolkit.plates):
         still = (
             "the flat jaw stands still, and both pegs move" if WALL_END in toolkit.contacts else "all move"
         )
-        raise InputError(f"{words} where some pegs stand still; here {still}.")
+        raise InputError(f"{words} if some pegs stand still; here {still}.")
     if toolkit.has_flats:
-        raise InputError(f"{words} of round pegs: those of this result have flats.")
+        raise InputError(f"{words} for round pegs: the pegs of this result have flats.")
     if min(carrier.peg_radius for carrier in toolkit.carriers if carrier.contact.is_placed) <= 0.0:
         raise InputError("pegs of radius 0 roll around no corner: give the pegs a radius, however small.")
 

@@ -93,7 +93,7 @@ class BentPegs:
         """What bending does, in a sentence; ``location_error`` in mm is named beside it where it is known."""
         most, hardest = self.most, self.hardest
         beside = (
-            "" if location_error is None else f", beside its location error of {unit.text(location_error)}"
+            "" if location_error is None else f", on top of its location error of {unit.text(location_error)}"
         )
         at = self.at_force(mover, unit)
         return (

@@ -76,16 +76,16 @@ def lies_so(result: Result, angle: int) -> str:
     less = table.take(np.flatnonzero(angle_classes(table.theta) < angle))
     if not len(less):
         whole = result.complete and len(table) == sum(result.found.values()) and (best or inf) > len(table)
-        near = f"{straight} nothing comes within a tenth"
+        near = f"no fixture that lies {straight} comes within a tenth"
         return (
-            f"nothing stands {straight}"
+            f"no fixture lies {straight}"
             if whole
             else near + (", and none is listed" if len(table) > 1 else "")
         )
     bad = unfit(less.quality, result.query.tolerance)
     first = table.take(slice(0, 1))
     if bad.all() and not unfit(first.quality, result.query.tolerance)[0]:
-        return f"what stands {straight} is not fit for a workshop"
+        return f"those that lie {straight} are not fit for a workshop"
     if (bad | (less.quality[:, WARNINGS] > 0)).all() and not first.quality[0, WARNINGS] > 0:
-        return f"what stands {straight} has a warning"
-    return f"{straight} nothing comes within a tenth"
+        return f"those that lie {straight} have a warning"
+    return f"no fixture that lies {straight} comes within a tenth"

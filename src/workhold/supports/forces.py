@@ -230,7 +230,7 @@ def needed_jaw_force(pegs: PegForces, loads: Sequence[SpatialLoad], jaw_force: f
         if need > jaw_force * (1 + AGREEMENT):
             name = f"the load '{load.name}'" if load.name else "a load"
             raise WeakJawError(
-                f"a jaw force of {jaw_force:g} N lets a peg lose contact under {name}, which takes "
+                f"with a jaw force of {jaw_force:g} N a peg loses contact under {name}, which needs "
                 f"{need:.6g} N: give more, or leave it out."
             )
     return float(jaw_force)

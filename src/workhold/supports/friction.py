@@ -67,7 +67,7 @@ def clamp_with_friction(supports: Supports, triple: Triple, friction: float) -> 
             "as 0.15."
         )
     if not supports.loads:
-        raise InputError("what friction adds is asked of loads, of which there are none: give a load too.")
+        raise InputError("friction needs loads, and there are none: give a load too.")
     wrenches = np.array([one for load in supports.loads for one in load_wrenches(load, supports)])
     bands = supports.request.peg_bands(len(supports.fixture.pegs)).tolist()
     worst = 0.0

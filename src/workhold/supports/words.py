@@ -45,10 +45,10 @@ def reason(found: Supports, unit: Unit) -> str:
     if request.top is not None and not request.top:
         solid = found.query.workpiece.solid
         if solid is not None and solid.unclear_heights:
-            return f"there is no top clamp: {unclear_words(solid.unclear_heights, unit)}{turned}."
+            return f"no clamp can press from above: {unclear_words(solid.unclear_heights, unit)}{turned}."
         return (
-            "there is no top clamp, as no level face of the part is open to above; crowns, fillets and slopes are "
-            f"not taken for flat{turned}."
+            "no clamp can press from above, because no level face of the part is open upward; "
+            f"crowns, fillets and slopes do not count as flat{turned}."
         )
     search = SupportSearch(found.query, request, ())
     plain = SupportSearch(found.query, evolve(request, top_zones=(), reach=None), ())
@@ -56,9 +56,9 @@ def reason(found: Supports, unit: Unit) -> str:
         return no_place_for_a_tip(request, turned, unit)
     if found.query.program is not None and search.places(found.fixture).is_empty:
         return (
-            "the tools of the program and the keep-outs leave no place on the upper face where a tip of "
-            f"radius {unit.text(request.tip_radius)} could stay; a smaller tip would help, or to machine "
-            "what is under it in another set-up, or to hold the part down by other means."
+            "the tools of the program and the keep-outs leave no place on the upper face where a tip "
+            f"of radius {unit.text(request.tip_radius)} could stay; a smaller tip would help, or "
+            "another set-up for the cuts under it, or another way to hold the part down."
         )
     holes = holes_under(found.fixture, toolkit, search.bottom, request)
     if found.positions < 3:
@@ -86,8 +86,9 @@ def reason(found: Supports, unit: Unit) -> str:
     ]
     helps += ["other keep-outs on top or the clamp's reach"] if request.top_zones or request.reach else []
     return (
-        f"inside every triangle of the {found.positions} holes that could hold a support, the tip of radius "
-        f"{unit.text(request.tip_radius)} finds no place on the upper face; {', or '.join(helps)} would help."
+        f"the tip of radius {unit.text(request.tip_radius)} finds no place on the upper face "
+        f"inside any triangle of the {found.positions} holes that could hold a support; "
+        f"{', or '.join(helps)} would help."
     )
 
 
@@ -96,8 +97,9 @@ def unclear_words(heights: Sequence[float], unit: Unit) -> str:
     faces = "face" if len(heights) == 1 else "faces"
     at = listed_words([unit.text(height) for height in heights])
     return (
-        f"beside the level {faces} at a height of {at} so much stands, or in so many curves, that where a "
-        "clamp has room is not known; a file without those details would help"
+        f"so much of the part, or so many curves, stand beside the level {faces} at a height of "
+        f"{at} that it is not known where a clamp has room; a file without those details would "
+        "help"
     )
 
 
@@ -107,8 +109,9 @@ def no_place_for_a_tip(request: SupportRequest, turned: str, unit: Unit) -> str:
     head = f" and a head of radius {unit.text(request.head_radius)} above it" if request.rising else ""
     smaller = "a smaller tip or head" if head else "a smaller tip"
     return (
-        "there is no top clamp, as no level face of the part that is open to above has room for a tip of radius "
-        f"{unit.text(request.tip_radius)}{margin}{head}; {smaller} would help{turned}."
+        "no clamp can press from above, because no level face of the part that is open upward "
+        f"has room for a tip of radius {unit.text(request.tip_radius)}{margin}{head}; {smaller} "
+        f"would help{turned}."
     )
 
 
@@ -172,7 +175,9 @@ def listing_notes(
     """
     notes = []
     if found.loads and listed and found.jaw_force > 0:
-        notes.append(f"All for a closing force of {unit.force_words(found.jaw_force)}, without friction.")
+        notes.append(
+            f"All figures are for a closing force of {unit.force_words(found.jaw_force)}, without friction."
+        )
     moved = {one.travel for one in listed if one.travel is not None}
     if any(abs(one - found.fixture.travel) > SAME_OPENING for one in moved):
         notes.append(
@@ -199,8 +204,8 @@ def place_notes(listed: Mapping[int, Triple]) -> list[str]:
         )
     if hangs:
         notes.append(
-            f"Over {those(hangs, listed)} the clamp presses where the part has air below: put something under "
-            "it there, or it bends."
+            f"Over {those(hangs, listed)} the clamp presses where there is air below the part: put "
+            "something under the part there, or it bends."
         )
     return notes
 
@@ -240,6 +245,6 @@ def flat_faces_notes(workpiece: Workpiece, keep_off: Sequence[str], unit: Unit =
     sides, off = (" and ".join(words) for words in zip(*lacking, strict=True))
     return [
         *notes,
-        f"No level face of the part is known at its {sides}, which is taken to be flat as far as the outline "
-        f"goes: keep pads and tip off the rest with {off}.",
+        f"It is not known which faces at the part's {sides} are level, so all of it counts as "
+        f"flat as far as the outline goes: keep pads and tip off the rest with {off}.",
     ]

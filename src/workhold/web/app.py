@@ -154,7 +154,7 @@ def add_error_handlers(app: FastAPI) -> None:
         return wrong(400, "The request ended before it was complete.")
 
     async def fault(request: Request, error: Exception) -> Response:
-        return wrong(500, "This is a mistake of the program, not yours; please report it.")
+        return wrong(500, "The program has a mistake, which is not yours; please report it.")
 
     app.add_exception_handler(RequestValidationError, refused)
     app.add_exception_handler(HTTPException, plain)

@@ -49,10 +49,16 @@ Rank = Annotated[int, Path(ge=1, le=10**9)]
 UnitName = Literal["mm", "inch"]
 JawForce = Annotated[float | None, Query(gt=0, le=1e9, description="in N")]
 Jaw = Annotated[
-    str, Query(max_length=20, description="screw, constant, or how many times as stiff as a contact it is")
+    str,
+    Query(
+        max_length=20,
+        description="what the closed jaw does under load: screw, constant, or how many times as stiff as a "
+        "contact it is",
+    ),
 ]
 Loads = Annotated[
-    str | None, Query(max_length=20_000, description="instead of the search's, JSON as in a search")
+    str | None,
+    Query(max_length=20_000, description="loads to use instead of the search's, JSON as in a search"),
 ]
 Across = Annotated[float, Query(ge=100, le=10_000, description="of the picture, in its own units")]
 Revision = Annotated[
@@ -72,7 +78,7 @@ class PaperForm(AddressForm):
     first_side: str | None = Field(
         default=None,
         max_length=20_000,
-        description="JSON: the set-up before as its ``job``, ``rank`` and ``cut`` faces",
+        description="JSON: the first set-up as its ``job``, ``rank`` and ``cut`` faces",
     )
     revision: Revision = None
 
@@ -116,7 +122,7 @@ async def seated(
     return held, job.seatings[key]
 
 
-@router.get("/seating", summary="Whether the part ends up there")
+@router.get("/seating", summary="Whether the part ends up in its place")
 async def seating(
     request: Request, name: str, rank: Rank, unit: UnitName = "mm", revision: Revision = None
 ) -> dict[str, Any]:
@@ -125,7 +131,7 @@ async def seating(
     return {"rank": rank, **seating_answer(held, found, unit)}
 
 
-@router.post("/closing", summary="Close the jaws from where the part was put")
+@router.post("/closing", summary="Close the jaws on a part that was put in by hand")
 async def closing(
     request: Request, name: str, rank: Rank, form: ClosingForm, revision: Revision = None
 ) -> dict[str, Any] | None:
@@ -138,7 +144,7 @@ async def closing(
     held, found = await seated(request, name, rank, revision)
     if isinstance(found, ByHand):
         raise InputError(
-            "no closing can be played with two clamps: the part is put against its locators by hand."
+            "with two clamps no closing can be shown: you push the part against its locators by hand."
         )
     order = ClosingOrder(held, found, form)
     answer: dict[str, Any] | None = await at_desk_while_heard(request, "closing", order)
@@ -213,7 +219,7 @@ async def supports(
     return {"rank": rank, **await at_desk_while_heard(request, "supports", asked)}
 
 
-@router.get("/warnings", summary="What to beware of")
+@router.get("/warnings", summary="The warnings of a fixture")
 async def warnings(
     request: Request,
     name: str,

@@ -65,8 +65,8 @@ def result_of_job(job: ServerJob, revision: int | None = None, when_over: bool =
 WhenLeft = Annotated[
     Literal["keep", "cancel"],
     Query(
-        description="whether the job goes on, or is cancelled, when nobody has followed its events or asked "
-        "for it for ten seconds"
+        description="whether the job goes on, or is cancelled, when for ten seconds no client has followed "
+        "its events or asked for it"
     ),
 ]
 
@@ -215,8 +215,8 @@ async def fixtures(
     type: Annotated[str | None, Query(max_length=40)] = None,
     face: Annotated[int | None, Query(ge=0, le=10**6)] = None,
     angle: Annotated[str | None, Query(max_length=60, description="from..to in degrees")] = None,
-    together: Annotated[bool, Query(description="of fixtures that are alike only the first")] = False,
-    unfit: Annotated[bool, Query(description="also what is no fixture for a workshop")] = True,
+    together: Annotated[bool, Query(description="list only the first of fixtures that are alike")] = False,
+    unfit: Annotated[bool, Query(description="also fixtures that no workshop can use")] = True,
 ) -> dict[str, Any]:
     """A page of the fixtures, even while the search runs; ranks count all, best first, from 1."""
     job = found_job(request, name)
@@ -262,7 +262,7 @@ async def explanation(request: Request, name: str) -> dict[str, Any]:
     return explanation_answer(await state_of(request).jobs.explain(job), result.workpiece, result.toolkit)
 
 
-@router.post("/jobs/{name}/resist", summary="Which fixtures resist loads best")
+@router.post("/jobs/{name}/resist", summary="The fixtures that resist loads best")
 async def resist(request: Request, name: str, form: LoadsForm) -> dict[str, Any]:
     """The ten fixtures with the least load reaction, in N."""
     job = found_job(request, name)

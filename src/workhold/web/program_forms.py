@@ -106,8 +106,8 @@ class ProgramForm(Form):
             thick, high = thick or solid.height, solid.peg_height
         if thick is None and (self.z_zero == "top" or high is None):
             raise InputError(
-                "The part is an outline without heights, so nobody knows what of the program passes over the "
-                "pegs: say how thick the part is, and how high pegs stand where that is less."
+                "The part is an outline without heights, so it is not known which moves of the program "
+                "pass over the pegs: give the part's thickness, and the pegs' height if that is less."
             )
         read = read_sent_program(self, thick)
         return evolve(read.program, name=self.name), high or thick
@@ -177,7 +177,7 @@ def look_at_program(question: ReadProgramForm, order: Order) -> dict[str, Any]:
     thick = form.thickness if question.height is None else question.height
     high = form.peg_height if question.peg_height is None else question.peg_height
     if thick is None and form.z_zero == "top":
-        raise InputError('How thick the part is, is not known: fill in "Part thickness".')
+        raise InputError('The part\'s thickness is not known: fill in "Part thickness".')
     read = read_sent_program(form, thick)
     program, figures = read.program, tool_figures(read.program)
     low, top = tip_box(program.moves)

@@ -277,8 +277,8 @@ def asked_heights(text: str | None) -> dict[str, tuple[float, float]] | None:
     for role, (low, high) in found.items():
         if not (low < high and high > 0.0):
             raise InputError(
-                f"the heights {low:g} and {high:g} of the {role} are none: give the lower end first, and the "
-                "upper one above 0 mm."
+                f"the heights {low:g} and {high:g} of the {role} cannot be used: give the lower end "
+                "first, and the upper one above 0 mm."
             )
     return found
 

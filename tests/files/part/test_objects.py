@@ -100,8 +100,8 @@ def test_a_document_without_a_unit_asks() -> None:
     [
         (None, {}, "this NoneType: a part cannot be read from it: give the path of a file"),
         ({(0, 0), (1, 0), (0, 1)}, {}, "this set: a part cannot be read from it"),
-        ([1, 2], {}, "an outline of 1 corners is none: give x and y for every corner"),
-        ([], {}, "an outline of 0 corners is none"),
+        ([1, 2], {}, "an outline of 1 corners is not possible: give x and y for every corner"),
+        ([], {}, "an outline of 0 corners is not possible"),
         (["a"], {}, "a corner of an outline cannot be"),
         (
             SimpleNamespace(geom_type="Point", __geo_interface__={}),

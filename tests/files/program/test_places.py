@@ -368,7 +368,7 @@ def test_rotary_axes_that_stay_are_said(tmp_path: Path) -> None:
 def test_the_end_behind_a_switch_is_refused_where_more_follows(tmp_path: Path) -> None:
     """What stands behind it would be cut with the switch on."""
     cut = "G1 Z-3. F200\nX40.\n"
-    with pytest.raises(InputError, match=r"line 4: whether the program ends here .* switch"):
+    with pytest.raises(InputError, match=r"line 4: a switch .* decides whether the program ends here"):
         read_text(tmp_path, START + "/M30\n" + cut)
     assert len(read_text(tmp_path, START + cut + "/M30\n%\n").moves) == 3
 

@@ -67,10 +67,10 @@ LINES = {
     "X5 X6": "X stands twice",
     "X5 A90": "fourth axis",
     "C45": "fourth axis",
-    "X5 Q1": "Q is of a drill cycle",
-    "R5": "R is of an arc",
-    "D1": "D is of G41",
-    "H1 X5": "H is of G43",
+    "X5 Q1": "Q belongs to a drill cycle",
+    "R5": "R belongs to an arc",
+    "D1": "D belongs to G41",
+    "H1 X5": "H belongs to G43",
     "X5 E2": "take it out",
     "T1.5 M6": "not a tool",
     "T-1": "not a tool",
@@ -97,7 +97,7 @@ LINES = {
     "X" + "9" * 400: "too large",
     "(5) X5 :": "is not a word",
     "X5 " * 800: "characters",
-    "Z5 I3": "I is of an arc",
+    "Z5 I3": "I belongs to an arc",
     "N5 N6 N7 X5": "N stands twice",
 }
 
@@ -198,7 +198,7 @@ def test_what_is_left_out_or_taken_is_noted(tmp_path: Path) -> None:
         "has no M6",
         "Line 7: a line that a switch can leave out",
         "Line 6: a cutting move has no feed",
-        "Line 13: what stands behind the end",
+        "Line 13: the lines behind the end",
         "The holder of T1 is not known",
     ):
         assert words in notes

@@ -95,4 +95,4 @@ def test_a_subprogram_that_is_not_called_is_not_read(tmp_path: Path) -> None:
     """Its lines are noted."""
     read = read_text(tmp_path, HEAD + "M98 P2\nM30\nO2\nG1 X5. F1\nM99\nO3\nG1 X9.\nM99\n")
     assert 13 not in read.moves.line
-    assert any(note.startswith("Line 13: what stands behind the end") for note in read.notes)
+    assert any(note.startswith("Line 13: the lines behind the end") for note in read.notes)

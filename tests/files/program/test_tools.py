@@ -79,7 +79,7 @@ def test_lengths_are_in_the_unit_that_is_said_or_that_of_the_program(tmp_path: P
         assert found[1].diameter == diameter and said == ("unit" in text)
     program = HEAD.replace("G21", "G20") + "G0 X0 Y0 Z0\n"
     read = read_text(tmp_path, program, tools=table(tmp_path, "tool.1 = {diameter = 0.5}"))
-    assert "is read in inch as the program" in read.notes[1] and read.tools[1].diameter == 12.7
+    assert "is read in inch like the program" in read.notes[1] and read.tools[1].diameter == 12.7
     assert read_text(tmp_path, program, tools={1: 0.5}).tools[1].diameter == 12.7
 
 

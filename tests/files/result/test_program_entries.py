@@ -59,13 +59,13 @@ def test_pieces_are_packed_while_a_head_is_read(rapid: str) -> None:
         (lambda pieces: pieces[5].update(radius=1.25), "the pieces of line"),
         (lambda pieces: pieces[5].update(z=[1.0, 2.5]), "the pieces of line"),
         (lambda pieces: pieces[5].update(tool=9), "the pieces of line"),
-        (lambda pieces: pieces[5].update(kind="drill"), "is none: leave it out"),
-        (lambda pieces: pieces[5].update(path=[]), "is none: leave it out"),
+        (lambda pieces: pieces[5].update(kind="drill"), "cannot be used: leave it out"),
+        (lambda pieces: pieces[5].update(path=[]), "cannot be used: leave it out"),
         (
             lambda pieces: pieces[5].update(path=[[0, 0, 0], [1, 0, 0], [1, 2, 0], [0, 0, 0]]),
-            "is none: leave it out",
+            "cannot be used: leave it out",
         ),
-        (lambda pieces: pieces[5].update(line=2**70), "is none: leave it out"),
+        (lambda pieces: pieces[5].update(line=2**70), "cannot be used: leave it out"),
     ],
 )
 def test_pieces_that_are_none_are_refused(change: Any, sentence: str) -> None:

@@ -490,7 +490,7 @@ def test_verification_refuses_a_peg_on_a_face_without_band(tmp_path: Path) -> No
     ("change", "sentence"),
     [
         ({"solid": {"axis": "w"}}, "the axis 'w' is not known"),
-        ({"bands": [[3, 1]] * 8}, "the band 3 to 1 mm is none"),
+        ({"bands": [[3, 1]] * 8}, "the band 3 to 1 mm cannot be used"),
         ({"bands": [[0, 1]]}, "8 segments and 1 bands"),
         ({"bands": None}, "has a solid, but the workpiece has no bands"),
     ],
@@ -536,7 +536,10 @@ def test_supports_of_a_solid_without_a_level_face_on_top(tmp_path: Path) -> None
         save(design(load(part), Plate(pitch=15, peg_radius=3), best=1), result)
         shown = CliRunner().invoke(app, ["supports", str(result), "1", "--pad-radius", "3"])
         assert shown.exit_code == 0
-        warned.append("there is no top clamp, as no level face of the part" in " ".join(shown.output.split()))
+        warned.append(
+            "no clamp can press from above, because no level face of the part"
+            in " ".join(shown.output.split())
+        )
     assert warned == [False, True]
 
 

@@ -114,7 +114,7 @@ def test_a_force_is_dragged_and_answered(shown: tuple[Any, Any]) -> None:
     assert texts == [one["words"] for one in widget.answer["forces"]]
     page.locator(".workhold-jaw").fill("1")
     page.locator(".workhold-jaw").press("Enter")
-    words(page, "^Does not hold")
+    words(page, "^The part is not held")
     assert page.locator(".workhold-pulls").count() == sum(one["pulls"] for one in widget.answer["forces"]) > 0
 
 
@@ -208,7 +208,7 @@ def test_the_vise_closes(shown: tuple[Any, Any]) -> None:
         }"""
     )
     page.get_by_text("Close", exact=True).click()
-    words(page, "It comes home: S = ")
+    words(page, "The part is in its place: S = ")
     seen = page.evaluate("window.seen")
     moved = [
         [float(one) for one in re.findall(r"-?\d[\d.e-]*", text)] for kind, text in seen if kind == "moves"

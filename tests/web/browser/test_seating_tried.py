@@ -1,4 +1,4 @@
-"""Will it end up there? The part is put between the pegs by hand, and the page says what becomes of it."""
+"""Does the part end up there? The part is put between the pegs by hand, and the page says what becomes of it."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def test_a_part_that_is_dragged_and_let_go_is_closed_upon(walk: Walk) -> None:
     assert max(abs(x - y - told["capture_opening"]) for x, y in zip(ahead, stand, strict=True)) < 1e-6
     page.fill("#try-opening", str(0.5 * told["capture_opening"]))
     assert (
-        f", less than the {told['capture_opening']:.2f} mm up to which it is caught"
+        f", less than the {told['capture_opening']:.2f} mm up to which the part settles"
         in walk.seen("#try-words").inner_text()
     )
     page.fill("#try-opening", str(2.0 * told["capture_opening"]))

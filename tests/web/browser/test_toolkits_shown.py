@@ -117,7 +117,7 @@ def test_pegs_with_a_flat_lie_on_the_part(walk: Walk) -> None:
     assert 0 < flats <= 3 and page.locator("#drawing-fixture .peg").count() == 4
     fill(walk, flat="9")
     page.click("#search")
-    walk.seen("text=is none of a peg of radius")
+    walk.seen("text=cannot have a flat")
     walk.troubles.clear()
 
 

@@ -140,7 +140,7 @@ STAGE = """async (more) => {
 def test_what_is_searched_is_never_said_to_be_all(walk: Walk) -> None:
     """What is known by then is said instead: that it is put in order, or that the best are found."""
     title, words = walk.page.evaluate(STAGE, {"state": "listing", "fraction": 1.0})
-    assert title == "Looking for the best" and words == "What was found is being put in order."
+    assert title == "Looking for the best" and words == "The fixtures found are being put in order."
     title, words = walk.page.evaluate(STAGE, {"fraction": 0.7})
     assert title == "Looking for the best" and words == "70 % searched."
     title, words = walk.page.evaluate(STAGE, {"fraction": 1.0, "found": 7})

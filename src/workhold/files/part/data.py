@@ -220,7 +220,7 @@ def corner_chain(points: Any, scale: float) -> Chain:
     """The closed chain in mm of an array of corners; refuses arrays that are none."""
     corners = [(scale * x, scale * y) for x, y in number_pairs(points, "a corner of an outline", CORNERS)]
     if len(corners) < 3:
-        raise InputError(f"an outline of {len(corners)} corners is none: {CORNERS}.")
+        raise InputError(f"an outline of {len(corners)} corners is not possible: {CORNERS}.")
     return chain_of([*corners, *corners[:1]] if corners[:1] != corners[-1:] else corners, "polygon")
 
 

@@ -218,9 +218,10 @@ def refuse_unsure_numbers(
         return
     one = f"face {faces[0]} is" if len(faces) == 1 else f"faces {', '.join(map(str, faces))} are"
     sentence = (
-        f"{one} named by number, and numbers depend on how high pegs reach, which nobody has said: give "
-        f"{PEG_HEIGHT} {usual.peg_height:.6g}mm, no higher than they must be, or {PEG_HEIGHT} "
-        f"{usual.height:.6g}mm, as tall as the part, and the numbers that the part has with it."
+        f"{one} named by number, and these numbers depend on how high pegs reach, which is not "
+        f"given: give {PEG_HEIGHT} {usual.peg_height:.6g}mm, no higher than pegs must be, or "
+        f"{PEG_HEIGHT} {usual.height:.6g}mm, as tall as the part, and the numbers that the part "
+        "has with it."
     )
     raise InputError(worded(sentence, called))
 

@@ -152,7 +152,7 @@ class Interpreter:
             )
         for letter in sorted(values.keys() - used):
             raise InputError(
-                f"{letter} is of {NEEDING[letter]}, and there is none: take it out."
+                f"{letter} belongs to {NEEDING[letter]}, and there is none: take it out."
                 if letter in NEEDING
                 else f"{letter} is not a word that is read: take it out."
             )
@@ -189,7 +189,8 @@ class Interpreter:
                 self.away.discard(letter)
             if letter not in ROTARY or value != at:
                 raise InputError(
-                    f"{letter} moves a fourth axis, of which nothing is known: post the program for three axes."
+                    f"{letter} moves a fourth axis, about which workhold knows nothing: post the program for "
+                    "three axes."
                 )
 
     def looks_ahead(self, codes: dict[str, str]) -> bool:
@@ -421,7 +422,7 @@ class Interpreter:
                 "only, and with a vertical lead-in of radius 0."
             )
         if values.get("K", 0.0) != 0.0:
-            raise InputError("K is of arcs in another plane than G17: take it out.")
+            raise InputError("K belongs to arcs in another plane than G17: take it out.")
         start, end = self.known(modes.place), self.known(self.path.target(values))
         turns = self.turns_of(values)
         if "R" in values:

@@ -100,7 +100,7 @@ def read_program_with_calls(
     height, origin = height_of(z_zero, thickness), (real(zero[0], "zero"), real(zero[1], "zero"))
     real(clearance, "clearance")
     if unit is not None and unit not in ("mm", "inch"):
-        raise InputError(f"the unit '{unit[:20]}' is not one of a program: give mm or inch.")
+        raise InputError(f"the unit '{unit[:20]}' of the program is not known: give mm or inch.")
     if whole_numbers not in ("units", "thousandths"):
         raise InputError(
             f"whole numbers of a program count units or thousandths, and not '{str(whole_numbers)[:20]}': give "
@@ -158,8 +158,8 @@ def height_of(z_zero: ZZero, thickness: float | None) -> float:
     if z_zero == "top":
         if thickness is None or not (isfinite(real(thickness, "thickness")) and thickness > 0):
             raise InputError(
-                "the program's Z0 is the top of the part, and how thick the part is, is not known: give its "
-                "thickness, or z_zero as a height."
+                "the program's Z0 is the top of the part, and the part's thickness is not known: give "
+                "its thickness, or z_zero as a height."
             )
         return real(thickness)
     other: object = z_zero
@@ -263,7 +263,7 @@ def tools_used(
         known, said = read_tools(given, unit)
         if not said:
             notes.append(
-                f"The table of tools does not say its unit, and is read in {unit.name} as the program."
+                f"The table of tools does not say its unit, so it is read in {unit.name} like the program."
             )
     notes += drop_unknown(path, control, known)
     used = sorted({row[1] for row in control.path.rows})
@@ -282,7 +282,7 @@ def tools_used(
         raise InputError(f"{path}: {lacking(sorted(set(used)), missing)}")
     bare = [f"T{number}" for number in sorted(set(used)) if not known[number].has_holder]
     if bare:
-        notes.append(f"The holder of {listed(bare)} is not known, and not looked at.")
+        notes.append(f"The holder of {listed(bare)} is not known, so it is not checked.")
     return {number: known[number] for number in sorted(set(used))}, notes
 
 
@@ -301,8 +301,9 @@ def drop_unknown(path: Path, control: Interpreter, known: Mapping[int, Tool]) ->
     if cut is not None:
         before = "T0 is in the spindle" if cut[1] == 0 else "no tool has been called"
         raise InputError(
-            f"{path}: line {cut[0]}: the tool cuts while {before}, and what cuts there is not known: call it by T "
-            f"and M6, or give it in the file of tools as number 0, such as {SHAPE.format(number=0)}."
+            f"{path}: line {cut[0]}: the tool cuts while {before}, so it is not known which tool cuts "
+            "there: call it by T and M6, or give it in the file of tools as number 0, such as "
+            f"{SHAPE.format(number=0)}."
         )
     lines = {row[0] for row in early}
     control.path.rows = [row for row in rows if row[1] > 0]
@@ -373,8 +374,8 @@ def notes_on(control: Interpreter, listing: ProgramText) -> list[str]:
     adrift = [line for line in path.adrift if line not in said]
     if adrift:
         notes.append(
-            f"{lines_named(adrift)}: a rapid move while X, Y or Z is not known is left out; what it names is "
-            "known from then on."
+            f"{lines_named(adrift)}: a rapid move while X, Y or Z is not known is left out; the axes "
+            "that it names are known from then on."
         )
     if not control.distance_said:
         notes.append("The program does not say G90 or G91; its places are read as after G90.")
@@ -410,7 +411,7 @@ def notes_on(control: Interpreter, listing: ProgramText) -> list[str]:
         notes.append(f"{lines_named(lines)}: {codes} {are} passed over, as {they} nothing of the path.")
     notes += whole_notes(control)
     if listing.behind:
-        notes.append(f"{lines_named(listing.behind)}: what stands behind the end of the program is not read.")
+        notes.append(f"{lines_named(listing.behind)}: the lines behind the end of the program are not read.")
     return notes
 
 

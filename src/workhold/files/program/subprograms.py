@@ -172,7 +172,7 @@ def refuse_return(block: ProgramBlock, is_called: bool, is_optional: bool) -> No
         raise InputError("M99 stands outside of a subprogram, where the program begins anew: write M30.")
     if is_optional:
         raise InputError(
-            "whether the subprogram ends here is said by a switch (/): take the slash out, or the line."
+            "a switch (/) decides whether the subprogram ends here: take the slash out, or the line."
         )
     if any(letter == "P" for letter, _ in block.words):
         raise InputError("M99 with P goes on at another block: post the program with its moves written out.")

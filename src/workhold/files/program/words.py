@@ -163,8 +163,8 @@ HOMING = "$H"
 SWITCH = re.compile(r"[ \t]*/[0-9]?")
 CAPITALS = str.maketrans(ascii_lowercase, ascii_uppercase)
 SWITCHED_END = (
-    "whether the program ends here is said by a switch (/), and there is more behind it: take the slash out, or "
-    "the line."
+    "a switch (/) decides whether the program ends here, and there is more behind it: take "
+    "the slash out, or the line."
 )
 NO_FUNCTION: frozenset[str] = frozenset()
 # Characters of a line that a message shows.

@@ -170,7 +170,7 @@ class View {
         return [make("b", {}, one.hole), make("div.track", { "aria-hidden": "true" }, fill), make("span.number", {}, one.words)];
       }),
     );
-    const sign = answer.holds === null || answer.holds === undefined ? "" : answer.holds ? "Holds. " : "Does not hold. ";
+    const sign = answer.holds === null || answer.holds === undefined ? "" : answer.holds ? "Holds. " : "The part is not held. ";
     const said = `${sign}${answer.words}`;
     if (this.words.textContent !== said) this.words.textContent = said;
     this.words.classList.toggle("workhold-lost", answer.holds === false);

@@ -191,7 +191,7 @@ export class DrawingTool {
         const end = this.arcEnd;
         const side = (this.cursor[1] - last[1]) * (end[0] - last[0]) - (this.cursor[0] - last[0]) * (end[1] - last[1]);
         const bulge = bulgeOfRadius(last, end, size, -side);
-        if (Number.isNaN(bulge)) throw new Refusal("That radius is too small to reach from end to end.", end);
+        if (Number.isNaN(bulge)) throw new Refusal("That radius is too small to reach from one end to the other.", end);
         this.add(end, bulge);
       }
       field.value = "";
@@ -213,7 +213,7 @@ export class DrawingTool {
   close() {
     const first = this.sketch.chain[0];
     if (!first || this.sketch.chain.length < 2) {
-      this.tell("Two edges at least, before it can be closed.", true);
+      this.tell("Draw two edges at least before you close.", true);
       return;
     }
     this.arcEnd = null;

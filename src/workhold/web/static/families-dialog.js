@@ -165,7 +165,7 @@ function writeAnswer(family) {
     make("table", {}, make("caption.unseen", {}, "The least worst loss for each number of set-ups"),
       make("thead", {}, make("tr", {}, ...heads.map((words, k) => make(words ? (k < 3 ? "th.number" : "th") : "td", words ? { scope: "col" } : {}, words)))),
       make("tbody", {}, ...lines)),
-  ] : [make("p.trouble-box", {}, "No pattern of pegs holds any of these parts: choose something else under 2.")]));
+  ] : [make("p.trouble-box", {}, "No pattern of pegs holds any of these parts: choose another toolkit under 2.")]));
   show(byId("family-plan"), lines.length > 0);
   show(byId("family-answer"), true);
   if (lines.length) pick(family.points[0].setups);

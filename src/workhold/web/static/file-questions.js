@@ -144,6 +144,6 @@ function fitQuestion({ asked, part }, how, answer) {
   const buttons = FITS.map((fit) => make("button", {
     type: "button", "data-fit": fit, "aria-pressed": String(how.fit === fit), click: () => answer({ fit }),
   }, length(fit, 2)));
-  const off = part?.departure ? [make("span", {}, `They are off by ${length(part.departure, 4)} at most, which counts in the location error.`)] : [];
+  const off = part?.departure ? [make("span", {}, `The fitted arcs are off by ${length(part.departure, 4)} at most, which counts in the location error.`)] : [];
   return question("Some curves are neither lines nor arcs. Fit curves within", make("div.row-of-buttons", {}, ...buttons, ...off));
 }

@@ -138,7 +138,7 @@ export class FixtureList {
     const { caught } = row;
     const opening = caught && (caught.opening === null ? "always" : length(caught.opening, 2));
     cell.figures.replaceChildren(
-      ...(caught ? [make("span.row-figure", { title: "from how far open the part is caught" }, make("i", {}, "caught "), opening)] : []),
+      ...(caught ? [make("span.row-figure", { title: "how far open the jaws may stand" }, make("i", {}, "caught "), opening)] : []),
       ...this.shownFigures().slice(0, caught ? 2 : 3).map((figure) =>
         make(`span.row-figure${figure.key === state.list.sort ? ".sorted" : ""}`, { title: figure.words },
           make("i", {}, `${figure.short} `), figureText(figure, shownFigures(row)[figure.key])),

@@ -242,7 +242,7 @@ function writeBars(row, { forces, needed, jaw, loose }) {
     needed === 0
       ? `No peg lets go, however little the ${mover()} presses.`
       : `The ${mover()} must press with ${forceText(Math.ceil(needed))} so that no peg lets go; below that ${row.holes[loose]} does.`,
-    enough ? `Forces are told for ${told} of ${kindWords(state.force?.kind)}, without friction.` : `With ${forceText(jaw)} it lets go.`,
+    enough ? `Forces are for ${told} of ${kindWords(state.force?.kind)}, without friction.` : `With ${forceText(jaw)} a peg lets go.`,
   ].join(" ");
 }
 

@@ -90,10 +90,10 @@ async function tryEach(job, part, heights, words, buttons) {
       if (gone()) return;
       if (!found) continue;
       helping += 1;
-      buttons.append(make("button", { type: "button", "data-height": height, click: () => take(found, part) }, `Pegs of ${length(height, 2)} hold it`));
+      buttons.append(make("button", { type: "button", "data-height": height, click: () => take(found, part) }, `Pegs of ${length(height, 2)} hold the part`));
     }
-    words.textContent = helping ? "With pegs of these heights there are fixtures, on the faces that may be touched:"
-      : `Pegs of ${heights.map((height) => length(height, 2)).join(", ")} do not hold it either: try another side up, or another toolkit.`;
+    words.textContent = helping ? "Pegs of these heights hold the part, on the faces that may be touched:"
+      : `Pegs of ${heights.map((height) => length(height, 2)).join(", ")} do not hold the part either: try another side up, or another toolkit.`;
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
     words.textContent = error.message;

@@ -156,7 +156,7 @@ const readSoon = quiet(async () => {
   }
   const solid = part?.solid ?? null;
   if (!solid && !program.thickness && (program.z_zero === "top" || !program.peg_height)) {
-    say("How thick the part is, is not known: fill in “Part thickness”.");
+    say("The part’s thickness is not known: fill in “Part thickness”.");
     change({ programRead: null });
     return;
   }

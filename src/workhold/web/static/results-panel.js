@@ -257,8 +257,8 @@ function summary(job, busy) {
   if (job.state === "waiting") return ["The part first", `${state.reading || "The part"} is being read; the search begins as soon as it is.`];
   if (busy) return underWay(job, many);
   if (job.state === "failed") return ["The search failed", ""];
-  if (job.state === "cancelled") return [job.found ? `${many}, not all` : "Search cancelled", job.found ? "The search was cancelled; what it had found is valid." : "Press Search again to start anew."];
-  if (job.found === 0 && job.complete) return ["There is no fixture", "Every place was searched; below is why."];
+  if (job.state === "cancelled") return [job.found ? `${many}, not all` : "Search cancelled", job.found ? "The search was cancelled; the fixtures found so far are valid." : "Press Search again to start anew."];
+  if (job.found === 0 && job.complete) return ["There is no fixture", "Every place was searched; the reason is below."];
   if (job.found === 0) return ["None found so far", ["The search was not complete.", ...(job.notes ?? [])].join(" ")];
   const counts = Object.entries(job.counts ?? {});
   const types = counts.length > 1 ? counts.map(([type, count]) => `${countText(count)} of type ${type}`) : [];
@@ -271,7 +271,7 @@ function summary(job, busy) {
 function underWay({ state: stage, fraction, found, best }, many) {
   if (stage === "queued") return ["Searching", "Waiting for its turn."];
   const share = `${Math.min(99, Math.floor(100 * fraction))} % searched`;
-  if (!found) return ["Looking for the best", fraction >= LISTING ? "What was found is being put in order." : `${share}.`];
+  if (!found) return ["Looking for the best", fraction >= LISTING ? "The fixtures found are being put in order." : `${share}.`];
   if (!best) return [`${many} so far`, `${share}.`];
   const others = found > best ? `; ${many} so far` : "";
   return [best > 1 ? `The best ${countText(best)}` : "The best one", `No other fixture is better. The rest is searched meanwhile: ${share}${others}.`];
@@ -289,6 +289,6 @@ function tellMatches() {
   if (!filtered) {
     writeSummary();
     const { unfit } = rows;
-    if (unfit) byId("count-words").append(` ${countText(unfit)} of them ${unfit === 1 ? "is" : "are"} no fixture for a workshop and not listed.`);
+    if (unfit) byId("count-words").append(` ${countText(unfit)} of them ${unfit === 1 ? "is" : "are"} of no use in a workshop and not listed.`);
   } else byId("count-words").textContent = `${countText(rows.total)} match the filters.`;
 }

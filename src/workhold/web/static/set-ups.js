@@ -83,8 +83,8 @@ function write() {
   byId("second-side").textContent = `Second side: ${axisWords(turnedOver(solid.axis))} up`;
   byId("second-side").toggleAttribute("disabled", !file || turning || searching());
   byId("turn-words").textContent = turning ? "The part is being turned over …" : file
-    ? `The part turned over, with ${axisWords(turnedOver(solid.axis))} of its file up. Faces that this set-up cuts are not located on then:`
-    : "The part can be turned over where its STEP file was opened since the page was loaded: open it again.";
+    ? `The part turned over, with ${axisWords(turnedOver(solid.axis))} of its file up. The second set-up must not locate on the faces that this set-up cuts:`
+    : "To turn the part over, the page needs its STEP file: open it again.";
 }
 
 /** A face is cut in this set-up, or is not. */

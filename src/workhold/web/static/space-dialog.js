@@ -108,7 +108,7 @@ async function showSide(number) {
     if (mine !== latest) return;
     view?.clear();
     trouble.textContent = error.status === 404 && all.length > 1 && number !== state.sides?.shown
-      ? `The search for the ${SIDES[number].toLowerCase()} has been forgotten: show that side once, and it is searched again.` : error.message;
+      ? `The server has forgotten the search for the ${SIDES[number].toLowerCase()}: show that side once, and it is searched again.` : error.message;
     show(trouble, true);
   } finally {
     if (mine === latest) byId("space").setAttribute("aria-busy", "false");

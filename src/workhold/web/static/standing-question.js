@@ -39,7 +39,7 @@ export function standingQuestion({ solid, part, heights = [], solids: listed = [
   if (!solid) return null;
   if (listed.length) solids = listed;
   return make("fieldset.plain.ask.standing", {},
-    make("legend", {}, "How does it stand?"),
+    make("legend", {}, "How does the part stand?"),
     ...which(how, answer),
     make("div.row-of-buttons", {}, make("span", { id: "up-words" }, "Points up:"), axes(how, answer)),
     make("p.small", { id: "standing-words" }, words(part?.solid ?? null, how)),
@@ -95,9 +95,9 @@ function fields(stands, how, answer) {
     return make("label", { title }, words, " ", make("span", {}, unitWord()), input);
   };
   return make("div.grid-fields.three", {},
-    field("peg_height", "Peg height", stands ? (stands.peg_height < stands.height - NEAR ? `${bareLength(stands.peg_height, 2)}, as needed` : `${bareLength(stands.height, 2)}, the part’s`) : "the part’s", "How far pegs reach above the plane on which the part lies"),
-    field("head_room", "Head room", bareLength(HEAD_ROOM, 1), "Kept free between the pegs and what hangs over them"),
-    field("least_band", "Least band", bareLength(LEAST_BAND, 1), "How high an upright face has to be there for a peg to touch it"));
+    field("peg_height", "Peg height", stands ? (stands.peg_height < stands.height - NEAR ? `${bareLength(stands.peg_height, 2)}, as needed` : `${bareLength(stands.height, 2)}, the part’s`) : "the part’s", "Height that pegs reach above the plane on which the part lies"),
+    field("head_room", "Head room", bareLength(HEAD_ROOM, 1), "Clearance between the pegs and anything that hangs over them"),
+    field("least_band", "Least band", bareLength(LEAST_BAND, 1), "Least height of an upright face that a peg may touch"));
 }
 
 /** What other heights offer, each to be chosen; open where the height in use touches less than another would. */
@@ -121,7 +121,7 @@ function heightTable(heights, stands, answer) {
   const share = chosen ? `: ${number((100 * chosen.touchable) / most, 0)} % of the most that can be touched` : "";
   return [make("details.heights", { open: Boolean(chosen && chosen.touchable < most * (1 - 1e-9)) }, make("summary", {}, `Which height of the pegs${share}`),
     make("table", {}, make("caption.unseen", {}, "What pegs of other heights can touch"),
-      make("thead", {}, make("tr", {}, make("th", { scope: "col" }, `Pegs ${unitWord()}`), head(`Outline ${unitWord()}`, "Length of what such pegs can meet"),
-        head(`Touchable ${unitWord()}`, "Length of it that may be touched"), head(`Least band ${unitWord()}`, "Height of the lowest face that may be touched"))),
+      make("thead", {}, make("tr", {}, make("th", { scope: "col" }, `Pegs ${unitWord()}`), head(`Outline ${unitWord()}`, "Length of outline that such pegs can meet"),
+        head(`Touchable ${unitWord()}`, "Length of outline that they may touch"), head(`Least band ${unitWord()}`, "Height of the lowest face that may be touched"))),
       make("tbody", {}, ...rows)))];
 }

@@ -4,7 +4,7 @@
 import { draw, make } from "./dom.js";
 import { unitWord } from "./units.js";
 
-const HINT = "three under the part and one that presses it on them keep it from tipping";
+const HINT = "three supports and a clamp on top keep the part from tipping";
 const TOOL = "The force of a tool along its axis, downward; negative where it pulls. It acts where the part is pushed, else at its centre";
 const HEIGHT = "The height above the supports at which tool and push act";
 const BELOW = "Drag a circle on the part, such as where a drill comes through";

@@ -121,13 +121,13 @@ function writeAnswer() {
 /** What the chosen set comes to, in words. */
 function sentence(answer, one) {
   const force = one.clamp_force === null ? "" : one.clamp_force > 0
-    ? ` It has to press with ${forceText(Math.ceil(one.clamp_force))}; then no support carries more than ${forceText(one.support_force)}.`
-    : " The loads keep it down by themselves: the clamp has to add nothing.";
+    ? ` The clamp has to press with ${forceText(Math.ceil(one.clamp_force))}; then no support carries more than ${forceText(one.support_force)}.`
+    : " The loads keep the part down by themselves: the clamp has to add nothing.";
   const built = one.built
     ? ` Not all of these holes have a name on the plate, or the jaws stand elsewhere: build it in ${one.built.pegs.join(", ")}, supports in ${one.built.supports.join(", ")}, as on the sheet.` : "";
-  const stands = one.stands ? "The part stands on them before it is clamped." : "The part tips off them until it is clamped: hold it.";
+  const stands = one.stands ? "The part stands on them before it is clamped." : "The part tips off them until it is clamped: hold it down.";
   return `Supports in ${one.holes.join(", ")}, the clamp at ${one.at_part.map((value) => bareLength(value, 2)).join(", ")} ${unitWord()} of the part.${force} ` +
-    `It is ${length(one.arm, 1)} from the line about which the part would tip first. ${stands}${built}`;
+    `The clamp is ${length(one.arm, 1)} from the line about which the part would tip first. ${stands}${built}`;
 }
 
 /** The table of the sets. */

@@ -1,5 +1,5 @@
 /**
- * Will it end up there? The part is put between the pegs by hand, what moves closes, and it comes home or does not; with from how
+ * Does the part end up there? The part is put between the pegs by hand, what moves closes, and it comes home or does not; with from how
  * wide open it is caught, and every other place where the same pegs can hold it.
  */
 import { ApiError, ask, send } from "./api.js";
@@ -220,7 +220,7 @@ function caughtWords(opening) {
   const answer = told();
   if (!answer?.pass) return "";
   const caught = length(answer.capture_opening, 2);
-  return opening < answer.capture_opening ? `, less than the ${caught} up to which it is caught` : `, beyond the ${caught} up to which it is caught`;
+  return opening < answer.capture_opening ? `, less than the ${caught} up to which the part settles` : `, beyond the ${caught} up to which the part settles`;
 }
 
 /** Mark some pegs, and no others. @param {number[]} pegs */
