@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from workhold.kernels.base.compiling import hand_over
 from workhold.kernels.curves.block_work import (
     NO_ROOM_FOR_RECORDS,
     STOPPED,
@@ -33,7 +32,6 @@ class BlockMemory(local):
     def renew(self) -> None:
         """Make memory of the present size."""
         self.space: BlockSpace = make_block_space(self.records, self.pieces, self.members)
-        self.handed: BlockSpace = hand_over(self.space)
 
     def run(
         self, kernel: Callable[..., int], members: NDArray[np.int64], stats: NDArray[np.int64], *given: Any
@@ -51,7 +49,7 @@ class BlockMemory(local):
             self.members = max(2 * self.members, len(members))
             self.renew()
         before = stats[:STOPPED].copy()
-        while (count := kernel(members, *given, stats, self.handed)) < 0:
+        while (count := kernel(members, *given, stats, self.space)) < 0:
             stats[:STOPPED] = before
             if count == NO_ROOM_FOR_RECORDS:
                 self.records *= 2

@@ -9,7 +9,7 @@ simultaneous contacts is the measure of how much there is to search (paper, sect
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Sequence
-from functools import cached_property, partial
+from functools import partial
 from itertools import pairwise
 from math import hypot, inf, pi, tau
 from threading import Event
@@ -31,7 +31,6 @@ from workhold.contact.curves import (
 from workhold.contact.problem import Frame, Problem
 from workhold.conventions import ANGLE_HAIR, GAP_SLACK, MARGIN_SLACK, PARALLEL, WEAK_CLOSURE
 from workhold.fixels.toolkit import Arrangement, Carrier, Toolkit
-from workhold.kernels.base.compiling import hand_over
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, SEGMENT_LENGTH
 from workhold.kernels.base.tables import (
     DIRECTION,
@@ -39,12 +38,10 @@ from workhold.kernels.base.tables import (
     ORIENTATION,
     STEP_LENGTH,
     TAIL,
-    Curves,
     Features,
     Limits,
     NearSpots,
     Precision,
-    SlidingPairs,
 )
 from workhold.kernels.contact.record import RECORD_LENGTH
 from workhold.kernels.curves.block_work import CONTACTS, CROSSED, PAIRS, STATISTICS, STOPPED
@@ -294,21 +291,6 @@ class ToolkitSearch:
         problem = self.problem
         return Features(self.loose, problem.rows, problem.standing, problem.moving, self.precision, self.near)
 
-    @cached_property
-    def handed_features(self) -> Features:
-        """The features as blocks hand them over, thousands of times."""
-        return hand_over(self.features)
-
-    @cached_property
-    def handed_curves(self) -> Curves:
-        """The curves of the table as blocks hand them over."""
-        return hand_over(self.table.curves)
-
-    @cached_property
-    def handed_sliding_pairs(self) -> SlidingPairs:
-        """The sliding pairs of the table as blocks hand them over."""
-        return hand_over(self.table.sliding_pairs)
-
     @property
     def totals(self) -> NDArray[np.int64]:
         """Statistics (5,) of all blocks together."""
@@ -421,7 +403,7 @@ class ToolkitSearch:
         parts = [
             partial(
                 self.run,
-                partial(sliding_fixtures, standing, sliding_pairs[cell], self.handed_sliding_pairs),
+                partial(sliding_fixtures, standing, sliding_pairs[cell], self.table.sliding_pairs),
                 float(edges[cell]),
                 float(edges[cell + 1]),
                 stats,
@@ -453,14 +435,14 @@ class ToolkitSearch:
     ) -> Array:
         """Runs a kernel with the curves of some orientations, for fixtures that reach what is needed."""
         most = min(self.precision.most, needed.error)
-        features = self.handed_features
+        features = self.features
         if most < self.precision.most and len(self.precision.probes):
             features = features._replace(precision=with_limit(features.precision, most))
         limits = self.limits_from(needed.margin, features.precision.most)
         members = members_of_cell(self.table, low, high)
         if self.every > 1:
             members = members[one_in(members, self.every)]
-        curves, lattice = self.handed_curves, self.frame.lattice
+        curves, lattice = self.table.curves, self.frame.lattice
         return self.memory.run(kernel, members, stats, features, curves, lattice, limits, self.counting)
 
     def limits_from(self, margin: float, most: float) -> Limits:

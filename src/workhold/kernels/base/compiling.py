@@ -23,12 +23,14 @@ from functools import cached_property, update_wrapper
 from inspect import signature
 from struct import Struct
 from typing import Annotated, Any, ClassVar, TypeVar, cast, get_args, get_origin, get_type_hints
+from weakref import ref
 
 import numpy as np
 from numpy.typing import NDArray
 
 Function = TypeVar("Function", bound=Callable[..., Any])
-Record = TypeVar("Record", bound=tuple[Any, ...])
+# Appends the words of an argument to a list.
+Taker = Callable[[Any, list[Any]], None]
 # Arrays of real numbers, of whole numbers, and of verdicts or flags, of any number of dimensions.
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -110,7 +112,7 @@ class Kernel:
         return get_args(result) if get_origin(result) is tuple else (result,)
 
     @cached_property
-    def takers(self) -> list[Callable[[Any, list[Any]], None]]:
+    def takers(self) -> list[Taker]:
         """Functions that append the words of an argument to a list."""
         return [taker(kind, f"{self.name}: {name}") for name, kind in self.arguments.items()]
 
@@ -167,14 +169,14 @@ def element(kind: Any) -> np.dtype[Any]:
     return np.dtype(get_args(get_args(get_args(kind)[0])[1])[0])
 
 
-def taker(kind: Any, name: str) -> Callable[[Any, list[Any]], None]:
+def taker(kind: Any, name: str) -> Taker:
     """Return a function that appends the words of an argument of a type to a list."""
     if (parts := fields(kind)) is not None:
-        return record_taker([taker(part, f"{name}.{field}") for field, part in parts], name)
+        return record_taker(parts, name)
     return number_taker(kind, name) if kind in LETTERS else array_taker(kind, name)
 
 
-def number_taker(kind: type[Any], name: str) -> Callable[[Any, list[Any]], None]:
+def number_taker(kind: type[Any], name: str) -> Taker:
     """Return the taker of a number, see :func:`taker`."""
     wanted = {int: (int, np.integer), float: (float, int, np.floating, np.integer), bool: (bool, np.bool_)}[
         kind
@@ -188,14 +190,11 @@ def number_taker(kind: type[Any], name: str) -> Callable[[Any, list[Any]], None]
     return take
 
 
-def array_taker(kind: Any, name: str) -> Callable[[Any, list[Any]], None]:
+def array_taker(kind: Any, name: str) -> Taker:
     """Return the taker of an array, see :func:`taker`."""
     wanted, count = element(kind), dimensions(kind)
 
     def take(value: Any, words: list[Any]) -> None:
-        if isinstance(value, Handed) and value.ndim == count and value.dtype == wanted:
-            words += value.words
-            return
         if not isinstance(value, np.ndarray) or value.ndim != count or value.dtype != wanted:
             raise TypeError(f"{name} must be a C-contiguous array of {wanted} with {count} dimensions.")
         words.append(find_address(value, name))
@@ -221,10 +220,32 @@ def find_address(array: np.ndarray[Any, Any], name: str = "an array") -> int:
         return int(array.ctypes.data)
 
 
-def record_taker(
-    takers: list[Callable[[Any, list[Any]], None]], name: str
-) -> Callable[[Any, list[Any]], None]:
+def remembering(take: Taker) -> Taker:
+    """Return a taker of arrays that remembers where they lie: those in records are handed over again and again,
+    and looking up an address takes longer than all else."""
+    known: dict[int, tuple[ref[Any], list[Any]]] = {}
+
+    def take_known(value: Any, words: list[Any]) -> None:
+        found = known.get(id(value))
+        if found is not None and found[0]() is value:
+            words += found[1]
+            return
+        own: list[Any] = []
+        take(value, own)
+        number = id(value)
+        known[number] = ref(value, lambda _: known.pop(number, None)), own
+        words += own
+
+    return take_known
+
+
+def record_taker(kinds: list[tuple[str, Any]], name: str) -> Taker:
     """Return the taker of a named tuple or a tuple, see :func:`taker`."""
+    takers = [taker(kind, f"{name}.{field}") for field, kind in kinds]
+    takers = [
+        remembering(take) if fields(kind) is None and kind not in LETTERS else take
+        for take, (_, kind) in zip(takers, kinds, strict=True)
+    ]
 
     def take(value: Any, words: list[Any]) -> None:
         if not isinstance(value, tuple) or len(value) != len(takers):
@@ -233,30 +254,6 @@ def record_taker(
             take_part(part, words)
 
     return take
-
-
-class Handed:
-    """An array whose address is looked up once, for calls that are many and short; see :func:`hand_over`."""
-
-    __slots__ = ("array", "dtype", "ndim", "words")
-
-    def __init__(self, array: np.ndarray[Any, Any]) -> None:
-        self.array, self.dtype, self.ndim = array, array.dtype, array.ndim
-        self.words: list[Any] = [find_address(array), *array.shape]
-
-
-def hand_over(record: Record) -> Record:
-    """Return a named tuple with the same fields, of which kernels know the addresses of all arrays."""
-    made = [
-        Handed(value)
-        if isinstance(value, np.ndarray)
-        else hand_over(value)
-        if isinstance(value, tuple)
-        else value
-        for value in record
-    ]
-    kind: Any = type(record)
-    return cast(Record, kind(*made) if hasattr(record, "_fields") else kind(made))
 
 
 def kernels_of(room: str) -> Iterator[Kernel]:
