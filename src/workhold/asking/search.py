@@ -91,6 +91,19 @@ class SearchQuestion:
         least="0",
         section=LOADS,
     )
+    friction: Any = declare(
+        "coefficients",
+        "Coefficients of friction where flat jaws hold the part: jaw between a jaw and the part; usual ones, which "
+        "the answer names, if not given.",
+        section=LOADS,
+        typed="Coefficients of friction where flat jaws hold the part, such as jaw=0.15; a usual one, which the answer "
+        "names, if not given.",
+    )
+    safety: float | None = declare(
+        "number",
+        "Safety factor on the loads where friction holds the part; 2 if not given.",
+        section=LOADS,
+    )
     seating: int | None = declare(
         "count",
         "Of the first K fixtures report from how far open, or with the clamp how far drawn back, the part "

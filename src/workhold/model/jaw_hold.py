@@ -12,28 +12,57 @@ grip : the height that the bands of both jaws have in common.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from math import inf
-from typing import Any, Literal
+from typing import Any
 
 from attrs import field, frozen
 
-__all__ = ["HOLD_FIGURES", "JawHold", "Patch", "Rectangle", "Side"]
+from workhold.errors import InputError
+from workhold.model.first_choice import has_house_order
+from workhold.model.quality import Figure
+
+__all__ = ["HOLD_FIGURES", "HOLD_RANKING", "JawHold", "Patch", "Rectangle", "hold_ranking"]
 
 # Least and greatest x, then least and greatest z, in mm.
 Rectangle = tuple[float, float, float, float]
-# Which jaw.
-Side = Literal["fixed", "moving"]
-# The figures of a grip by their keys in files, in the order in which they are shown: unit, whether more is better,
-# and what they mean.
-HOLD_FIGURES: Mapping[str, tuple[str, bool, str]] = {
-    "clamp_needed": ("N", False, "The jaw force that the worst load asks for, with the safety factor."),
-    "slip_reserve": ("", True, "What the vise is rated for, over the jaw force needed."),
-    "grip": ("mm", True, "The height that both jaws grip."),
-    "above": ("mm", True, "How far the part stands out above the jaws."),
-    "contact_area": ("mm²", True, "The smaller of the two areas that the jaws touch."),
-    "max_pressure": ("MPa", False, "The least that the largest pressure can be at the jaw force needed."),
-}
+# The figures of a grip, in the order in which they are shown.
+HOLD_FIGURES = (
+    Figure(
+        "clamp_needed", "N", False, "The jaw force that the worst load asks for, with the safety factor.", 0
+    ),
+    Figure("slip_reserve", "", True, "What the vise is rated for, over the jaw force needed.", 2),
+    Figure("grip", "mm", True, "The height that both jaws grip."),
+    Figure("above", "mm", True, "How far the part stands out above the jaws."),
+    Figure("contact_area", "mm²", True, "The smaller of the two areas that the jaws touch.", 0),
+    Figure(
+        "max_pressure", "MPa", False, "The least that the largest pressure can be at the jaw force needed.", 2
+    ),
+)
+# What a hold is ranked by, unfit ones last, and such as do not press all over or ask for more than the vise is rated
+# for before them: square to the drawing, then figures, of which the area counts to two digits.
+HOLD_RANKING = ("square", "contact_area", "clamp_needed", "above", "fixed_area")
+
+
+def hold_ranking(names: Sequence[str] | None) -> tuple[str, ...]:
+    """What holds are ranked by, from figures as a user writes them; the usual order for None.
+
+    An order that fixtures with pegs have stands for the usual one.
+
+    >>> hold_ranking(["clamp-needed", "grip"])
+    ('clamp_needed', 'grip')
+    """
+    keys = [name.strip().lower().replace("-", "_").replace(" ", "_") for name in names or HOLD_RANKING]
+    if has_house_order(keys) or keys == ["warnings"]:
+        return HOLD_RANKING
+    figures = {figure.key: figure.option for figure in HOLD_FIGURES}
+    for key, name in zip(keys, names or HOLD_RANKING, strict=True):
+        if key not in figures and key not in HOLD_RANKING:
+            known = ", ".join(figures.values())
+            raise InputError(f"{name!r} is no figure of flat jaws to rank by: choose among {known}.")
+    if len(set(keys)) < len(keys):
+        raise InputError(f"the figures to rank by, {', '.join(names or ())}, name one twice: name each once.")
+    return tuple(keys)
 
 
 @frozen
@@ -114,6 +143,11 @@ class JawHold:
         return max(min(high, other_high) - max(low, other_low), 0.0)
 
     @property
+    def fixed_area(self) -> float:
+        """The area in mm² that the fixed jaw touches."""
+        return self.fixed.area
+
+    @property
     def contact_area(self) -> float:
         """The smaller of the two areas in mm²."""
         return min(self.fixed.area, self.moving.area)
@@ -141,7 +175,7 @@ class JawHold:
     @property
     def figures(self) -> dict[str, float]:
         """The figures that are known, by their keys."""
-        named = {key: getattr(self, key) for key in HOLD_FIGURES}
+        named = {figure.key: getattr(self, figure.key) for figure in HOLD_FIGURES}
         return {key: float(value) for key, value in named.items() if value is not None and value != inf}
 
     def as_quality(self) -> dict[str, Any]:

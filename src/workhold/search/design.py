@@ -197,6 +197,11 @@ def answer(
     """
     refuse_kind(query, Query, "the query", "give a Query, such as workhold.Query(part, toolkit)")
     workers = thread_count(counting_number("threads", threads))
+    if query.toolkit.flat_jaws is not None:
+        # What holds by friction loads its own solver, which pegs do not need.
+        from workhold.search.jaw_search import answer_between_jaws
+
+        return deliver(answer_between_jaws(query, progress, cancel), sink)
     if query.seating is not None:
         search = partial(answer, threads=workers, preview=preview)
         return seated_answer(query, search, threads=workers, progress=progress, cancel=cancel, sink=sink)

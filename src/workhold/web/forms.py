@@ -20,6 +20,7 @@ from workhold.fixels.kinds import USUAL, table_of, toolkit_of
 from workhold.fixels.support_hardware import HARDWARE
 from workhold.fixels.table import ToolkitField
 from workhold.fixels.toolkit import Toolkit
+from workhold.limits import MOST_LENGTHS
 from workhold.model.quality import asked_ranking
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Tolerance
@@ -93,6 +94,9 @@ TYPES: Mapping[str, Any] = {
     "heights": Point,
     "holes": Annotated[list[Name], Field(max_length=MOST_NAMES)],
     "directions": Annotated[list[Name] | list[DirectionPair], Field(max_length=len(DIRECTIONS) ** 2)],
+    "lengths": Annotated[list[Number], Field(max_length=MOST_LENGTHS)],
+    "choice": Name,
+    "force": Number,
 }
 
 
@@ -153,6 +157,8 @@ class LoadForm(Form, LoadPart):
     force: Number = 0.0
     directions: Point = Field(default=[0.0, 360.0])
     moment: Number = 0.0
+    upward: Number = 0.0
+    height: Number | None = None
 
 
 class LoadsForm(Form):

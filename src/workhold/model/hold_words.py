@@ -1,0 +1,118 @@
+"""What is said of a part between flat jaws: how to set it up, what it asks for, and what to beware of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from workhold.model.fixture import Fixture
+from workhold.model.friction import COEFFICIENTS, friction_of
+from workhold.model.jaw_hold import JawHold, Patch
+from workhold.model.query import Query
+from workhold.units import Unit
+
+__all__ = [
+    "coefficient_words",
+    "faces_words",
+    "force_words",
+    "hold_reasons",
+    "setup_sentences",
+    "stop_words",
+    "warning_sentences",
+]
+
+
+def faces_words(patch: Patch) -> str:
+    """What a jaw touches, in a few words.
+
+    >>> faces_words(Patch(((0, 5, 0, 9),), (3,))), faces_words(Patch(((0, 0, 0, 9),), (), True))
+    ('face 3', 'a corner')
+    """
+    if not patch.segments:
+        return "a corner" if len(patch.rectangles) == 1 else "corners"
+    one = len(patch.segments) == 1
+    return f"face{'' if one else 's'} {', '.join(map(str, patch.segments))}"
+
+
+def stop_words(hold: JawHold, offset: float, unit: Unit) -> str:
+    """Where the work stop is; empty without one."""
+    if hold.stop is None:
+        return ""
+    inward = ""
+    if offset:
+        inward = f", {unit.text(abs(offset))} {'inward' if offset > 0 else 'outward'} of it"
+    return f"at the {hold.stop} end of the jaws{inward}"
+
+
+def force_words(force: float, unit: Unit) -> str:
+    """A jaw force rounded up to two digits, as somebody would set it.
+
+    >>> from workhold.units import MILLIMETRE
+    >>> force_words(3432.8, MILLIMETRE)
+    '3500 N'
+    """
+    if force <= 0:
+        return unit.force_words(0.0)
+    step = 10.0 ** (len(str(int(force))) - 2)
+    return unit.force_words(-(-force // step) * step)
+
+
+def setup_sentences(fixture: Fixture, query: Query, unit: Unit) -> Iterator[str]:
+    """How to set it up, a sentence for each thing to do, in their order."""
+    hold, jaws = fixture.hold, query.toolkit.flat_jaws
+    assert hold is not None and jaws is not None
+    if hold.parallels:
+        yield f"Lay the part on parallels of {unit.text(hold.parallels)}"
+    else:
+        yield "Lay the part on the bed of the vise, without parallels"
+    turned = "as drawn"
+    if abs(fixture.pose.written_deg) > 1e-9:
+        turned = f"turned by {round(fixture.pose.written_deg, 3):g}°"
+    yield (
+        f"{faces_words(hold.fixed).capitalize()} flush on the fixed jaw, {turned}; the moving jaw presses "
+        f"{faces_words(hold.moving)}"
+    )
+    start = min(hold.fixed.ends[0], hold.moving.ends[0])
+    where = f"what is gripped begins {unit.text(start)} from the left end of the jaws"
+    if hold.stop is None:
+        yield f"In the middle of the jaws, without a stop: {where}"
+    else:
+        yield f"Push it against the work stop {stop_words(hold, jaws.stop_offset, unit)}: {where}"
+    yield f"Opening of the jaws {unit.text(hold.opening)}"
+    needed = hold.clamp_needed
+    if needed is not None:
+        torque = jaws.torque(needed)
+        on_screw = "" if torque is None else f", about {unit.moment_words(torque * 1000.0)} on the screw"
+        yield f"Close it with {force_words(needed, unit)} or more{on_screw}"
+
+
+def coefficient_words(query: Query) -> str:
+    """With which friction and safety forces are stated, and where these are from."""
+    value, usual = friction_of(query.friction, "jaw"), COEFFICIENTS["jaw"]
+    is_given = "jaw" in dict(query.friction or ())
+    source = "as given" if is_given else f"{usual.between}, {usual.source}"
+    factor = "as given" if query.safety is not None else "as usual"
+    return f"Friction of the jaws {value:g} ({source}); safety factor {query.safety_factor:g} ({factor})."
+
+
+def hold_reasons(fixture: Fixture, unit: Unit) -> list[str]:
+    """What speaks for a hold, in the order in which holds are ranked."""
+    hold = fixture.hold
+    assert hold is not None
+    turn = fixture.pose.written_deg
+    square = abs((turn + 45.0) % 90.0 - 45.0) < 1e-6
+    angle = "as drawn" if abs(turn) < 1e-6 else f"turned by {round(turn, 3):g}°"
+    words = [angle if square else f"{angle}, not square to the drawing"]
+    area = f"{hold.contact_area / unit.millimetres**2:,.3g} {unit.abbreviation}²"
+    words.append(
+        f"both jaws grip {unit.text(hold.grip)}, {area}" if hold.contact_area else "gripped along a line"
+    )
+    if hold.clamp_needed is not None:
+        words.append(f"asks for a jaw force of {unit.force_words(hold.clamp_needed)}")
+    if hold.above:
+        words.append(f"{unit.text(hold.above)} stand above the jaws")
+    return words
+
+
+def warning_sentences(hold: JawHold) -> list[str]:
+    """What to beware of, as sentences."""
+    return [f"{words[:1].upper()}{words[1:]}." for words in hold.warnings]
