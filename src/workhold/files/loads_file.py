@@ -133,14 +133,14 @@ def load_from_words(words: Mapping[str, Any], place: str, unit_scale: float) -> 
         height = number(words["z"])
         if height is None:
             raise InputError(f"{place}: z {shown(words['z'])} is not a height: give a number, such as 12.")
-    if isinstance(words.get("at"), list | tuple) and len(words["at"]) == 3 and "z" not in words:
+    vector = components(words, place)
+    if vector and isinstance(words.get("at"), list | tuple) and len(words["at"]) == 3 and "z" not in words:
         words = {**words, "at": words["at"][:2], "z": words["at"][2]}
         height = number(words["z"])
     if "at" in words:
         points = [point(words["at"], f"{place}: at")]
     elif "path" in words:
         points = path_points(words["path"], f"{place}: path")
-    vector = components(words, place)
     try:
         return Load(
             points=[(x * unit_scale, y * unit_scale) for x, y in points],

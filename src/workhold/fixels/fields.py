@@ -63,6 +63,7 @@ PITCH = ToolkitField(
     default=REQUIRED,
     entry="write the distance between holes as one number, or [x, y]",
     missing="distance between holes",
+    belongs_to="holes",
 )
 COLUMNS = ToolkitField(
     "columns",
@@ -73,6 +74,7 @@ COLUMNS = ToolkitField(
     entry="write how many columns of holes each jaw has, such as columns = 2",
     missing="columns",
     most=200,
+    belongs_to="holes",
 )
 PEG_RADIUS = ToolkitField(
     "peg_radius",
@@ -83,6 +85,7 @@ PEG_RADIUS = ToolkitField(
     entry="write the radius of the pegs as a number",
     missing="pegs' radius",
     least="0",
+    belongs_to="pegs",
 )
 BODY_RADIUS = ToolkitField(
     "body_radius",
@@ -107,6 +110,7 @@ FLAT = ToolkitField(
     (PageLabel("Centre to flat", "round, no flat"),),
     entry="write its distance from a peg's centre, or that and half its width, such as [2.5, 1.5]",
     least="0",
+    belongs_to="pegs",
 )
 ROWS = ToolkitField(
     "rows",
@@ -115,6 +119,7 @@ ROWS = ToolkitField(
     (PageLabel("Rows a jaw", "as needed"),),
     lifted=Lifted("rows of holes", "holes", "with as many rows as needed"),
     most=100_000,
+    belongs_to="holes",
 )
 BLOCKED = ToolkitField(
     "blocked",
@@ -162,6 +167,7 @@ JAW_WIDTH = ToolkitField(
     unset="endless",
     lifted=Lifted("width of the jaws", "reach", "with a flat jaw as wide as the part"),
     belongs_to="flat jaw",
+    entry="write the width of the jaws as a number",
 )
 ROW_OFFSET = ToolkitField(
     "row_offset",

@@ -66,7 +66,6 @@ class PlainVise(Toolkit):
                 default=REQUIRED,
                 unset="",
                 lifted=None,
-                entry="write the width of the jaws as a number",
                 missing="width of its jaws",
             ),
             fields.JAW_HEIGHT,

@@ -221,7 +221,8 @@ class Toolkit:
     def ends_on_walls(self) -> tuple[slice, ...]:
         """The contacts of a fixture that are the ends of the contact with a wall, for each wall."""
         standing = self.arrangements[0].carriers
-        walls = [number for number in dict.fromkeys(standing) if not self.carriers[number].contact.is_placed]
+        flush = [number for number, carrier in enumerate(self.carriers) if not carrier.contact.is_placed]
+        walls = [number for number in flush if number in standing]
         return tuple(slice(standing.index(one), standing.index(one) + standing.count(one)) for one in walls)
 
     @property

@@ -86,7 +86,7 @@ class ColumnsSink:
 
 def refuse_holds(query: Query, path: str | Path) -> None:
     """Refuses what flat jaws hold, which has no pegs to stand in columns."""
-    if query.toolkit.flat_jaws is not None:
+    if isinstance(query, Query) and query.toolkit.flat_jaws is not None:
         raise InputError(
             f"{path}: a file in columns is of pegs, and a {query.toolkit.noun} has none: let the name end in .json or .csv."
         )
