@@ -47,14 +47,14 @@ def test_push_at_the_moving_jaw_asks_for_itself():
 @pytest.mark.parametrize("grip", [12.0, 20.0, 40.0])
 def test_part_tips_where_its_push_leaves_the_kern(grip):
     """Without friction a jaw bears a push within the middle third of its height; each moment beyond costs 6 M / g."""
-    held, push, above = block(grip=grip, friction=1e-9), 100.0, 7.0
+    held, push, above = block(grip=grip, friction=1e-4), 100.0, 7.0
     height = grip / 2 + above
     load = np.array([50.0, 60.0, height]), np.array([0.0, -push, 0.0])
     face = [(0.0, WIDE, 0.0, grip)]
     need = needed(held, load)
-    assert need == pytest.approx(force_needed(face, face, DEEP, 1e-9, [load]), rel=1e-6)
+    assert need == pytest.approx(force_needed(face, face, DEEP, 1e-4, [load]), rel=1e-3)
     # With the parallels' help it is at most what both jaws alone ask for: (2 F + push) g / 6 = push * above.
-    assert need <= max((push * above - push * grip / 6) / (grip / 3), 0.0) * (1 + 1e-9)
+    assert need <= max((push * above - push * grip / 6) / (grip / 3), 0.0) * (1 + 1e-6)
 
 
 def test_cells_turn_as_the_integral_does():

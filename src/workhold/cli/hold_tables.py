@@ -74,7 +74,8 @@ def hold_fixture_tables(fixture: Fixture, rank: int, total: int, unit: Unit) -> 
 
     assert fixture.hold is not None
     hold, query = fixture.hold, fixture.listing.result.query
-    tables: list[Table | str] = [f"Fixture {rank} of {total}", *setup_sentences(fixture, query, unit)]
+    steps = (f"{step}." for step in setup_sentences(fixture, query, unit))
+    tables: list[Table | str] = [f"Fixture {rank} of {total}", *steps]
     if hold.clamp_needed_each:
         needs = Table((">load", "name", f">jaw force needed {unit.force}"))
         for number, (load, need) in enumerate(zip(query.loads, hold.clamp_needed_each, strict=True), 1):

@@ -14,6 +14,7 @@ __all__ = [
     "coefficient_words",
     "faces_words",
     "force_words",
+    "hold_cautions",
     "hold_reasons",
     "setup_sentences",
     "stop_words",
@@ -39,8 +40,13 @@ def stop_words(hold: JawHold, offset: float, unit: Unit) -> str:
         return ""
     inward = ""
     if offset:
-        inward = f", {unit.text(abs(offset))} {'inward' if offset > 0 else 'outward'} of it"
-    return f"at the {hold.stop} end of the jaws{inward}"
+        inward = f", {short(abs(offset), unit)} {'inward' if offset > 0 else 'outward'}"
+    return f"{hold.stop} end of the jaws{inward}"
+
+
+def short(length: float, unit: Unit) -> str:
+    """A length with as few decimals as it has."""
+    return f"{round(length / unit.millimetres, 4):g} {unit.abbreviation}"
 
 
 def force_words(force: float, unit: Unit) -> str:
@@ -61,28 +67,31 @@ def setup_sentences(fixture: Fixture, query: Query, unit: Unit) -> Iterator[str]
     hold, jaws = fixture.hold, query.toolkit.flat_jaws
     assert hold is not None and jaws is not None
     if hold.parallels:
-        yield f"Lay the part on parallels of {unit.text(hold.parallels)}"
+        yield f"Take the parallels of {short(hold.parallels, unit)}, one beside each jaw"
     else:
-        yield "Lay the part on the bed of the vise, without parallels"
+        yield "No parallels: the part lies on the bed of the vise"
+    yield f"Open the jaws a little more than {unit.text(hold.opening)}"
     turned = "as drawn"
     if abs(fixture.pose.written_deg) > 1e-9:
         turned = f"turned by {round(fixture.pose.written_deg, 3):g}°"
     yield (
-        f"{faces_words(hold.fixed).capitalize()} flush on the fixed jaw, {turned}; the moving jaw presses "
+        f"Put the part in {turned}, {faces_words(hold.fixed)} flush on the fixed jaw; the moving jaw presses "
         f"{faces_words(hold.moving)}"
     )
     start = min(hold.fixed.ends[0], hold.moving.ends[0])
     where = f"what is gripped begins {unit.text(start)} from the left end of the jaws"
     if hold.stop is None:
-        yield f"In the middle of the jaws, without a stop: {where}"
+        yield f"Put it in the middle of the jaws, as there is no stop: {where}"
     else:
-        yield f"Push it against the work stop {stop_words(hold, jaws.stop_offset, unit)}: {where}"
-    yield f"Opening of the jaws {unit.text(hold.opening)}"
+        yield f"Push it against the work stop, {stop_words(hold, jaws.stop_offset, unit)}: {where}"
     needed = hold.clamp_needed
     if needed is not None:
         torque = jaws.torque(needed)
         on_screw = "" if torque is None else f", about {unit.moment_words(torque * 1000.0)} on the screw"
-        yield f"Close it with {force_words(needed, unit)} or more{on_screw}"
+        apart = f"they stand {unit.text(hold.opening)} apart"
+        yield f"Close the jaws with {force_words(needed, unit)} or more{on_screw}; {apart}"
+    else:
+        yield f"Close the jaws; they stand {unit.text(hold.opening)} apart"
 
 
 def coefficient_words(query: Query) -> str:
@@ -109,10 +118,16 @@ def hold_reasons(fixture: Fixture, unit: Unit) -> list[str]:
     if hold.clamp_needed is not None:
         words.append(f"asks for a jaw force of {unit.force_words(hold.clamp_needed)}")
     if hold.above:
-        words.append(f"{unit.text(hold.above)} stand above the jaws")
+        words.append(f"{short(hold.above, unit)} above the jaws")
     return words
 
 
 def warning_sentences(hold: JawHold) -> list[str]:
     """What to beware of, as sentences."""
     return [f"{words[:1].upper()}{words[1:]}." for words in hold.warnings]
+
+
+def hold_cautions(hold: JawHold) -> list[tuple[str, str]]:
+    """What a sheet says to beware of, each with its kind."""
+    kind = "unfit" if hold.is_unfit or not hold.full_contact else "load"
+    return [(kind, sentence) for sentence in warning_sentences(hold)]

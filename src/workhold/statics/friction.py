@@ -6,8 +6,8 @@ a polygon of 16 sides inside it. Parallels push upward and the work stop along t
 held at a jaw force F if such forces balance it where the jaw that moves presses with F. For given pressures every
 friction that balances is a safe one: the lower bound theorem of limit analysis.
 
-The least F is a linear program with six equations of balance. F is convex in the load, so that
-of a range of loads those at its corners are the worst.
+The least F is a linear program with six equations of balance, and its dual asks for a motion of the part. F is convex
+in the load, so that of a range of loads those at its corners are the worst.
 
 Reference: D. C. Drucker, W. Prager, H. J. Greenberg, *Extended limit design theorems for continuous media*, Quarterly of
 Applied Mathematics 9 (1952).
@@ -20,9 +20,10 @@ from math import cos, pi, sin
 from typing import TYPE_CHECKING
 
 import numpy as np
-from attrs import frozen
+from attrs import define, field, frozen
 from numpy.typing import NDArray
 
+from workhold.errors import WorkholdError
 from workhold.model.jaw_hold import Patch
 from workhold.statics.linear_program import LinearProgram
 from workhold.statics.patches import PressedPatch, hulls_meet
@@ -37,6 +38,10 @@ Array = NDArray[np.float64]
 DIRECTIONS = 16
 # How far in mm, of the two kerns, may miss each other by rounding.
 KERN_SLACK = 1e-7
+# A motion is no larger than this per unit of load; a load that drives it so far is held by no jaw force.
+FARTHEST = 1e7
+# How much more work, of all that is done, breaks a condition, and how often conditions are added for a load.
+BROKEN, MOST_TURNS = 1e-9, 1000
 # Parts of the largest force and moment of a load below which they are rounding.
 NEGLIGIBLE = 1e-12
 
@@ -142,40 +147,70 @@ class Grip:
 
         It is None for a load that no jaw force holds.
         """
-        program = self.program
-        return [least_force(program, load) for load in loads]
-
-    @cached_property
-    def program(self) -> LinearProgram:
-        """The least jaw force, whose first six rows are the balance of a load."""
-        pressing, pushing, rubbing = self.pressing, self.pushing, self.rubbing.reshape(-1, 6)
-        cells, edges = self.bearing.shape
-        matrix = np.zeros((6 + cells, edges + len(pushing) + len(rubbing)))
-        matrix[:6] = np.vstack([pressing, pushing, rubbing]).T
-        matrix[6:, :edges] = -self.bearing
-        first = edges + len(pushing)
-        of_cell = np.repeat(np.arange(cells), DIRECTIONS)
-        matrix[6 + of_cell, first + np.arange(len(rubbing))] = 1.0
-        # What a cell can bear at most for a unit of force is the unit of its friction.
-        size = self.bearing.max(axis=1, initial=0.0)
-        size[size <= 0.0] = 1.0
-        matrix[6:] /= size[:, None]
-        matrix[:, first:] *= size[of_cell]
-        costs = np.zeros(matrix.shape[1])
-        costs[len(self.fixed.edges) : edges] = 1.0
-        lower = np.concatenate([np.zeros(6), np.full(cells, -np.inf)])
-        return LinearProgram.of(matrix, costs, lower, np.zeros(6 + cells))
+        motions = MotionProgram(self)
+        return [motions.least_force(load) for load in loads]
 
 
-def least_force(program: LinearProgram, load: Array) -> float | None:
-    """The least jaw force in N that balances a load (6,); None where none does."""
-    size = float(np.abs(load).max())
-    if size == 0.0:
-        return 0.0
-    side = -load / size
-    side[np.abs(side) < NEGLIGIBLE] = 0.0
-    least = program.least(side)
-    return None if least is None else max(least, 0.0) * size
+@define(eq=False)
+class MotionProgram:
+    """The motions of the part that both jaws resist, and which of them a load drives hardest.
+
+    By duality the least jaw force is the largest power of the load on a motion (6,) against which each pressure of the
+    fixed jaw, with the friction that goes with it, does no work, those of the moving jaw no more than 1 for a unit of
+    force, and parallels and stop none. Friction takes in each cell the direction that works most, so that each pressure
+    stands for very many linear conditions. Those are added that the last motion breaks, until it breaks none; loads of
+    one grip share them.
+
+    Parameters
+    ----------
+    grip : of the part.
+    """
+
+    grip: Grip
+    program: LinearProgram = field(init=False)
+    most_work: Array = field(init=False)
+
+    def __attrs_post_init__(self) -> None:
+        free = self.grip.pushing
+        below = np.full(len(free), -np.inf)
+        self.program = LinearProgram.of(free, np.zeros(6), below, np.zeros(len(free)), most=FARTHEST)
+        self.most_work = np.repeat([0.0, 1.0], [len(self.grip.fixed.edges), len(self.grip.moving.edges)])
+
+    def least_force(self, load: Array) -> float | None:
+        """The least jaw force in N that balances a load (6,); None where none does."""
+        size = float(np.abs(load).max())
+        if size == 0.0:
+            return 0.0
+        # Forces balance the load, so that it drives the part against the way they work.
+        driven = -load / size
+        driven[np.abs(driven) < NEGLIGIBLE] = 0.0
+        for _ in range(MOST_TURNS):
+            motion = self.program.with_costs(-driven)
+            if motion is None:
+                break
+            if not self.cut_off(motion):
+                return (
+                    None if np.abs(motion).max() > 0.5 * FARTHEST else max(float(driven @ motion), 0.0) * size
+                )
+        raise WorkholdError(
+            "the jaw force of a load was not found: report it with the part, the vise and the load."
+        )
+
+    def cut_off(self, motion: Array) -> bool:
+        """Adds the conditions that a motion (6,) breaks; whether there are any.
+
+        Forces on the part push it back, so that work is done against the motion by what they do along it.
+        """
+        grip = self.grip
+        along = grip.rubbing @ motion
+        chosen = along.argmax(axis=1)
+        rubbed = grip.rubbing[np.arange(len(chosen)), chosen]
+        forces = grip.pressing + grip.bearing.T @ rubbed
+        work = forces @ motion - self.most_work
+        broken = work > BROKEN * (1.0 + np.abs(forces * motion).sum(axis=1))
+        if broken.any():
+            self.program.add_rows(forces[broken], self.most_work[broken])
+        return bool(broken.any())
 
 
 def is_pressed_all_over(fixed: Patch, moving: Patch) -> bool:

@@ -1,6 +1,6 @@
-"""Linear programs, minimize c . x subject to l <= A x <= u and x >= 0, solved by HiGHS.
+"""Linear programs, minimize c . x subject to l <= A x <= u, solved by HiGHS.
 
-Of programs that differ in l and u alone each goes on from the basis of the last.
+Of programs that differ in costs, or to which rows are added, each goes on from the basis of the last.
 
 Reference: Q. Huangfu, J. A. J. Hall, *Parallelizing the dual revised simplex method*, Mathematical Programming
 Computation 10 (2018).
@@ -32,7 +32,7 @@ SETTINGS = {
 
 @frozen(eq=False)
 class LinearProgram:
-    """A linear program whose bounds of rows change.
+    """A linear program whose costs change, and to which rows are added.
 
     Parameters
     ----------
@@ -42,8 +42,13 @@ class LinearProgram:
     solver: Any
 
     @classmethod
-    def of(cls, matrix: Array, costs: Array, lower: Array, upper: Array) -> LinearProgram:
-        """The program of a matrix (M, N), costs (N,) and bounds of rows (M,), infinite where there is none."""
+    def of(
+        cls, matrix: Array, costs: Array, lower: Array, upper: Array, most: float | None = None
+    ) -> LinearProgram:
+        """The program of a matrix (M, N), costs (N,) and bounds of rows (M,), infinite where there is none.
+
+        ``most`` is the largest size of each x, of either sign; None where each is 0 or more.
+        """
         # It takes a moment to load, and is needed where a program is solved alone.
         import highspy
 
@@ -57,8 +62,8 @@ class LinearProgram:
         model = highspy.HighsLp()
         model.num_row_, model.num_col_ = matrix.shape
         model.col_cost_ = costs
-        model.col_lower_ = np.zeros(len(costs))
-        model.col_upper_ = np.full(len(costs), highspy.kHighsInf)
+        model.col_lower_ = np.full(len(costs), 0.0 if most is None else -most)
+        model.col_upper_ = np.full(len(costs), highspy.kHighsInf if most is None else most)
         model.row_lower_, model.row_upper_ = lower, upper
         column, row = np.nonzero(matrix.T)
         model.a_matrix_.format_ = highspy.MatrixFormat.kColwise
@@ -72,19 +77,32 @@ class LinearProgram:
         solver.passModel(model)
         return cls(solver)
 
-    def least(self, sides: Array | None = None) -> float | None:
-        """The least cost, the first rows being equal to sides (K,) where these are given; None where there is none."""
+    def least(self) -> float | None:
+        """The least cost; None where there is none."""
         import highspy
 
-        if sides is not None:
-            rows = np.arange(len(sides), dtype=np.int32)
-            self.solver.changeRowsBounds(len(sides), rows, sides, sides)
         self.solver.run()
         if self.solver.getModelStatus() != highspy.HighsModelStatus.kOptimal:
             return None
         return float(self.solver.getInfo().objective_function_value)
 
-    @property
-    def prices(self) -> Array:
-        """What one more of each row (M,) would cost, as of the last program that was solved."""
-        return np.array(self.solver.getSolution().row_dual)
+    def add_rows(self, rows: Array, upper: Array) -> None:
+        """Adds rows (K, N) that are at most so much (K,)."""
+        import highspy
+
+        count, columns = rows.shape
+        starts = columns * np.arange(count, dtype=np.int32)
+        indices = np.tile(np.arange(columns, dtype=np.int32), count)
+        lower = np.full(count, -highspy.kHighsInf)
+        self.solver.addRows(count, lower, upper, count * columns, starts, indices, rows.ravel())
+
+    def with_costs(self, costs: Array) -> Array | None:
+        """The x of least cost for other costs (N,); None where there is none."""
+        import highspy
+
+        columns = np.arange(len(costs), dtype=np.int32)
+        self.solver.changeColsCost(len(costs), columns, costs)
+        self.solver.run()
+        if self.solver.getModelStatus() != highspy.HighsModelStatus.kOptimal:
+            return None
+        return np.array(self.solver.getSolution().col_value)
