@@ -296,6 +296,7 @@ def preset_names() -> tuple[str, ...]:
             one.name.split("-")[0],
             one.fields.get(PITCH.name, (0.0, 0.0)),
             one.fields.get(COLUMNS.name, 0),
+            one.name,
         )
     )
     presets.sort(key=lambda one: (not is_sold(one.name), one.toolkit.moving.has_lattice))
@@ -315,6 +316,8 @@ def preset(name: str) -> LoadedToolkit:
     """The preset of a name that exists."""
     text = (files("workhold") / "data" / "toolkits" / f"{name}{ENDING}").read_text(encoding="utf-8")
     found = described_toolkit(name, tomllib.loads(text))
+    if found.toolkit.flat_jaws is not None:
+        return found
     clamp = found.fields.get(TOP_CLAMP) or TopClamp()
     if clamp.tip_margin is None:
         clamp = evolve(clamp, tip_margin=TIP_MARGIN)

@@ -52,7 +52,7 @@ class JawPair:
 
     def role(self, parallels: float) -> str:
         """What the outline is called that the jaws meet with the part on parallels of a height."""
-        return f"jaws on {parallels:g} mm"
+        return f"jaws up to {round(self.top(parallels), 6):g} mm"
 
     def torque(self, force: float) -> float | None:
         """The torque in N m on the screw that closes with a force in N; None where the lead is not known."""

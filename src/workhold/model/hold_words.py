@@ -111,9 +111,10 @@ def hold_reasons(fixture: Fixture, unit: Unit) -> list[str]:
     square = abs((turn + 45.0) % 90.0 - 45.0) < 1e-6
     angle = "as drawn" if abs(turn) < 1e-6 else f"turned by {round(turn, 3):g}°"
     words = [angle if square else f"{angle}, not square to the drawing"]
-    area = f"{hold.contact_area / unit.millimetres**2:,.3g} {unit.abbreviation}²"
+    decimals = 0 if unit.millimetres == 1.0 else 2
+    area = f"{hold.contact_area / unit.millimetres**2:,.{decimals}f} {unit.abbreviation}²"
     words.append(
-        f"both jaws grip {unit.text(hold.grip)}, {area}" if hold.contact_area else "gripped along a line"
+        f"both jaws grip {short(hold.grip, unit)}, {area}" if hold.contact_area else "gripped along a line"
     )
     if hold.clamp_needed is not None:
         words.append(f"asks for a jaw force of {unit.force_words(hold.clamp_needed)}")

@@ -478,6 +478,8 @@ def explore(
         reason = "" if len(result) else " ".join(map(str, result.reasons))
         figures = dict(result[0].quality) if len(result) else {}
         fit = bool(figures) and not unfit(result.table.quality[:1], result.query.tolerance)[0]
+        if result.holds:
+            fit = not result.holds[0].is_unfit and result.holds[0].full_contact
         held = held_share(result[0], result.workpiece) if len(result) else 0.0
         known = None if count is None or not len(result) else round_to_two_digits(count)
         found = dict(result.found) if known is None else {}
@@ -489,7 +491,11 @@ def held_share(fixture: Fixture, workpiece: Workpiece) -> float:
     x0, y0, x1, y1 = workpiece.bounds
     sides, back = (x1 - x0, y1 - y0), fixture.pose.inverse
     longer = int(sides[1] > sides[0])
-    places = [float(back.apply(peg.x, peg.y)[longer]) for peg in fixture.pegs]
+    points = [(peg.x, peg.y) for peg in fixture.pegs]
+    if fixture.hold is not None:
+        jaws = (fixture.hold.fixed, 0.0), (fixture.hold.moving, fixture.hold.opening)
+        points = [(x, y) for patch, y in jaws for x in patch.ends]
+    places = [float(back.apply(x, y)[longer]) for x, y in points]
     return min((max(places) - min(places)) / sides[longer], 1.0)
 
 

@@ -142,6 +142,8 @@ def refuse_unseated(toolkit: Toolkit) -> None:
         With two clamps, where no peg stands still, for pegs with a flat, and for pegs without a radius.
     """
     words = "what a part does while it is clamped is stated"
+    if toolkit.flat_jaws is not None:
+        raise InputError(f"{words} of round pegs: flat jaws have none.")
     if not toolkit.closes_at_once:
         raise InputError(f"{words} of one clamp: with two the part is put against its locators by hand.")
     if all(plate.travel is not None for plate in toolkit.plates):

@@ -174,7 +174,8 @@ def fixture_answer(
     """
     move = middle_move(fixture, toolkit, workpiece)
     stands = moved_on(fixture, toolkit, move)
-    placed = [steps * pitch for steps, pitch in zip(move, toolkit.plates[0].pitch, strict=True)]
+    pitch = toolkit.plates[0].pitch if toolkit.plates else (0.0, 0.0)
+    placed = [steps * apart for steps, apart in zip(move, pitch, strict=True)]
     bench = evolve(bench_of(stands, workpiece, toolkit), is_exact=True)
     dx, dy = placed
     return {
