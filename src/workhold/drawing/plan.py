@@ -45,6 +45,7 @@ __all__ = [
     "draw_plan",
     "draw_tag",
     "face_tag",
+    "gripped_tag",
     "peg_label",
 ]
 

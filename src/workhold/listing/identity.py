@@ -309,8 +309,9 @@ def first_of_each(groups: IntArray) -> tuple[IntArray, IntArray]:
 
 def near_duplicates(table: FixtureTable, workpiece: Workpiece, toolkit: Toolkit) -> IntArray:
     """A number (N,) for each fixture, the same for near duplicates."""
-    if len(table) == 0:
-        return np.zeros(0, np.int64)
+    if len(table) == 0 or table.column.shape[1] == 0:
+        # What flat jaws hold differs in side, parallels or stop.
+        return np.arange(len(table), dtype=np.int64)
     carriers = toolkit.peg_carriers(table.arrangement)
     # Faces of each carrier's pegs in order, the first carrier's in front; with the pegs of each type where
     # they belong.

@@ -193,6 +193,9 @@ class SearchForm(Form):
     tolerance: ToleranceForm | None = None
     loads: list[LoadForm] = Field(default=[], max_length=MOST_LOADS)
     program: ProgramForm | None = None
+    thickness: Annotated[float, Field(gt=0, le=LARGEST)] | None = Field(
+        default=None, description="of a drawn part in mm, for what flat jaws grip"
+    )
 
     def query(self, toolkit: Toolkit, most_segments: int) -> Query:
         loads = tuple(form.load() for form in self.loads)
@@ -209,6 +212,7 @@ class SearchForm(Form):
             loads,
             program,
             peg_height=height,
+            thickness=self.thickness,
             **given_in(self, OF_SEARCHES) | ({"listing": None} if toolkit.closes_at_once else {}),
         )
 
