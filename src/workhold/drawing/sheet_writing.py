@@ -389,7 +389,7 @@ def write_dowel(column: TextColumn, sheet: Sheet) -> None:
 
 def usual_dowel(sheet: Sheet, heights: SheetHeights) -> SoldDowel | None:
     """The dowel that is no higher than it must be beside a prism; None where none is sold that is not higher."""
-    diameter = sheet.toolkit.peg_diameter
+    diameter = sheet.toolkit.peg_diameter or 0.0
     usual = min(DOWEL_STANDOUT * diameter, heights.peg_top) + SAME_HEIGHT
     low = [one for one in standouts(diameter) if one <= usual]
     return dowel_for(diameter, max(low)) if low else None

@@ -172,14 +172,14 @@ class Toolkit:
         return tuple(carrier for carrier in self.carriers if carrier.has_lattice)
 
     @property
-    def peg_diameter(self) -> float:
-        """Diameter in mm of the pegs that stand in its plates.
+    def peg_diameter(self) -> float | None:
+        """Diameter in mm of the pegs that stand in its plates; None where there are none.
 
         >>> from workhold import Vise
         >>> Vise(pitch=20, columns=3, peg_radius=3).peg_diameter
         6.0
         """
-        return 2 * self.plates[0].peg_radius if self.plates else 0.0
+        return 2 * self.plates[0].peg_radius if self.plates else None
 
     @property
     def is_in_inches(self) -> bool:
