@@ -136,7 +136,7 @@ def heights_of(
             f"pegs {details.peg_height:g} mm high end below the part, which lies {lift:g} mm above the "
             "plates: give a larger peg height, or lower supports."
         )
-    diameter, length = toolkit.peg_diameter, details.peg_length
+    diameter, length = toolkit.peg_diameter or 0.0, details.peg_length
     dowel = None if length is not None else dowel_for(diameter, top + lift)
     if length is None:
         # A peg that is not sold is made as long as it must be to sit as deep as one that is.
