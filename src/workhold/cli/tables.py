@@ -90,13 +90,15 @@ def first_sentence(result: Result, unit: Unit) -> str:
     return why_first(result, unit)
 
 
-def unfit_sentence(unfit: int) -> str:
+def unfit_sentence(unfit: int, between_jaws: bool = False) -> str:
     """Says how many fixtures are not shown because they are none for a workshop, and how to see them."""
     are = "is no fixture" if unfit == 1 else "are no fixtures"
-    return (
-        f"{unfit:,} of them {are} for a workshop (the part may lie anywhere, or one peg hardly holds) and "
-        "not shown: see them with --unfit."
+    why = (
+        "a jaw touches a corner alone"
+        if between_jaws
+        else "the part may lie anywhere, or one peg hardly holds"
     )
+    return f"{unfit:,} of them {are} for a workshop ({why}) and not shown: see them with --unfit."
 
 
 def proof_sentences(result: Result, written: str | None = None) -> list[str]:

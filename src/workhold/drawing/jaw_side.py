@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import inf
+
 from workhold.drawing.annotation import dimension
 from workhold.drawing.bench import PART_FILL, TOUCHED
 from workhold.drawing.carriers import draw_jaw
@@ -14,6 +16,8 @@ __all__ = ["draw_jaw_side"]
 
 # Room for dimensions at the right and below, and the largest height of the view, page units.
 BESIDE, BELOW, HIGHEST = 74.0, 30.0, 190.0
+# From the words of one height to those of the next, page units.
+LABEL_ROOM = 24.0
 # Of the opening: how wide jaws and parallels are drawn.
 JAW_SHARE, PARALLEL_SHARE, WIDEST_PARALLEL = 0.28, 0.2, 8.0
 
@@ -91,17 +95,19 @@ def draw_heights(
     hold = fixture.hold
     assert hold is not None
     edge = view((hold.opening * 1.28, 0.0))[0]
-    rows = [("grip", max(hold.fixed.band[0], hold.moving.band[0]), hold.grip)]
-    spans = [(name, low, low + size) for name, low, size in rows if size > 0]
-    if height > top:
-        spans.append(("above", top, height))
+    spans = [("above", top, height)] if height > top else []
+    if hold.grip > 0:
+        foot = max(hold.fixed.band[0], hold.moving.band[0])
+        spans.append(("grip", foot, foot + hold.grip))
     if hold.parallels:
         spans.append(("parallels", -hold.parallels, 0.0))
+    x, lowest = edge + 12, -inf
     for name, low, high in spans:
         (_, y0), (_, y1) = view((0.0, low)), view((0.0, high))
-        x = edge + 12
         for y in (y0, y1):
             scene.line([(edge + 2, y), (x + 5, y)], GREY, 0.6)
         scene.line([(x, y0), (x, y1)], BLACK, 1.0)
-        scene.text((x + 8, (y0 + y1) / 2 - 5.5), name, 10, fill=GREY)
-        scene.text((x + 8, (y0 + y1) / 2 + 5.5), lengths.short(high - low, 4), 11, bold=True)
+        # Words of what is low give way downward, so that none covers another.
+        middle = lowest = max((y0 + y1) / 2, lowest + LABEL_ROOM)
+        scene.text((x + 8, middle - 5.5), name, 10, fill=GREY)
+        scene.text((x + 8, middle + 5.5), lengths.short(high - low, 4), 11, bold=True)

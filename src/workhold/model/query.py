@@ -150,7 +150,9 @@ class Query(SearchQuestion):
             raise InputError(f"there is no program to rank by the {PROGRAM_FIGURE.words}: give one.")
         if self.program is not None:
             object.__setattr__(self, "program", self.program.pressing_on(self.workpiece.outer_loops))
-        if self.program is not None or self.peg_height is not None:
+        if self.toolkit.flat_jaws is not None:
+            object.__setattr__(self, "peg_height", None)
+        elif self.program is not None or self.peg_height is not None:
             object.__setattr__(self, "peg_height", height_of_pegs(self.peg_height, self.workpiece))
         if self.workpiece.solid is not None:
             object.__setattr__(self, "thickness", None)
@@ -207,6 +209,11 @@ class Query(SearchQuestion):
             "seating": self.seating is not None,
             "a keep-out zone": bool(self.restrictions.zones),
         }
+        if self.program is not None and self.program.forces is not None:
+            raise InputError(
+                "what the tools of a program push with is not reckoned between flat jaws: leave the forces out, and "
+                "give the worst of them as loads."
+            )
         for asked, is_given in only_of_pegs.items():
             if is_given:
                 raise InputError(f"{asked} is asked of pegs, and flat jaws have none: leave it out.")

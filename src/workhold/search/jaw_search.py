@@ -12,6 +12,7 @@ examined : a hull edge with parallels and a stop, and the first rule that it bre
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 from itertools import product
@@ -23,6 +24,7 @@ from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Progress
+from workhold.contact.swept import swept_below
 from workhold.conventions import PARALLEL, READING, SQUARE_TILT, TOUCHING
 from workhold.fixels.jaw_pair import JawPair
 from workhold.geometry.hull import HullEdge, HullTouch, hull_edges, touches_along
@@ -31,7 +33,8 @@ from workhold.geometry.symmetry import rotations_onto_itself
 from workhold.model.fixture_table import FixtureTable, unknown_quality
 from workhold.model.friction import friction_of
 from workhold.model.jaw_hold import JawHold, Patch
-from workhold.model.notes import NoFixture, Note, Stage
+from workhold.model.notes import NoFixture, Note, Remark, Stage
+from workhold.model.program import Program
 from workhold.model.quality import CLOSURE_MARGIN, TILT, WARNINGS
 from workhold.model.query import Query
 from workhold.model.requirements import Load
@@ -62,6 +65,8 @@ NEARLY_PARALLEL = 1e-6
 UNKNOWN_BAND = (0.0, 1.0)
 # Digits of figures that others come after in an order.
 COARSE_DIGITS = 2
+# How far outward in mm jaws are taken to reach whose thickness is not given.
+JAW_DEPTH = 1e4
 # How far in mm what both jaws touch may miss each other by rounding.
 PUSH_SLACK = 1e-7
 
@@ -300,12 +305,14 @@ class Examined:
     theta, position : the pose, in radians and mm.
     hold : how the jaws hold it; None where a rule is broken before both touch it.
     rule : the first rule that it breaks, one of :data:`RULES`; None for a fixture.
+    line : of the program whose tool comes too near a jaw.
     """
 
     theta: float
     position: tuple[float, float]
     hold: JawHold | None
     rule: str | None
+    line: int | None = None
 
 
 @frozen(eq=False)
@@ -378,7 +385,11 @@ class JawSearch:
             max_force=jaws.max_force,
         )
         found = Examined(lying.theta, (shift, 0.0 - lying.level), hold, None)
-        return evolve(found, rule=self.broken(hold, lying))
+        rule = self.broken(hold, lying)
+        if rule is None and query.program is not None:
+            line = self.line_near_jaws(query.program, found, hold)
+            return found if line is None else evolve(found, rule="program", line=line)
+        return evolve(found, rule=rule)
 
     def broken(self, hold: JawHold, lying: Lying) -> str | None:
         """The first rule that a hold breaks."""
@@ -393,6 +404,22 @@ class JawSearch:
             return "avoid"
         if asked.touch and not set(asked.touch) <= {*hold.fixed.segments, *hold.moving.segments}:
             return "touch"
+        return None
+
+    def line_near_jaws(self, program: Program, one: Examined, hold: JawHold) -> int | None:
+        """The line of a program whose tool comes too near a jaw, a box from its face outward; None where none does."""
+        swept = swept_below(program, self.jaws.top(hold.parallels))
+        if not len(swept):
+            return None
+        depth = JAW_DEPTH if self.jaws.thickness is None else self.jaws.thickness
+        c, s = cos(one.theta), sin(one.theta)
+        # Turned back, as the part was drawn.
+        back, place = np.array([[c, -s], [s, c]]), np.array(one.position)
+        for low, high in ((-depth, 0.0), (hold.opening, hold.opening + depth)):
+            box = np.array([[0.0, low], [self.jaws.width, low], [self.jaws.width, high], [0.0, high]])
+            reach, line = swept.reach_of_box((box - place) @ back)
+            if reach < program.clearance:
+                return line
         return None
 
     def every_face(self, faces: Sequence[int]) -> set[int]:
@@ -531,7 +558,7 @@ def answer_between_jaws(
 ) -> Result:
     """Finds every way to hold a part between the flat jaws of a query's toolkit."""
     search, found, whole = JawSearch(query), list[Examined](), True
-    size, rules = search.size, dict.fromkeys(RULES, 0)
+    size, rules, lines = search.size, dict.fromkeys(RULES, 0), Counter[int]()
     for number, one in enumerate(search.examined(), 1):
         if cancel is not None and cancel.is_set():
             whole = False
@@ -540,13 +567,14 @@ def answer_between_jaws(
             found.append(search.loaded(one))
         else:
             rules[one.rule] += 1
+            lines.update([] if one.line is None else [one.line])
         if progress is not None:
             progress(number / size, len(found))
     found.sort(key=lambda one: order_of(one, query))
     listed = found[: query.best]
     notes = list[Note]()
     if whole and not found:
-        notes.append(no_fixture(rules, query))
+        notes.append(no_fixture(rules, lines, query))
     count = {query.toolkit.arrangements[0].name: len(found)}
     return Result(
         query=query,
@@ -593,8 +621,13 @@ def distinct(found: Sequence[Examined], workpiece: Workpiece) -> int:
     return len(seen)
 
 
-def no_fixture(rules: dict[str, int], query: Query) -> Note:
+def no_fixture(rules: dict[str, int], lines: Counter[int], query: Query) -> Note:
     """Why there is no fixture: the last rule that took any away."""
     wording = query.toolkit.wording
+    if lines:
+        line = min(lines, key=lambda line: (-lines[line], line))
+        return Remark(
+            f"Both jaws would press the part, but line {line} of the program brings a tool too near a jaw."
+        )
     last = next((rule for rule in reversed(RULES) if rules[rule]), "grip")
     return NoFixture(STAGE_OF.get(last, "hold"), wording)

@@ -31,6 +31,7 @@ from workhold.verification.jaw_forces import (
     resultants_of,
 )
 from workhold.verification.tolerances import AGREEMENT
+from workhold.verification.tool_walk import Element, walk_of
 
 __all__ = ["JawJudge"]
 
@@ -43,6 +44,8 @@ FORCE_PART, FORCE_HAIR, RANGE_PART = 1e-3, 1e-3, 0.01
 # Directions of a range that are looked at.
 DIRECTIONS = 64
 UNKNOWN_HEIGHT = 1.0
+# mm. How far outward jaws reach whose thickness nobody gives.
+ENDLESS = 1e4
 
 
 @frozen
@@ -147,7 +150,46 @@ class JawJudge:
             (theta - low + 1e-6) % 360 <= high - low + 2e-6 for low, high in asked.angles
         ):
             yield f"the part is turned by {theta:g} degrees, which is not asked for"
+        yield from self.program_faults(fixture, hold)
         yield from self.grip_faults(fixture, hold, derived[0], derived[1], segments)
+
+    def program_faults(self, fixture: Fixture, hold: JawHold) -> Iterator[str]:
+        """Whether the program's tools keep clear of both jaws: of their sides, and not inside."""
+        program, jaws = self.query.program, self.jaws
+        if program is None:
+            return
+        walk, top, turn = walk_of(program), jaws.top(hold.parallels), radians(-fixture.pose.theta_deg)
+        deep = ENDLESS if jaws.thickness is None else jaws.thickness
+        at = fixture.pose.apply(0.0, 0.0)
+
+        def drawn(x: float, y: float) -> tuple[float, float]:
+            """A place beside the jaws, as the part was drawn."""
+            off = complex(x - float(at[0]), y - float(at[1])) * complex(cos(turn), sin(turn))
+            return off.real, off.imag
+
+        for name, low, high in (("fixed", -deep, 0.0), ("moving", hold.opening, hold.opening + deep)):
+            ring = [drawn(*place) for place in ((0, low), (jaws.width, low), (jaws.width, high), (0, high))]
+            near = [
+                walk.nearest(Element(name, name, start, end, 0.0, top))
+                for start, end in zip(ring, [*ring[1:], ring[0]], strict=True)
+            ]
+            for one in near:
+                if one.high < program.clearance - AGREEMENT:
+                    yield (
+                        f"line {one.line} of the program brings a tool within {max(one.high, 0.0):.6g} mm of the "
+                        f"{name} jaw, and {program.clearance:g} mm are to be kept"
+                    )
+                    return
+            for move in range(len(program.moves)):
+                low_end = min(
+                    (one.low for one in program.tools[int(program.moves.tool[move])].cylinders), default=inf
+                )
+                for x, y, z in (program.moves.start[move], program.moves.end[move]):
+                    seen = fixture.pose.apply(float(x), float(y))
+                    inside = 0 < seen[0] < jaws.width and low < seen[1] < high
+                    if inside and z + low_end <= top:
+                        yield f"line {int(program.moves.line[move])} of the program is in the {name} jaw"
+                        return
 
     def has_hull_edge(self, segments: Sequence[Segment]) -> bool:
         """Whether the hull of an outline has a straight piece: by far sides of a fine fan of directions."""

@@ -366,7 +366,8 @@ def keys_missing(head: Head) -> list[str]:
     stated = {"contact_margin", "best", "jaw_force"} | ({"listing"} if has_pairs else set())
     if getattr(head, "seating", None) is not None:
         stated |= {"seating", "opening", "foolproof"}
-    if head.program is not None:
+    # Flat jaws are as high as they are.
+    if head.program is not None and not hasattr(head.toolkit, "jaw_height"):
         stated.add("peg_height")
     spared |= {row.name for row in declarations_of(SearchQuestion)} - stated
     spared |= set() if has_pairs else {"toolkit.clamps"}
