@@ -4,6 +4,7 @@ from math import sqrt
 
 import numpy as np
 import pytest
+from attrs import evolve
 
 import workhold
 from jaw_examples import DISC, ELL, LOADS, TRIANGLE, held, rectangle, vise
@@ -234,3 +235,23 @@ def test_hexagon_stands_on_each_of_its_flats():
 def test_vise_refuses_parallels_as_high_as_its_jaws():
     with pytest.raises(InputError, match="do not reach above"):
         PlainVise(jaw_width=100, jaw_height=20, parallels=[20])
+
+
+def test_jaw_force_given_holds_the_loads_as_often_as_it_says():
+    """Loads so many times as large, without a safety factor, ask for just that force."""
+    (load, *_) = LOADS
+    first = held(loads=[load], jaw_force=4000)[0].hold
+    times = first.safety_reached
+    again = evolve(load, force=load.force * times, upward=load.upward * times)
+    assert held(loads=[again], safety=1)[0].hold.clamp_needed == pytest.approx(4000, rel=1e-6)
+
+
+def test_jaw_force_too_small_is_told():
+    enough, less = (
+        next(one for one in held(loads=LOADS, jaw_force=force) if one.pose.theta_deg == 0.0)
+        for force in (1e6, 100.0)
+    )
+    words = "closed with 100 N the jaws hold the loads"
+    assert not any(one.startswith("closed with") for one in enough.hold.warnings)
+    assert sum(one.startswith(words) for one in less.hold.warnings) == 1
+    assert enough.hold.safety_reached == pytest.approx(1e4 * less.hold.safety_reached)

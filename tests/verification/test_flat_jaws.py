@@ -207,3 +207,16 @@ def test_spreadsheet_has_a_row_for_each_and_columns_are_refused(tmp_path):
     assert len(lines) == 1 + len(result) and lines[0].startswith("number,type,theta_deg")
     with pytest.raises(InputError, match="a file in columns is of pegs"):
         workhold.save(result, tmp_path / "r.npz")
+
+
+@pytest.mark.parametrize("key", ["grip", "contact_area", "slip_reserve", "safety_reached"])
+def test_figure_changed_in_a_file_is_refuted(key, tmp_path):
+    result = held(loads=LOADS, jaw_force=5000, toolkit=vise(max_force=9000))
+    path = tmp_path / "result.json"
+    workhold.save(result, path)
+    data = json.loads(path.read_text())
+    data["fixtures"][0]["quality"][key] *= 1.01
+    path.write_text(json.dumps(data))
+    outcome = verify_file(path)
+    assert [one.index for one in outcome.unproven] == [0]
+    assert key.replace("_", " ") in outcome.unproven[0].reason

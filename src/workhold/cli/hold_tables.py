@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["first_hold_sentence", "hold_fixture_tables", "hold_table"]
 
 # Figures that a table has where all else fits.
-SHOWN = ("clamp_needed", "slip_reserve", "grip", "above", "contact_area")
+SHOWN = ("clamp_needed", "slip_reserve", "safety_reached", "grip", "above", "contact_area")
 
 
 def hold_table(result: Result, entries: Entries, count: int, unit: Unit) -> Table:

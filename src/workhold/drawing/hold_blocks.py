@@ -15,6 +15,7 @@ from workhold.model.hold_words import (
     faces_words,
     force_words,
     hold_reasons,
+    set_force,
     setup_sentences,
     stop_words,
     warning_sentences,
@@ -64,6 +65,8 @@ def write_figures(column: TextColumn, fixture: Fixture, lengths: LengthUnit) -> 
         column.fact(
             "Rated for", f"{unit.force_words(hold.max_force or 0.0)}, {hold.slip_reserve:.2f} times that"
         )
+    if hold.safety_reached is not None:
+        column.fact("With the jaw force given", f"{hold.safety_reached:.2f} times the loads")
     column.fact("Grip", lengths.short(hold.grip, 5))
     if hold.above is not None:
         column.fact("Stands above the jaws", lengths.short(hold.above, 5))
@@ -141,12 +144,15 @@ def write_force(column: TextColumn, sheet: Sheet) -> None:
         fact_or_field(column, "close with", None)
         return
     column.words(f"{force_words(needed, unit)} or more", 22, bold=True, gap=0.4)
-    torque = jaws.torque(needed)
+    torque = jaws.torque(set_force(needed))
     if torque is not None:
         column.fact("on the screw, about", unit.moment_words(torque * 1000.0), bold=True)
         column.paragraph("Of the torque three tenths move the jaw, the rest is friction in the thread.", NOTE)
     if hold.slip_reserve is not None:
         column.fact("the vise is rated for", unit.force_words(hold.max_force or 0.0))
+    if hold.safety_reached is not None:
+        given = unit.force_words(query_of(sheet).jaw_force or 0.0)
+        column.fact(f"closed with {given}", f"{hold.safety_reached:.2f} times the loads")
     if hold.max_pressure is not None:
         column.fact("largest pressure, at least", pressure_words(hold.max_pressure, sheet.lengths))
     column.paragraph(coefficient_words(query_of(sheet)), NOTE)

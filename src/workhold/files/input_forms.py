@@ -265,7 +265,7 @@ class LoadTable(BaseModel):
     force: float | str | Vector = Field(
         default=0.0, description="in N, or with a unit: 0.2 kN, 45 lbf; or along x, y and z of the part, z up"
     )
-    at: Point | Vector | None = Field(default=None, description="where the force acts; or path")
+    at: Point | None = Field(default=None, description="where the force acts; or path")
     z: float | str | None = Field(
         default=None, description="its height above the part's lower side; the part's top if not given"
     )

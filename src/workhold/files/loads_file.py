@@ -134,9 +134,6 @@ def load_from_words(words: Mapping[str, Any], place: str, unit_scale: float) -> 
         if height is None:
             raise InputError(f"{place}: z {shown(words['z'])} is not a height: give a number, such as 12.")
     vector = components(words, place)
-    if vector and isinstance(words.get("at"), list | tuple) and len(words["at"]) == 3 and "z" not in words:
-        words = {**words, "at": words["at"][:2], "z": words["at"][2]}
-        height = number(words["z"])
     if "at" in words:
         points = [point(words["at"], f"{place}: at")]
     elif "path" in words:

@@ -16,6 +16,7 @@ __all__ = [
     "force_words",
     "hold_cautions",
     "hold_reasons",
+    "set_force",
     "setup_sentences",
     "stop_words",
     "warning_sentences",
@@ -49,6 +50,14 @@ def short(length: float, unit: Unit) -> str:
     return f"{round(length / unit.millimetres, 4):g} {unit.abbreviation}"
 
 
+def set_force(force: float) -> float:
+    """A jaw force in N rounded up to two digits, as somebody would set it."""
+    if force <= 0:
+        return 0.0
+    step = 10.0 ** (len(str(int(force))) - 2)
+    return -(-force // step) * step
+
+
 def force_words(force: float, unit: Unit) -> str:
     """A jaw force rounded up to two digits, as somebody would set it.
 
@@ -56,10 +65,7 @@ def force_words(force: float, unit: Unit) -> str:
     >>> force_words(3432.8, MILLIMETRE)
     '3500 N'
     """
-    if force <= 0:
-        return unit.force_words(0.0)
-    step = 10.0 ** (len(str(int(force))) - 2)
-    return unit.force_words(-(-force // step) * step)
+    return unit.force_words(set_force(force))
 
 
 def setup_sentences(fixture: Fixture, query: Query, unit: Unit) -> Iterator[str]:
@@ -86,7 +92,7 @@ def setup_sentences(fixture: Fixture, query: Query, unit: Unit) -> Iterator[str]
         yield f"Push it against the work stop, {stop_words(hold, jaws.stop_offset, unit)}: {where}"
     needed = hold.clamp_needed
     if needed is not None:
-        torque = jaws.torque(needed)
+        torque = jaws.torque(set_force(needed))
         on_screw = "" if torque is None else f", about {unit.moment_words(torque * 1000.0)} on the screw"
         apart = f"they stand {unit.text(hold.opening)} apart"
         yield f"Close the jaws with {force_words(needed, unit)} or more{on_screw}; {apart}"

@@ -32,6 +32,7 @@ HOLD_FIGURES = (
         "clamp_needed", "N", False, "The jaw force that the worst load asks for, with the safety factor.", 0
     ),
     Figure("slip_reserve", "", True, "What the vise is rated for, over the jaw force needed.", 2),
+    Figure("safety_reached", "", True, "How many times the loads the jaw force that is given holds.", 2),
     Figure("grip", "mm", True, "The height that both jaws grip."),
     Figure("above", "mm", True, "How far the part stands out above the jaws."),
     Figure("contact_area", "mm²", True, "The smaller of the two areas that the jaws touch.", 0),
@@ -116,6 +117,7 @@ class JawHold:
     clamp_needed_each : the jaw force in N that each load asks for, in their order; None where none is enough.
     max_pressure : in MPa, at the jaw force needed; None where it is not known.
     max_force : what the vise is rated for, in N; None where nobody says.
+    unit_force : the jaw force that is given times the safety factor that loads have, in N; None where none is given.
     warnings : what to beware of, sentences.
     """
 
@@ -129,6 +131,7 @@ class JawHold:
     clamp_needed_each: tuple[float | None, ...] = ()
     max_pressure: float | None = None
     max_force: float | None = None
+    unit_force: float | None = None
     warnings: tuple[str, ...] = field(default=())
 
     @property
@@ -164,6 +167,13 @@ class JawHold:
         if self.max_force is None or self.clamp_needed is None:
             return None
         return self.max_force / self.clamp_needed if self.clamp_needed > 0 else inf
+
+    @property
+    def safety_reached(self) -> float | None:
+        """How many times the loads the jaw force holds that is given; what is needed grows as the loads do."""
+        if self.unit_force is None or self.clamp_needed is None:
+            return None
+        return self.unit_force / self.clamp_needed if self.clamp_needed > 0 else inf
 
     @property
     def is_beyond_rating(self) -> bool:

@@ -229,6 +229,11 @@ class Query(SearchQuestion):
         """What loads are multiplied by where friction holds the part."""
         return SAFETY if self.safety is None else self.safety
 
+    @property
+    def unit_force(self) -> float | None:
+        """The jaw force that is given times the safety factor, which holds the loads once where so much is needed."""
+        return None if self.jaw_force is None else self.jaw_force * self.safety_factor
+
     def refuse_untouchable(self) -> None:
         """Refuses faces to touch that there are not, or more than a fixture can touch."""
         faces, toolkit = self.restrictions.touch, self.toolkit

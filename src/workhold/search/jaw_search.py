@@ -383,6 +383,7 @@ class JawSearch:
             above=None if query.part_height is None or top == inf else max(query.part_height - top, 0.0),
             full_contact=is_pressed_all_over(on_fixed, on_moving),
             max_force=jaws.max_force,
+            unit_force=query.unit_force,
         )
         found = Examined(lying.theta, (shift, 0.0 - lying.level), hold, None)
         rule = self.broken(hold, lying)
@@ -497,6 +498,12 @@ class JawSearch:
                     yield f"no jaw force holds load {number}{f', {named}' if named else ''}"
         if hold.slip_reserve is not None and hold.slip_reserve < 1:
             yield f"the loads ask for {hold.clamp_needed:.0f} N, and the vise is rated for {hold.max_force:g} N"
+        reached, safety = hold.safety_reached, self.query.safety_factor
+        if reached is not None and reached < safety:
+            yield (
+                f"closed with {self.query.jaw_force:g} N the jaws hold the loads {reached:.2f} times, and {safety:g} times "
+                "are asked for"
+            )
         if hold.above == 0.0:
             yield "nothing of the part stands above the jaws"
         ends = hold.fixed.ends, hold.moving.ends

@@ -270,6 +270,10 @@ class JawJudge:
         for name, value, derived in self.figures(hold, fixed, moving):
             if abs(value - derived) > AGREEMENT * (1 + abs(derived)):
                 yield f"{name} is {value:.9g} in the file and comes to {derived:.9g}"
+        for key, derived in self.ratios(hold):
+            written = fixture.quality.get(key, derived)
+            if abs(written - derived) > AGREEMENT * (1 + abs(derived)):
+                yield f"{key.replace('_', ' ')} is {written:.9g} in the file and comes to {derived:.9g}"
         loads = self.query.loads
         if len(hold.clamp_needed_each) != len(loads):
             yield f"there are forces for {len(hold.clamp_needed_each)} loads, and {len(loads)} were given"
@@ -300,6 +304,18 @@ class JawJudge:
         top = self.jaws.top(hold.parallels)
         if hold.above is not None and top < inf:
             yield "what stands above the jaws", hold.above, max(self.height - top, 0.0)
+
+    def ratios(self, hold: JawHold) -> Iterator[tuple[str, float]]:
+        """Figures by key that follow from what else is written."""
+        yield "grip", hold.grip
+        yield "contact_area", hold.contact_area
+        needs = [need for need in hold.clamp_needed_each if need is not None]
+        if not needs or len(needs) < len(hold.clamp_needed_each) or max(needs) <= 0:
+            return
+        if self.jaws.max_force is not None:
+            yield "slip_reserve", self.jaws.max_force / max(needs)
+        if self.query.jaw_force is not None:
+            yield "safety_reached", self.query.safety_factor * self.query.jaw_force / max(needs)
 
     def stop_points(
         self, hold: JawHold, segments: Sequence[Segment]

@@ -276,7 +276,7 @@ def held_by_jaws(taken: Any, query: Query) -> list[Fixture]:
     """The fixtures of flat jaws; refuses others."""
     if not isinstance(taken, list) or not all(isinstance(one, HoldPart) for one in taken):
         raise InputError(f"its fixtures are not those of a {query.toolkit.noun}.")
-    return [part.fixture(query.toolkit) for part in taken]
+    return [part.fixture(query.toolkit, query.unit_force) for part in taken]
 
 
 def head_and_fixtures(path: Path) -> tuple[Head, list[Fixture] | list[HoldPart] | Columns, list[Any]]:

@@ -125,6 +125,7 @@ class HoldQualityPart(HoldKeys):
     contact_area: Number | None = None
     max_pressure: Number | None = None
     slip_reserve: Number | None = None
+    safety_reached: Number | None = None
     tilt: Number = 0.0
 
 
@@ -141,13 +142,13 @@ class HoldPart(HoldKeys):
     warnings: list[str] = []
     quality: HoldQualityPart
 
-    def fixture(self, toolkit: Toolkit) -> Fixture:
+    def fixture(self, toolkit: Toolkit, unit_force: float | None = None) -> Fixture:
         """The fixture with the figures that are written."""
         pose = Pose(self.pose.theta_deg, self.pose.x, self.pose.y)
         written = self.quality.model_dump(exclude={"full_contact", "clamp_needed_each"}, exclude_none=True)
-        return Fixture(self.type, (), pose, self.jaw_separation, written, hold=self.hold(toolkit))
+        return Fixture(self.type, (), pose, self.jaw_separation, written, hold=self.hold(toolkit, unit_force))
 
-    def hold(self, toolkit: Toolkit) -> JawHold:
+    def hold(self, toolkit: Toolkit, unit_force: float | None = None) -> JawHold:
         """How the jaws of a toolkit hold the part; refuses a toolkit without flat jaws."""
         if toolkit.flat_jaws is None:
             raise InputError(f"it lies between flat jaws, which a {toolkit.noun} does not have.")
@@ -163,6 +164,7 @@ class HoldPart(HoldKeys):
             clamp_needed_each=tuple(quality.clamp_needed_each),
             max_pressure=quality.max_pressure,
             max_force=toolkit.flat_jaws.max_force,
+            unit_force=unit_force,
             warnings=tuple(self.warnings),
         )
 
@@ -205,7 +207,7 @@ def holds_of(parts: Sequence[HoldPart], query: Query, path: Path) -> tuple[JawHo
             raise InputError(
                 f"{path}: fixture {number} touches a segment that does not name a face of the part."
             )
-    return tuple(part.hold(query.toolkit) for part in parts)
+    return tuple(part.hold(query.toolkit, query.unit_force) for part in parts)
 
 
 def table_of_holds(parts: Sequence[HoldPart]) -> FixtureTable:
