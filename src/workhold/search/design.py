@@ -32,9 +32,10 @@ from workhold.listing.results import (
     listed_result,
     stage,
 )
+from workhold.model.first_choice import figures_ranked_by
 from workhold.model.fixture import Fixture
 from workhold.model.notes import STAGES, NoFixture, NoPlace, Note, round_to_two_digits
-from workhold.model.quality import FIGURES, WARNINGS, asked_ranking
+from workhold.model.quality import FIGURES, WARNINGS, asked_ranking, ranked_number
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Restrictions, Tolerance
 from workhold.model.result import Result
@@ -515,7 +516,10 @@ def first_choice(
     quality = np.array([[item.figures.get(figure.key, np.nan) for figure in FIGURES] for item in able])
     keys = [np.array([not item.fit for item in able]), np.array([not is_sold(item.name) for item in able])]
     held = np.array([item.held for item in able])
-    figures, warned = figure_keys(quality, ranking), FIGURES[WARNINGS].key
+    known = [name for name in figures_ranked_by(ranking) if ranked_number(name) is not None]
+    figures, warned = figure_keys(quality, known) if known else [], FIGURES[WARNINGS].key
+    # What flat jaws hold has figures of its own, of which the area that they touch counts.
+    figures += [np.array([-item.figures.get("contact_area", 0.0) for item in able])]
     first = 1 if ranking[:1] == (warned,) else len(figures)
     tenths = -np.floor(10.0 * held + HELD_SLACK)
     keys += [*figures[:first], tenths, *figures[first:], -held]
