@@ -34,12 +34,14 @@ NAMED_TWICE = {
     "Edge": "of a plane map of drawings, and of the verification's own walk",
     "Stretches": "of the cutter's path, and of the verification's own walk",
 }
-KIND_CLASSES = {"Vise", "OpeningVise", "Plate", "Fence", "FlatJaw"}
-KIND_NAMES = {"vise", "opening-vise", "gripper", "translating-clamp", "plate", "edge", "fence", "flat-jaw"}
+KIND_CLASSES = {"Vise", "OpeningVise", "Plate", "Fence", "FlatJaw", "PlainVise"}
+KIND_NAMES = {
+    "vise", "opening-vise", "gripper", "translating-clamp", "plate", "edge", "fence", "flat-jaw", "plain-vise",
+}  # fmt: skip
 # Attributes by which a toolkit, a peg or a contact is asked for its kind.
 KIND_ATTRIBUTES = {"has_a_hole", "is_along_x", "is_on_wall", "is_wall", "needs_pairs", "wall"}
 # Fields whose names are words of other things too, and are not counted.
-COMMON_WORDS = {"columns", "directions", "rows"}
+COMMON_WORDS = {"columns", "directions", "rows", "stop"}
 # What variables that hold a toolkit are called, and those that hold its fields by name.
 HOLDERS, RECORDS = {"toolkit"}, {"fields", "given", "said"}
 # What of a row of a table is the name of another field.

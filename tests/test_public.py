@@ -60,6 +60,10 @@ MAKERS: dict[str, tuple[Callable[[], Any], Callable[[], Any]]] = {
         lambda: workhold.Program.read(EXAMPLES / "bracket.nc", thickness=12),
         lambda: workhold.Program.read(EXAMPLES / "bracket.nc", thickness=13),
     ),
+    "PlainVise": (
+        lambda: workhold.PlainVise(jaw_width=152, jaw_height=44, parallels=[20]),
+        lambda: workhold.PlainVise(jaw_width=152, jaw_height=44, parallels=[20], stop="left"),
+    ),
     "Query": (lambda: result().query, lambda: workhold.Query(wedge("other"), result().toolkit)),
     "Restrictions": (
         lambda: workhold.Restrictions(avoid=(1,), zones=(workhold.circle_zone(1, 2, 3),)),

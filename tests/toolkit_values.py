@@ -30,6 +30,14 @@ VALUES: dict[str, tuple[Any, Any]] = {
     "clamp_heights": ((6.0, 14.0), "6,14"),
     "wall_heights": ((0.0, 4.5), "0,4.5"),
     "jaw_heights": ((1.0, 9.0), "1,9"),
+    "jaw_height": (48.0, "48"),
+    "jaw_thickness": (19.0, "19"),
+    "parallels": ((21.0, 26.5), "21,26.5"),
+    "least_grip": (4.0, "4"),
+    "stop": ("left", "left"),
+    "stop_offset": (-1.25, "-1.25"),
+    "max_force": (5200.0, "5200"),
+    "screw_lead": (5.0, "5"),
 }
 
 

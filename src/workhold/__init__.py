@@ -1,8 +1,8 @@
 """workhold finds every way to hold a flat part: in a vise, on a plate with clamps, or against a fence.
 
-The public face is small. The function :func:`load` reads a part; :class:`Vise`, :class:`Plate` and
-:class:`Fence` describe what holds it. The function :func:`design` finds all fixtures and returns a
-:class:`Result`; :func:`save` writes it, and :func:`open` reads it. Names are imported on first use, so
+The public face is small. The function :func:`load` reads a part; :class:`Vise`, :class:`Plate`, :class:`Fence`,
+:class:`FlatJaw` and :class:`PlainVise` describe what holds it. The function :func:`design` finds all fixtures and
+returns a :class:`Result`; :func:`save` writes it, and :func:`open` reads it. Names are imported on first use, so
 ``import workhold`` costs next to nothing.
 """
 
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from workhold.files.result.save import save
     from workhold.fixels.fence import Fence
     from workhold.fixels.flat_jaw import FlatJaw
+    from workhold.fixels.plain_vise import PlainVise
     from workhold.fixels.plate import Plate
     from workhold.fixels.vise import OpeningVise, Vise
     from workhold.model.fixture import Fixture, Peg
@@ -49,6 +50,7 @@ __all__ = [
     "Load",
     "OpeningVise",
     "Peg",
+    "PlainVise",
     "Plate",
     "Pose",
     "Program",
@@ -83,6 +85,7 @@ HOMES = {
     "InputError": "workhold.errors",
     "Load": "workhold.model.requirements",
     "Peg": "workhold.model.fixture",
+    "PlainVise": "workhold.fixels.plain_vise",
     "Plate": "workhold.fixels.plate",
     "Pose": "workhold.model.pose",
     "Program": "workhold.model.program",

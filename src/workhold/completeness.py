@@ -6,7 +6,7 @@ same where the verification says so (``verification.repeats``).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from itertools import islice
 from pathlib import Path
 from threading import Event
@@ -112,6 +112,9 @@ def differences(listing: Listing, result: Result) -> Iterator[str]:
 
     A listing that says it is incomplete may lack fixtures, and its account is that of a part of the work.
     """
+    if listing.query.toolkit.flat_jaws is not None:
+        yield from hold_differences(listing, result)
+        return
     seen = KnownFixtures(listing.hardware)
     for index, fixture in enumerate(listing.fixtures):
         seen.add(index, fixture)
@@ -156,6 +159,33 @@ def differences(listing: Listing, result: Result) -> Iterator[str]:
     lacking = [note for note in result.notes if note not in listing.notes]
     if lacking:
         yield f'the note is missing that says "{lacking[0]}"'
+
+
+def hold_differences(listing: Listing, result: Result) -> Iterator[str]:
+    """The same of what flat jaws hold, which angle, parallels and stop distinguish."""
+    listed, found = keys_of(listing.fixtures), keys_of(result)
+    surplus, missing = sorted(listed[key] for key in listed.keys() - found), found.keys() - listed.keys()
+    if surplus:
+        yield f"a search does not find {counted(len(surplus))} of it, the first of them fixture {surplus[0] + 1}"
+    if missing and listing.complete and not listing.is_chosen and listing.query.best is None:
+        theta, parallels, stop = min(missing, key=str)
+        at = f", stop {stop}" if stop else ""
+        yield (
+            f"a search finds {counted(len(missing))} that it does not list, the first of them at {theta:.4f} degrees on "
+            f"parallels of {parallels:g} mm{at}"
+        )
+    if listing.complete:
+        for name in ("found", "distinct"):
+            yield from other_numbers(name, getattr(listing, name), getattr(result, name))
+
+
+def keys_of(fixtures: Iterable[Fixture]) -> dict[tuple[float, float, str | None], int]:
+    """The places of fixtures of flat jaws by what distinguishes them."""
+    return {
+        (round(one.pose.theta_deg, 4) % 360, round(one.hold.parallels, 6), one.hold.stop): place
+        for place, one in enumerate(fixtures)
+        if one.hold is not None
+    }
 
 
 def first_other(written: Any, derived: Any, key: str = "") -> str:

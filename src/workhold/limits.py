@@ -26,6 +26,7 @@ __all__ = [
     "MOST_FORCE",
     "MOST_FRICTION",
     "MOST_HOLES",
+    "MOST_LENGTHS",
     "MOST_LENGTH",
     "MOST_PEG_PAIRS",
     "MOST_RADIUS",
@@ -166,6 +167,8 @@ MOST_COMPARED = 1_000_000
 MOST_HOLES = 25_000
 # Holes and columns that are blocked, which every fixture is held against.
 MOST_BLOCKED = 20_000
+# Parallels, each of which makes one set-up for every side of the part and every stop.
+MOST_LENGTHS = 40
 # Lattice steps between two pegs of one carrier, and these times the features: from each feature a step
 # reaches some ten, and each chord takes some 200 bytes. The largest search measured (100 faces, 40 columns)
 # has 650,000, and takes under 1 GiB.

@@ -8,6 +8,7 @@ import pytest
 
 from workhold.cli.toolkit_options import LISTED, ListWords, toolkits_to_try
 from workhold.errors import InputError
+from workhold.files.toolkit_file import load_toolkit, preset_names
 from workhold.fixels.fields import OPTIONS
 from workhold.fixels.kinds import KINDS, TABLES, toolkit_of
 from workhold.units import INCH, MILLIMETRE
@@ -20,31 +21,48 @@ TYPED = {
     "span": ("10:35,15:50", [(10.0, 35.0), (15.0, 50.0)]),
     "flat": ("2.5,2.5:1.5", [(2.5,), (2.5, 1.5)]),
 }
-NEEDED = {"pitch": "40", "columns": "2", "peg_radius": "3", "wall_offset": "10"}
+NEEDED = {"pitch": "40", "jaw_width": "152", "columns": "2", "peg_radius": "3", "wall_offset": "10"}
 VARIED = [(kind, row) for kind, table in TABLES.items() for row in table.fields if row.form in TYPED]
+
+
+def has_pitch(kind: str) -> bool:
+    """Whether toolkits of a kind have holes at a pitch."""
+    return any(row.name == "pitch" for row in TABLES[kind].fields)
 
 
 def lists(kind: str, **more: str) -> ListWords:
     """Lists that make toolkits of a kind."""
     needed = {row.name: NEEDED[row.name] for row in TABLES[kind].fields if row.is_required}
-    return ListWords(**{"pitch": NEEDED["pitch"], **needed, **more})
+    pitch = {"pitch": NEEDED["pitch"]} if has_pitch(kind) else {}
+    return ListWords(**{**pitch, **needed, **more})
 
 
 def test_every_number_of_every_kind_can_be_varied() -> None:
-    """Only names of holes and of directions cannot."""
+    """Only names of holes, directions, sides, sets of parallels and forces cannot."""
     # A part is read once, and so for one pair of heights.
     heights = {row.name for row in OPTIONS if row.form == "heights"}
-    assert {row.name for row in OPTIONS} - {row.name for row in LISTED} == {"blocked", "directions", *heights}
+    assert {row.name for row in OPTIONS} - {row.name for row in LISTED} == {
+        "blocked",
+        "directions",
+        "parallels",
+        "stop",
+        "max_force",
+        *heights,
+    }
     assert {row.name for _, row in VARIED} == {row.name for row in LISTED}
 
 
 @pytest.mark.parametrize(("kind", "row"), VARIED, ids=[f"{kind} {row.name}" for kind, row in VARIED])
 def test_a_field_of_a_kind_is_varied(kind: str, row: Any) -> None:
-    """Each entry makes a toolkit that differs from the others in this field and in its name."""
+    """Each entry makes a toolkit that differs from the others in this field and in its name.
+
+    Of a kind without holes it makes one of each preset.
+    """
     text, values = TYPED[row.form]
     tried = toolkits_to_try(None, kind, lists(kind, **{row.name: text}), MILLIMETRE)
-    assert [one.fields[row.name] for one in tried] == values
-    assert len({one.name for one in tried}) == 2 and {one.kind for one in tried} == {kind}
+    bases = 1 if has_pitch(kind) else sum(load_toolkit(name).kind == kind for name in preset_names())
+    assert [one.fields[row.name] for one in tried] == bases * values
+    assert len({one.name for one in tried}) == 2 * bases > 0 and {one.kind for one in tried} == {kind}
 
 
 @pytest.mark.parametrize(

@@ -72,7 +72,7 @@ def test_all_forms_of_a_toolkit_say_the_same(kind: str) -> None:
     halved = {
         row.name: [one / inch for one in value] if isinstance(value, list) else value / inch
         for row in table_of(kind).fields
-        if row.form in ("length", "pitch", "span", "flat")
+        if row.form in ("length", "pitch", "span", "flat", "lengths")
         for value in [entries[row.name]]
     }
     again = described_toolkit(
@@ -128,7 +128,9 @@ def test_the_page_reads_each_form_by_a_field_that_it_has() -> None:
     """A flat is typed as the one length that a page asks for; what has choices is chosen."""
     forms = {row.name: {one.form for one in page_fields(row)} for row in OPTIONS}
     assert forms["flat"] == {"length"} and forms["clamps"] == {"one"} and forms["directions"] == {"several"}
-    assert set().union(*forms.values()) == {"length", "count", "pitch", "span", "holes", "several", "one"}
+    assert set().union(*forms.values()) == {
+        "length", "count", "pitch", "span", "holes", "several", "one", "lengths", "force"
+    }  # fmt: skip
 
 
 def test_a_list_of_pitches_makes_toolkits_of_which_all_that_is_needed_is_given() -> None:

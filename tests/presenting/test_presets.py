@@ -11,7 +11,7 @@ from workhold import Query
 from workhold.errors import InputError
 from workhold.files.toolkit_file import load_toolkit, preset_names
 
-CLASSES = (workhold.Vise, workhold.Plate, workhold.Fence, workhold.FlatJaw)
+CLASSES = (workhold.Vise, workhold.Plate, workhold.Fence, workhold.FlatJaw, workhold.PlainVise)
 
 
 def test_every_preset_is_one_of_its_class_alone() -> None:

@@ -92,6 +92,19 @@ class SearchQuestion:
         least="0",
         section=LOADS,
     )
+    friction: Any = declare(
+        "coefficients",
+        "Coefficients of friction where flat jaws hold the part: jaw between a jaw and the part; usual ones, which "
+        "the answer names, if not given.",
+        section=LOADS,
+        typed="Coefficients of friction where flat jaws hold the part, such as jaw=0.15; a usual one, which the answer "
+        "names, if not given.",
+    )
+    safety: float | None = declare(
+        "number",
+        "Safety factor on the loads where friction holds the part; 2 if not given.",
+        section=LOADS,
+    )
     seating: int | None = declare(
         "count",
         "For each of the first K fixtures, find how wide the jaws may stand open, or how far the "

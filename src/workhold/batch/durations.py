@@ -54,6 +54,8 @@ def measures(faces: int, size: tuple[float, float], toolkit: Toolkit) -> tuple[s
 
     Width and height of the part are in mm.
     """
+    if not toolkit.plates:
+        return toolkit.law, log(faces), 0.0
     carrier = toolkit.plates[0]
     diameter = hypot(*size) + 2.0 * carrier.peg_radius
     across, along = (

@@ -120,9 +120,31 @@ def take_record(row: Row, named: Row, record: Mapping[str, Any], job: Job) -> li
     ]
     if best:
         row |= {key: best[0][key] for key in (*FIGURE_COLUMNS, *PASSING_COLUMNS)}
+        if "closure_margin" not in record["fixtures"][0]["quality"]:
+            row["fit"] = is_pressed(record["fixtures"][0])
+            return best
         off = record["tolerance"]["peg"] + record["tolerance"]["face"]
         row["fit"] = not bool(is_unfit(row["closure_margin"], row["location_error"], off))
     return best
+
+
+def is_pressed(fixture: Mapping[str, Any]) -> bool:
+    """Whether flat jaws press all over what they touch, and neither touches a corner alone."""
+    touched = all(fixture[jaw]["segments"] for jaw in ("fixed", "moving"))
+    return touched and bool(fixture["quality"]["full_contact"])
+
+
+def jaws_row(fixture: Mapping[str, Any]) -> Row:
+    """The row of a fixture that flat jaws hold; it has no holes, and no figures of pegs."""
+    faces = [number for jaw in ("fixed", "moving") for number in fixture[jaw]["segments"]]
+    return {
+        "type": fixture["type"],
+        **fixture["pose"],
+        "jaw_separation": fixture["jaw_separation"],
+        "faces": " ".join(map(str, faces)),
+        "tilt": fixture["quality"]["tilt"],
+        "warnings": len(fixture["warnings"]),
+    }
 
 
 def fixture_row(fixture: Mapping[str, Any], job: Job) -> Row:
@@ -130,6 +152,8 @@ def fixture_row(fixture: Mapping[str, Any], job: Job) -> Row:
     from workhold.files.result.reader import peg_place
 
     assert isinstance(job.held_in.query, Query)
+    if "pegs" not in fixture:
+        return jaws_row(fixture)
     carriers = {carrier.name: carrier for carrier in job.held_in.query.toolkit.carriers}
     directions = fixture.get("directions")
     direction = fixture.get("direction") if directions is None else " ".join(directions)

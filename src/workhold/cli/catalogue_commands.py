@@ -107,6 +107,9 @@ def toolkits_table(unit: Unit) -> Table:
     table = Table(("name", f">pitch {of}", f">peg Ø {of}", ">columns", f">peg off by {of}", "what it is"))
     for name in preset_names():
         loaded = load_toolkit(name)
+        if not loaded.toolkit.plates:
+            table.add_row(name, *["-"] * 4, loaded.title)
+            continue
         first = loaded.toolkit.plates[0]
         table.add_row(
             name,
@@ -121,6 +124,11 @@ def toolkits_table(unit: Unit) -> Table:
 
 def figures_table(loaded: LoadedToolkit, unit: Unit) -> Table:
     toolkit, of = loaded.toolkit, unit.abbreviation
+    if not toolkit.plates:
+        table = Table(("figure", "value"))
+        for words, value in own_figures(loaded, unit):
+            table.add_row(words, value)
+        return table
     first, finest = toolkit.plates[0], unit.decimals + 1
     each = f"on {'each' if len(toolkit.plates) > 1 else 'the'} {first.noun}"
     table = Table(("figure", "value"))
@@ -178,6 +186,12 @@ def words_of_value(form: Form, value: Any, unit: Unit) -> str:
         return str(value)
     if form == "stress":
         return unit.stress_words(value)
+    if form == "force":
+        return unit.force_words(value)
+    if form == "choice":
+        return str(value)
+    if form == "lengths":
+        return f"{', '.join(unit.figure(one) for one in value)} {unit.abbreviation}"
     if form == "holes":
         return " ".join(holes.name for holes in value)
     if form == "directions":

@@ -188,6 +188,25 @@ def read_force(row: Declaration, text: str, unit: Unit) -> float | None:
 
 
 # How the words of an option are read, by the form of its field; words of other forms stay as they are.
+def read_coefficients(option_name: str, text: str) -> dict[str, float]:
+    """Read numbers by name.
+
+    Examples
+    --------
+    >>> read_coefficients("--friction", "jaw=0.15,plate=0.1")
+    {'jaw': 0.15, 'plate': 0.1}
+    """
+    out = {}
+    for word in text.split(","):
+        name, equals, value = word.partition("=")
+        if not equals:
+            raise InputError(
+                f"{option_name} {text!r} names no coefficients: give them as jaw=0.15,plate=0.15."
+            )
+        out[name.strip().lower()] = positive_number(option_name, value)
+    return out
+
+
 READERS: Mapping[Form, Callable[[Declaration, Any, Unit], Any]] = {
     "count": lambda row, text, unit: optional_count(row.option, text),
     "length": read_length,
@@ -206,6 +225,7 @@ READERS: Mapping[Form, Callable[[Declaration, Any, Unit], Any]] = {
     "faces": read_faces,
     "zones": lambda row, texts, unit: tuple(read_zone(row.option, text, unit) for text in texts),
     "angles": read_angles,
+    "coefficients": lambda row, text, unit: read_coefficients(row.option, text),
 }
 
 

@@ -445,7 +445,7 @@ def report_found(result: Result, spent: str, output: Output, unit: Unit) -> None
         )
     out = output.file
     proof = proof_sentences(result, out if output.form != "csv" else None)
-    left_out = [unfit_sentence(shown.unfit)] if shown.unfit else []
+    left_out = [unfit_sentence(shown.unfit, bool(result.holds))] if shown.unfit else []
     print_tables(f"{sentence}; {spent}.", *left_out, *proof, stream=output.stream)
     if out is not None:
         print_tables(f"Written to {out}.", stream=output.stream)

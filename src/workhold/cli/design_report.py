@@ -119,7 +119,8 @@ def print_explanation(
 
     print_tables("", stream=stream)
     if explanation.contacts:
-        table = Table(("rule", ">sets of four contacts", ">removed", ">left"))
+        sets = "sets of four contacts" if toolkit.flat_jaws is None else "ways to lie"
+        table = Table(("rule", f">{sets}", ">removed", ">left"))
         for removal in explanation.removals:
             table.add_row(removal.rule, f"{removal.before:,}", f"{removal.removed:,}", f"{removal.after:,}")
         print_tables(

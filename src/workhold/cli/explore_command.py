@@ -216,13 +216,16 @@ def print_explored(
     """Print the table and say which toolkit is best."""
     from workhold.cli.tables import slides_always
     from workhold.files.toolkit_file import is_sold
+    from workhold.model.jaw_hold import HOLD_FIGURES
     from workhold.model.quality import FIGURES, LOCATION_ERROR, PROGRAM_FIGURE
     from workhold.presenting.figure_words import figure_text, figure_words, heading
 
     unit, ranking = asked.unit, asked.ranking
     known = [figures_known(*each) for each in zip(found, asked.queries, strict=False)]
     keys = dict.fromkeys([FIGURES[LOCATION_ERROR].key, *ranking])
-    figures = [figure for key in keys for figure in (*FIGURES, PROGRAM_FIGURE) if figure.key == key]
+    figures = [
+        figure for key in keys for figure in (*FIGURES, PROGRAM_FIGURE, *HOLD_FIGURES) if figure.key == key
+    ]
     # What is known of all, then what there may be no room for: later figures, and of which types the fixtures
     # are.
     headings = [*(f">{heading(figure, unit)}" for figure in figures), *(f">type {name}" for name in types)]
@@ -245,6 +248,7 @@ def print_explored(
     if best is not None:
         own = known[found.index(best)]
         shown = [f for f in (*figures[1:], figures[0]) if f.key in own]
+        shown = shown or [f for f in HOLD_FIGURES if f.key in own]
         words = ", ".join(f"{f.words} {figure_words(f, own[f.key], unit)}" for f in shown)
         unsold = "" if is_sold(best.name) else " Nobody sells it: it is the gripper of the paper."
         over = f"It holds the part over {best.held:.0%} of its length."

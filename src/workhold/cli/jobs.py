@@ -270,7 +270,7 @@ def asked_of(
         unit = length_unit(job.reading.unit)
         asked = job.words.asked(unit)
         asked["tolerance"] = with_fit_of(asked["tolerance"], tolerance)
-        asked["rank_by"] = asked["rank_by"] or usual
+        asked["rank_by"] = asked["rank_by"] or (usual if toolkit.flat_jaws is None else None)
         workpiece = read.loaded.workpiece
         try:
             refuse_unsure_numbers(read.loaded, asked["restrictions"].avoid, CALLED)

@@ -15,6 +15,7 @@ from workhold.cli.seat_command import by_hand_words, seating_words
 from workhold.cli.setup_sheets import BodyWords, chosen_supports, write_bodies
 from workhold.cli.table import Table, print_tables
 from workhold.cli.values import length_unit, optional_positive_length, printed_unit
+from workhold.errors import InputError
 from workhold.units import MILLIMETRE, Unit
 
 if TYPE_CHECKING:
@@ -127,6 +128,12 @@ def ask(asked: ShowTask) -> tuple[LoadCase, ...]:
     from workhold.statics.loads import load_cases
 
     result, pressed_by = asked.result, asked.pressed_by
+    if asked.fixture.hold is not None:
+        if pressed_by["loads"]:
+            raise InputError(
+                "how hard flat jaws must press is found with the design: give it these loads, with --load or --loads."
+            )
+        return ()
     force, stiffness = asked.closing
     closed_with = result.query.jaw_force if force is None else force
     loads, friction = pressed_by["loads"] or result.query.loads, pressed_by["friction"]
@@ -151,7 +158,7 @@ def report(asked: ShowTask, cases: Sequence[LoadCase]) -> None:
     print_json(
         fixture=fixture_data(asked.fixture, result.toolkit, rank),
         **passing_data(result, rank, *asked.closing),
-        **bending_data(result, rank, asked.closing[0]),
+        **({} if asked.fixture.hold is not None else bending_data(result, rank, asked.closing[0])),
         listed=len(result),
         complete=bool(result.complete),
         loads=[load_case_data(case) for case in cases],
@@ -191,6 +198,9 @@ def print_fixture(
     from workhold.presenting.figure_words import no_edge
 
     fixture, toolkit = result[rank - 1], result.toolkit
+    if fixture.hold is not None:
+        print_tables(*fixture_tables(fixture, toolkit, rank, len(result), unit))
+        return
     force, longest = result.query.jaw_force, no_edge(result.workpiece, toolkit)
     quality = quality_table(fixture, toolkit.moving.noun, unit, force, longest)
     standing = standing_sentences(fixture, result, unit)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from math import degrees, hypot, inf, nan, pi
 from typing import TYPE_CHECKING
 
+from workhold.cli.hold_tables import first_hold_sentence, hold_fixture_tables, hold_table
 from workhold.cli.table import Table, plural
 from workhold.fixels.contacts import FLAT_PIN
 from workhold.model.solid import other_way_up
@@ -82,18 +83,22 @@ def counts_sentence(result: Result) -> str:
 
 def first_sentence(result: Result, unit: Unit) -> str:
     """Says why the first fixture stands first; nothing where another order was asked for."""
+    if result.holds:
+        return first_hold_sentence(result, unit)
     from workhold.statics.why_first import why_first
 
     return why_first(result, unit)
 
 
-def unfit_sentence(unfit: int) -> str:
+def unfit_sentence(unfit: int, between_jaws: bool = False) -> str:
     """Says how many fixtures are not shown because they are none for a workshop, and how to see them."""
     are = "is no fixture" if unfit == 1 else "are no fixtures"
-    return (
-        f"{unfit:,} of them {are} for a workshop (the part may lie anywhere, or one peg hardly "
-        "holds) and not shown: --unfit shows them."
+    why = (
+        "a jaw touches a corner alone"
+        if between_jaws
+        else "the part may lie anywhere, or one peg hardly holds"
     )
+    return f"{unfit:,} of them {are} for a workshop ({why}) and not shown: --unfit shows them."
 
 
 def proof_sentences(result: Result, written: str | None = None) -> list[str]:
@@ -140,6 +145,8 @@ def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILL
     What fixtures are ranked by is shown as it counts, all but the last figure to two digits, so that the
     table looks as sorted as it is.
     """
+    if result.toolkit.flat_jaws is not None:
+        return hold_table(result, entries, count, unit)
     from workhold.model.setup import settings_of
     from workhold.statics.judging import unfit
 
@@ -227,6 +234,8 @@ def fixture_tables(
     fixture: Fixture, toolkit: Toolkit, rank: int, total: int, unit: Unit = MILLIMETRE
 ) -> tuple[Table | str, ...]:
     """Says how to set up one fixture, with lengths in a unit: what to turn, and where each peg goes."""
+    if fixture.hold is not None:
+        return hold_fixture_tables(fixture, rank, total, unit)
     from workhold.model.setup import settings_of
 
     noun, several = toolkit.moving.noun, len(toolkit.plates) > 1

@@ -15,7 +15,7 @@ from attrs import evolve, field, frozen
 
 from workhold.cli.commands import option
 from workhold.cli.search_options import with_fit_of
-from workhold.cli.values import length, optional_length, pitches, two_lengths, whole_number
+from workhold.cli.values import length, optional_force, optional_length, pitches, two_lengths, whole_number
 from workhold.errors import InputError
 from workhold.fixels.fields import COLUMNS, FLAT, MIN_GAP, NAMES, OPTIONS, PEG_RADIUS, PITCH, ROWS, TRAVEL
 from workhold.fixels.table import TOOLKIT_SECTION, FieldTable, Form, ToolkitField
@@ -130,7 +130,7 @@ class ToolkitWords:
 
             loaded = load_toolkit(named[0])
             kind, said, tolerance = loaded.kind, loaded.fields, loaded.tolerance
-            if fields.get("peg_radius", said["peg_radius"]) != said["peg_radius"]:
+            if fields.get("peg_radius", said.get("peg_radius")) != said.get("peg_radius"):
                 tolerance = evolve(tolerance, fit=None)
         for word in words:
             if word not in named:
@@ -192,6 +192,9 @@ READERS: Mapping[str, Callable[[str, Any, Unit], Any]] = {
     "heights": span,
     "holes": lambda name, texts, unit: [hole for text in texts for hole in text.split(",")],
     "directions": lambda name, text, unit: directions(name, text),
+    "lengths": lengths,
+    "choice": lambda name, text, unit: text,
+    "force": lambda name, text, unit: optional_force(name, text),
 }
 
 

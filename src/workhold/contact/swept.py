@@ -156,6 +156,34 @@ class Swept:
         number = int(reach.argmin())
         return float(reach[number]), number if reach[number] < inf else -1
 
+    def starts(self) -> Array:
+        """A point (N, 2) of each span: where an arc or a line begins."""
+        rows = self.tree.rows
+        middle, axis = rows[:, [X, Y]], rows[:, [AXIS_X, AXIS_Y]]
+        is_arc = (rows[:, IS_ARC] != 0.0)[:, None]
+        angle = np.where(is_arc[:, 0], -rows[:, SIGN] * rows[:, HALF_EXTENT], 0.0)
+        c, s = np.cos(angle), np.sin(angle)
+        ray = np.column_stack([c * axis[:, 0] - s * axis[:, 1], s * axis[:, 0] + c * axis[:, 1]])
+        return np.where(is_arc, middle + rows[:, [RADIUS]] * ray, middle - rows[:, [HALF_EXTENT]] * axis)
+
+    def reach_of_box(self, corners: Array) -> tuple[float, int]:
+        """Least reach to a box with corners (4, 2) counterclockwise, inside and out, and the line of the program.
+
+        Where a path begins inside, or a filled box has a corner in it, they overlap, and it is minus infinity. It is
+        infinite, and the line -1, where nothing is swept.
+        """
+        ahead = np.roll(corners, -1, axis=0)
+        sides, off = ahead - corners, self.starts()[:, None] - corners
+        inside = (sides[:, 0] * off[..., 1] - sides[:, 1] * off[..., 0] >= 0.0).all(axis=1) & (self.line >= 0)
+        if inside.any():
+            return -inf, int(self.line[inside].min())
+        for (x0, y0, x1, y1), line in zip(self.filled, self.filled_line, strict=True):
+            if ((corners >= (x0, y0)) & (corners <= (x1, y1))).all(axis=1).any():
+                return -inf, int(line)
+        reach, which = self.nearest(corners, ahead)
+        side = int(reach.argmin())
+        return float(reach[side]), int(self.line[which[side]]) if which[side] >= 0 else -1
+
 
 @lru_cache(maxsize=16)
 def swept_below(program: Program, height: float) -> Swept:

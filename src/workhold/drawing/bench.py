@@ -15,13 +15,22 @@ from attrs import field, frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import AGREEMENT
-from workhold.drawing.carriers import draw_clamp, draw_holes, draw_plate, draw_push, draw_wall, most_holes
+from workhold.drawing.carriers import (
+    draw_clamp,
+    draw_flat_jaws,
+    draw_holes,
+    draw_plate,
+    draw_push,
+    draw_wall,
+    most_holes,
+)
 from workhold.drawing.scene import BLACK, GREY, Box, Scene, View, number
 from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, ROUND_PIN, WALL_END, ContactKind
 from workhold.fixels.pegs import peg_outline
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Line, Point, Segment, bounding_box
 from workhold.model.fixture import Fixture
+from workhold.model.jaw_hold import JawHold
 from workhold.model.setup import hole_centers
 from workhold.model.shown import Shown, shown
 from workhold.model.workpiece import Workpiece
@@ -148,6 +157,7 @@ class Bench:
     contacts : contact point and outward normal of each peg.
     shown : the carriers as far as they show.
     own : the placed outlines that carriers with heights of their own meet.
+    gripped : the placed faces that flat jaws touch, by their numbers.
     is_exact : whether pegs are drawn at their radius however small it is; they are drawn larger if not.
     """
 
@@ -159,6 +169,7 @@ class Bench:
     shown: Shown
     own: list[list[Segment]] = field(factory=list)
     is_exact: bool = False
+    gripped: Mapping[int, Segment] = field(factory=dict)
 
     @property
     def extent(self) -> Box:
@@ -204,6 +215,8 @@ def bench_of(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Bench:
     pose = fixture.pose
     loops = [[pose.carry(segment) for segment in loop] for loop in workpiece.loop_segments]
     faces = [pose.carry(face_of(workpiece, peg.face)) for peg in fixture.pegs]
+    hold = fixture.hold
+    gripped = () if hold is None else (*hold.fixed.segments, *hold.moving.segments)
     contacts = [
         contact_of(toolkit.carrier(peg.carrier).contact, (peg.x, peg.y), face)
         for peg, face in zip(fixture.pegs, faces, strict=True)
@@ -213,7 +226,10 @@ def bench_of(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Bench:
         for one in workpiece.every_outline[1:]
         for loop in one.loop_segments
     ]
-    return Bench(fixture, toolkit, loops, faces, contacts, shown(fixture, toolkit, workpiece), own)
+    held = {number: pose.carry(face_of(workpiece, number)) for number in gripped}
+    return Bench(
+        fixture, toolkit, loops, faces, contacts, shown(fixture, toolkit, workpiece), own, gripped=held
+    )
 
 
 def force_arrow(bench: Bench, index: int, view: View, longest: float) -> tuple[Point, Point]:
@@ -255,6 +271,8 @@ def draw_bench(
             group.line([view(high), view(low)], GREY, 0.8 * weight, stroke_dasharray="12 3 2 3")
     for clamp in bench.shown.clamps:
         draw_clamp(scene, clamp, bench.shown.carriers[0], view, weight)
+    if bench.shown.jaws is not None:
+        draw_flat_jaws(scene.group("jaws"), bench.shown.jaws, view, weight)
     draw_part(scene, bench, view, weight)
     for clamp in bench.shown.clamps:
         draw_push(scene, clamp, view, weight)
@@ -265,7 +283,7 @@ def draw_bench(
             arrows.arrow(tail, tip, "#ffffff", 5.0 * weight, 14 * weight)
             arrows.arrow(tail, tip, ARROW, 2.4 * weight, 12 * weight)
     draw_pegs(scene, bench, view, weight)
-    if min(bench.radius(view, index) for index in bench.placed) > 7.0 * weight:
+    if min((bench.radius(view, index) for index in bench.placed), default=0.0) > 7.0 * weight:
         contacts = scene.group("contacts")
         for contact, _ in bench.contacts:
             contacts.circle(view(contact), 2.8 * weight, ARROW, "#ffffff", 1.0 * weight)
@@ -280,10 +298,22 @@ def draw_part(scene: Scene, bench: Bench, view: View, weight: float) -> None:
         part.path(
             segment_path(face, view), TOUCHED, 8.0 * weight, stroke_linecap="butt", **{"class": "touched"}
         )
-    if bench.own:
+    if bench.fixture.hold is not None:
+        draw_grip(part, bench.fixture.hold, view, weight)
+    if bench.own and bench.fixture.hold is None:
         # What clamps and other carriers of their own heights meet, as a thin line beside what pegs meet.
         part.path(outline_path(bench.own, view), BLACK, 0.8 * weight, **{"class": "own outline"})
     part.path(d, BLACK, 2.2 * weight, **{"class": "outline"})
+
+
+def draw_grip(scene: Scene, hold: JawHold, view: View, weight: float) -> None:
+    """Draws what flat jaws touch: stretches along them, and points."""
+    for patch, y in ((hold.fixed, 0.0), (hold.moving, hold.opening)):
+        for x0, x1, _, _ in patch.rectangles:
+            if x1 > x0:
+                scene.line([view((x0, y)), view((x1, y))], TOUCHED, 8.0 * weight, **{"class": "touched"})
+            else:
+                scene.circle(view((x0, y)), 6.0 * weight, TOUCHED)
 
 
 def draw_pegs(scene: Scene, bench: Bench, view: View, weight: float) -> None:
@@ -334,7 +364,9 @@ def draw_inset(
     view = View.fitting(bounds, room)
     d = outline_path(workpiece.loop_segments, view)
     group.path(d, fill=PART_FILL, fill_rule="evenodd")
-    for face in dict.fromkeys(peg.face for peg in fixture.pegs if peg.beside is None):
+    hold = fixture.hold
+    gripped = () if hold is None else (*hold.fixed.segments, *hold.moving.segments)
+    for face in dict.fromkeys((*(peg.face for peg in fixture.pegs if peg.beside is None), *gripped)):
         group.path(segment_path(face_of(workpiece, face), view), TOUCHED, 5.0)
     group.path(d, BLACK, 1.4)
     for point in contacts(workpiece, fixture, toolkit):

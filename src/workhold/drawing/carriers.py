@@ -14,14 +14,16 @@ from workhold.drawing.scene import BLACK, GREY, Box, Scene, View
 from workhold.geometry.segment import Point
 from workhold.geometry.symmetry import rotated
 from workhold.model.clamps import ShownClamp
-from workhold.model.shown import Shown, ShownCarrier, Side
+from workhold.model.shown import Shown, ShownCarrier, ShownJaws, Side
 
 __all__ = [
     "SLIDING",
     "avoid_clamp",
     "block_arrow",
     "draw_clamp",
+    "draw_flat_jaws",
     "draw_holes",
+    "draw_jaw",
     "draw_plate",
     "draw_push",
     "draw_sign",
@@ -77,6 +79,31 @@ def draw_wall(scene: Scene, bar: Box, view: View, weight: float = 1.0, has_ends:
     scene.line([(box.x0, box.y0), (box.x1, box.y0)], FENCE[1], 2.6 * weight, **{"class": "fence"})
     for x in (box.x0, box.x1) if has_ends else ():
         scene.line([(x, box.y0), (x, box.y1)], FENCE[1], 2.6 * weight, **{"class": "end of fence"})
+
+
+def draw_flat_jaws(scene: Scene, jaws: ShownJaws, view: View, weight: float = 1.0) -> None:
+    """Draws two flat jaws from above, the parallels between them and the work stop."""
+    for box in jaws.parallels:
+        page = view.box(box)
+        scene.rectangle(page, "#eef0f3")
+        corners = [(page.x0, page.y0), (page.x1, page.y0), (page.x1, page.y1), (page.x0, page.y1)]
+        scene.line([*corners, corners[0]], "#9aa1aa", 0.9 * weight, stroke_dasharray="6 4")
+    for bar, is_lower in ((jaws.fixed, True), (jaws.moving, False)):
+        draw_jaw(scene, view.box(bar), "top" if is_lower else "bottom", weight)
+    if jaws.stop is not None:
+        scene.rectangle(view.box(jaws.stop), "#cfd4db", BLACK, 1.2 * weight)
+
+
+def draw_jaw(scene: Scene, box: Box, face: str, weight: float = 1.0) -> None:
+    """Draws a jaw in page units, its face at the top, the bottom, the left or the right of it drawn bold."""
+    scene.rectangle(box, "#dfe3e8", GREY, 1.0 * weight)
+    ends = {
+        "top": [(box.x0, box.y0), (box.x1, box.y0)],
+        "bottom": [(box.x0, box.y1), (box.x1, box.y1)],
+        "left": [(box.x0, box.y0), (box.x0, box.y1)],
+        "right": [(box.x1, box.y0), (box.x1, box.y1)],
+    }
+    scene.line(ends[face], FENCE[1], 2.6 * weight, **{"class": "jaw face"})
 
 
 def zigzag(start: Point, end: Point, tooth: float) -> list[Point]:

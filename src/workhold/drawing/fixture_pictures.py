@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from workhold.drawing.annotation import scale_bar
 from workhold.drawing.bench import Bench, bench_of, draw_bench, draw_inset
 from workhold.drawing.carriers import most_holes
+from workhold.drawing.hold_blocks import draw_hold_panel
 from workhold.drawing.panel import (
     TextColumn,
     closure_margin,
@@ -115,6 +116,11 @@ def draw_panel(
     group.line([(panel.x0 - 12, panel.y0), (panel.x0 - 12, panel.y1)], GREY, 0.8)
     column = TextColumn(group, panel.x0, panel.y0, panel.width)
     draw_title(column, fixture, workpiece, bench.toolkit, title)
+    if fixture.hold is not None:
+        draw_hold_panel(column, fixture, workpiece, bench.toolkit, lengths)
+        room = Box(panel.x0, column.y, panel.x1, min(panel.y1, column.y + HIGHEST_INSET))
+        draw_inset(group, room, workpiece, fixture, bench.toolkit)
+        return
     draw_settings(column, fixture, bench.toolkit, lengths)
     draw_peg_table(column, fixture, bench.toolkit, lengths)
     if path is not None:
@@ -231,16 +237,28 @@ def grid(count: int) -> list[Box]:
     return cells
 
 
+def cell_words(fixture: Fixture, lengths: LengthUnit) -> str:
+    """What the small picture of a part between flat jaws says of it: the force it asks for, or its grip."""
+    hold = fixture.hold
+    assert hold is not None
+    if hold.clamp_needed is not None:
+        return f"needs {lengths.unit.force_words(hold.clamp_needed)}"
+    return f"grip {lengths.short(hold.grip, 4)}"
+
+
 def draw_cell(scene: Scene, bench: Bench, title: str, cell: Box, view: View, lengths: LengthUnit) -> None:
     group = scene.group("thumbnail")
     group.rectangle(cell, "#ffffff", "#b9bec6", 1.0, 5)
     draw_bench(group, bench, view, weight=0.55, longest=26.0, axes=False)
     fixture, width = bench.fixture, cell.width - 20
     kind = bench.toolkit.arrangement(fixture.type, fixture.direction).short_title
+    if fixture.hold is not None:
+        kind = f"on {lengths.short(fixture.hold.parallels)}" if fixture.hold.parallels else "on the bed"
     name = shortened(title, 15, width - text_width(kind, 13, bold=True) - 10, bold=True)
     group.text((cell.x0 + 10, cell.y1 - 30), name, 15, bold=True)
     group.text((cell.x1 - 10, cell.y1 - 30), kind, 13, "end", bold=True)
-    group.text((cell.x0 + 10, cell.y1 - 12), f"margin {closure_margin(fixture)}", 12, fill=GREY)
+    figure = cell_words(fixture, lengths) if fixture.hold else f"margin {closure_margin(fixture)}"
+    group.text((cell.x0 + 10, cell.y1 - 12), figure, 12, fill=GREY)
     if bench.shown.measured:
         settings = [measured.setting for measured in bench.shown.measured]
         signs = " and ".join(dict.fromkeys(setting.sign for setting in settings))

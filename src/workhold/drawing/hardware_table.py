@@ -70,7 +70,7 @@ def write_hardware(column: TextColumn, sheet: Sheet) -> None:
         )
     pressed = pressed_up_to(sheet, heights)
     if pressed is not None:
-        shorter = dowel_for(sheet.toolkit.peg_diameter, pressed + heights.supported_by)
+        shorter = dowel_for(sheet.toolkit.peg_diameter or 0.0, pressed + heights.supported_by)
         what = "shorter ones" if shorter is None else f"dowels of {shorter.name}"
         column.paragraph(
             f"No {plate.peg} is pressed above {lengths.words(pressed)}, so {what} are long enough too.", NOTE

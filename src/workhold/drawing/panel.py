@@ -170,6 +170,8 @@ def arrangement_words(arrangement: Arrangement, toolkit: Toolkit) -> str:
     'Three locators, two clamps push to the left and downward'
     """
     clamps, noun = len(arrangement.directions), toolkit.moving.noun
+    if toolkit.flat_jaws is not None:
+        return "Flat jaws: one side flush on the fixed jaw, held by friction"
     if clamps:
         pushing = f"the {noun} pushes" if clamps == 1 else f"{plural(clamps, noun, NUMBERS)} push"
         return f"{toolkit.setup_words.located_by}, {pushing} {arrangement.towards}"

@@ -30,8 +30,8 @@ from workhold.drawing.path_drawn import PlannedPath
 from workhold.drawing.scene import BLACK, GREY, Box, LengthUnit, Scene, View, degrees_text, number, text_width
 from workhold.drawing.supports_drawn import PlannedSupports, draw_supports
 from workhold.fixels.carrier import column_letters
-from workhold.geometry.segment import Point
-from workhold.model.shown import ShownCarrier
+from workhold.geometry.segment import Arc, Point
+from workhold.model.shown import ShownCarrier, ShownJaws
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -45,6 +45,7 @@ __all__ = [
     "draw_plan",
     "draw_tag",
     "face_tag",
+    "gripped_tag",
     "peg_label",
 ]
 
@@ -88,11 +89,13 @@ def draw_labels(
         path.avoided(placer, view)
     pegs = bench.fixture.pegs
     numbers = list(dict.fromkeys(pegs[index].face for index in bench.touching))
+    gripped = list(bench.gripped)
     direction, angle_size = -radians(bench.fixture.pose.written_deg) / 2, (text_width(angle, 13) + 4, 16.0)
     placed = placer.place(
         [
             *(peg_label(bench, index, view) for index in bench.placed),
             *(face_tag(bench, face, view) for face in numbers),
+            *(gripped_tag(bench, face, view) for face in gripped),
             around(center, direction, angle_size, (26, 32, 40, 50, 64), spread(24), turn_cost=4),
             *(mark_label(point, name) for point, name in marks),
             *([] if path is None else path.labels(view, lengths)),
@@ -102,7 +105,7 @@ def draw_labels(
     group, places = scene.group("labels"), iter(placed)
     for index in bench.placed:
         draw_flag(group, next(places), bench.radius(view, index), pegs[index].hole)
-    for face in numbers:
+    for face in (*numbers, *gripped):
         draw_tag(group, next(places), str(face))
     group.text(next(places).box.center, angle, 13, "middle", fill=GREY, halo=3)
     for _, name in marks:
@@ -128,6 +131,9 @@ def avoid_drawing(placer: LabelPlacer, bench: Bench, view: View) -> None:
         avoid_clamp(placer, clamp, view)
     for wall in bench.shown.walls:
         placer.avoid_box(view.box(wall.bar))
+    if bench.shown.jaws is not None:
+        for bar in (bench.shown.jaws.fixed, bench.shown.jaws.moving):
+            placer.avoid_box(view.box(bar))
     for shown in bench.shown.carriers:
         if len(shown.columns) * len(shown.rows) < MOST_HOLES_AVOIDED:
             placer.avoid_ink([view(hole.center) for hole in shown.holes()], 2.0)
@@ -180,6 +186,17 @@ def face_tag(bench: Bench, face_number: int, view: View) -> Label:
             around(view(face.at(parameter)), atan2(ny, -nx), size, (7, 14, 24, 40, 60), spread(8), extra)
         )
     return joined(labels)
+
+
+def gripped_tag(bench: Bench, face_number: int, view: View) -> Label:
+    """Candidates for the number of a face that a flat jaw touches: inside the part, beside the middle of it."""
+    face = bench.gripped[face_number]
+    assert bench.fixture.hold is not None
+    is_below = face_number in bench.fixture.hold.fixed.segments
+    x = face.center[0] if isinstance(face, Arc) else face.middle[0]
+    y, turn = (0.0, -pi / 2) if is_below else (bench.fixture.hold.opening, pi / 2)
+    size = (max(TAG_HEIGHT, text_width(str(face_number), TAG_SIZE) + 8), TAG_HEIGHT)
+    return around(view((x, y)), turn, size, (9, 16, 26, 42, 60), spread(8))
 
 
 def draw_flag(scene: Scene, place: Place, radius: float, name: str) -> None:
@@ -263,6 +280,8 @@ def draw_hole_names(
     Where another plate stands there are none. Returns the boxes of the names.
     """
     group, names = scene.group("hole-names"), []
+    if not bench.shown.carriers:
+        return []
     for shown in bench.shown.carriers:
         plate = view.box(shown.plate)
         also = set() if supports is None else supports.holes_on(shown.carrier.name)
@@ -389,6 +408,8 @@ def draw_captions(scene: Scene, bench: Bench, view: View, frame: Box, bounds: Bo
     """
     if bench.shown.clamps:
         return []
+    if bench.shown.jaws is not None:
+        return draw_jaw_captions(scene.group("captions"), bench.shown.jaws, view)
     group = scene.group("captions")
     boxes: list[Box] = []
     y = frame.y1 + 40
@@ -416,6 +437,28 @@ def draw_captions(scene: Scene, bench: Bench, view: View, frame: Box, bounds: Bo
             group.text((tip + 66, y + drop), verb, 13)
             box = box.union(Box(tip, y - 8, tip + 66 + text_width(verb, 13), y + 2 * drop - 10))
         boxes.append(box)
+    return boxes
+
+
+def draw_jaw_captions(scene: Scene, jaws: ShownJaws, view: View) -> list[Box]:
+    """Names two flat jaws and a work stop, with an arrow which way the jaw that moves closes; returns the boxes."""
+    boxes = list[Box]()
+    for name, bar in (("fixed jaw", jaws.fixed), ("moving jaw", jaws.moving)):
+        page = view.box(bar)
+        size = min(15.0, 0.6 * page.height)
+        middle = (page.x0 + page.x1) / 2, (page.y0 + page.y1) / 2
+        scene.text(middle, name, size, "middle")
+        boxes.append(Box.about(middle, text_width(name, size), size))
+    page = view.box(jaws.moving)
+    tip = page.x1 - 40, (page.y0 + page.y1) / 2
+    block_arrow(scene, tip, (0.0, -1.0), 0.7)
+    boxes.append(Box.about(tip, 40, 60))
+    if jaws.stop is not None:
+        page = view.box(jaws.stop)
+        at = (page.x0 + page.x1) / 2, page.y0 - 10
+        scene.text(at, "work stop", 12, "middle", halo=3)
+        boxes.append(Box.about(at, text_width("work stop", 12), 12))
+        boxes.append(page)
     return boxes
 
 

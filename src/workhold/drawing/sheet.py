@@ -30,13 +30,21 @@ from workhold.drawing.path_drawn import PlannedPath
 from workhold.drawing.plan import BOTTOM, LEFT, RIGHT, TOP, draw_plan
 from workhold.drawing.scene import BLACK, UNITS_PER_MM, Box, LengthUnit, Scene, View, shortened, text_width
 from workhold.drawing.sheet_blocks import blocks_of
-from workhold.drawing.sheet_facts import PAPERS, SheetDetails, cautions_of, edge_distances, result_details
+from workhold.drawing.sheet_facts import (
+    PAPERS,
+    Caution,
+    SheetDetails,
+    cautions_of,
+    edge_distances,
+    result_details,
+)
 from workhold.drawing.sheet_writing import Block, Sheet, height_of, heights_of
 from workhold.drawing.side_drawing import SideFigure
 from workhold.drawing.side_view import side_view
 from workhold.drawing.supports_drawn import PlannedSupports
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
+from workhold.model.hold_words import hold_cautions
 from workhold.model.result import Result
 from workhold.model.setup import part_zero
 from workhold.model.workpiece import Workpiece
@@ -62,9 +70,13 @@ def draw_sheet(
     bench = bench_of(fixture, workpiece, toolkit)
     details = details if details.zero else evolve(details, zero=part_zero(workpiece))
     lengths = LengthUnit.suiting(details.unit, bench.shown.pitch)
-    distances = edge_distances(fixture, workpiece, toolkit)
-    cautions = cautions_of(fixture, toolkit, distances, details, lengths)
-    heights = heights_of(fixture, workpiece, toolkit, details)
+    if fixture.hold is not None:
+        distances, heights = list[float](), None
+        cautions = [Caution(kind, words) for kind, words in hold_cautions(fixture.hold)]
+    else:
+        distances = edge_distances(fixture, workpiece, toolkit)
+        cautions = cautions_of(fixture, toolkit, distances, details, lengths)
+        heights = heights_of(fixture, workpiece, toolkit, details)
     sheet = Sheet(fixture, workpiece, toolkit, details, lengths, tuple(cautions), tuple(distances), heights)
     figure = figure_of(sheet, bench)
     zero = sheet.zero_place
@@ -90,7 +102,7 @@ def draw_sheet(
     planned = None if details.supports is None else PlannedSupports.of(details.supports)
     draw_plan(scene, bench, view, workpiece, room, lengths, marks, angle="θ", supports=planned, path=path)
     words = f", scale {layout.scale.name}"
-    if not most_holes(view, bench.shown):
+    if bench.shown.carriers and not most_holes(view, bench.shown):
         words += "; only the holes near the pegs are drawn"
     scale_bar(scene, (room.x0, room.y1), view.scale, lengths, more=words)
     for page, columns in zip(pages, (layout.columns, *layout.more), strict=True):

@@ -12,6 +12,7 @@ from functools import partial
 from math import isfinite
 
 from workhold.drawing.hardware_table import write_hardware
+from workhold.drawing.hold_blocks import hold_writers
 from workhold.drawing.panel import (
     NUMBERS,
     TextColumn,
@@ -498,6 +499,8 @@ MOVING: Mapping[Measure, MovingBlocks] = {"opening": OPENING, "stroke": CLAMPS, 
 
 def blocks_of(sheet: Sheet) -> tuple[list[Block], list[Block]]:
     """All blocks of a sheet in reading order: those needed beside the plan, and the others."""
+    if sheet.fixture.hold is not None:
+        return blocks_of_hold(sheet)
     moving = MOVING[sheet.toolkit.moving.measure]
     needed: list[Writer] = [write_title, write_pegs, *moving.settings(sheet), write_zero]
     others: list[Writer] = [write_side, write_part, write_steps]
@@ -519,6 +522,18 @@ def blocks_of(sheet: Sheet) -> tuple[list[Block], list[Block]]:
     if sheet.details.bent is not None:
         others.append(write_bending)
     others += [write_quality, write_counting, write_legend]
+
+    def bound(writer: Writer) -> Block:
+        return lambda column: writer(column, sheet)
+
+    return list(map(bound, needed)), list(map(bound, others))
+
+
+def blocks_of_hold(sheet: Sheet) -> tuple[list[Block], list[Block]]:
+    """The blocks of a sheet of flat jaws: what to set, the view from the end, the force, zero and cautions first."""
+    setting, rest = hold_writers(sheet)
+    needed = [write_title, *setting, write_zero, *([write_cautions] if sheet.cautions else [])]
+    others = [*rest, *([write_program] if sheet.details.program is not None else []), write_part]
 
     def bound(writer: Writer) -> Block:
         return lambda column: writer(column, sheet)

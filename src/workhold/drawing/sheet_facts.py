@@ -20,6 +20,7 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.model.bodies import SUPPORT_HEIGHT
 from workhold.model.first_side import FirstSide
 from workhold.model.fixture import Fixture
+from workhold.model.hold_words import hold_cautions
 from workhold.model.moved_setup import middle_move, move_to, moved_on
 from workhold.model.program import Program
 from workhold.model.requirements import Load, Tolerance
@@ -323,9 +324,44 @@ def pressed_height(
     return max(min(known), 0.0) if known else None
 
 
+def hold_details(
+    result: Result,
+    rank: int,
+    question: SheetQuestion,
+    result_hash: str,
+    unit: Unit,
+    number: int | None,
+    count: int | None,
+    listed_as: str,
+) -> tuple[Fixture, SheetDetails]:
+    """The same of a fixture that flat jaws hold, which has no pegs to say anything of."""
+    query = result.query
+    zero = part_zero(result.workpiece, question.zero, unit)
+    if query.program is not None and question.zero is None:
+        zero = PartZero(
+            query.program.zero, "place given" if any(query.program.zero) else "origin of the drawing"
+        )
+    details = SheetDetails(
+        number=rank if number is None else number,
+        count=len(result) if count is None else count,
+        day=date.min if question.day is None else question.day,
+        result_hash=result_hash,
+        version=__version__,
+        unit=unit,
+        zero=zero,
+        program=query.program,
+        thickness=query.part_height,
+        listed_as=listed_as,
+        **{name: getattr(question, name) for name in AS_ASKED},
+    )
+    return result[rank - 1], details
+
+
 def result_cautions(result: Result, rank: int, **asked: Any) -> list[Caution]:
     """What the setup sheet of one fixture says to beware of; see :func:`result_details`."""
     fixture, details = result_details(result, rank, **asked)
+    if fixture.hold is not None:
+        return [Caution(kind, words) for kind, words in hold_cautions(fixture.hold)]
     pitch = min(min(carrier.pitch) for carrier in result.toolkit.carriers)
     lengths = LengthUnit.suiting(details.unit, pitch)
     distances = edge_distances(fixture, result.workpiece, result.toolkit)
@@ -369,6 +405,8 @@ def result_details(
     from workhold.statics.quality import measured_fixture
 
     question = SheetQuestion(**asked)
+    if result.toolkit.flat_jaws is not None:
+        return hold_details(result, rank, question, result_hash, unit, number, count, listed_as)
     at, jaw, friction, seating = question.at, question.jaw, question.friction, question.seating
     peg_height, support_height = question.peg_height, question.support_height
     loads = result.query.loads if loads is None else loads

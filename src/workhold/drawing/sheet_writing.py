@@ -136,7 +136,7 @@ def heights_of(
             f"pegs {details.peg_height:g} mm high end below the part, which lies {lift:g} mm above the "
             "plates: give a larger peg height, or lower supports."
         )
-    diameter, length = toolkit.peg_diameter, details.peg_length
+    diameter, length = toolkit.peg_diameter or 0.0, details.peg_length
     dowel = None if length is not None else dowel_for(diameter, top + lift)
     if length is None:
         # A peg that is not sold is made as long as it must be to sit as deep as one that is.
@@ -389,7 +389,7 @@ def write_dowel(column: TextColumn, sheet: Sheet) -> None:
 
 def usual_dowel(sheet: Sheet, heights: SheetHeights) -> SoldDowel | None:
     """The dowel that is no higher than it must be beside a prism; None where none is sold that is not higher."""
-    diameter = sheet.toolkit.peg_diameter
+    diameter = sheet.toolkit.peg_diameter or 0.0
     usual = min(DOWEL_STANDOUT * diameter, heights.peg_top) + SAME_HEIGHT
     low = [one for one in standouts(diameter) if one <= usual]
     return dowel_for(diameter, max(low)) if low else None

@@ -203,7 +203,7 @@ def packing_of(
         For a vise, whose one jaw cannot press several parts alike, a plate that holds no copy, and without
         SciPy.
     """
-    if len(toolkit.plates) > 1:
+    if toolkit.flat_jaws is not None or len(toolkit.plates) > 1:
         raise InputError(
             f"a {toolkit.noun} holds one part: its {toolkit.moving.noun} presses several copies unlike; take "
             "a plate or a fence."

@@ -184,6 +184,11 @@ def family_of(
             raise InputError(
                 f"{one.name} is asked for in another toolkit: the parts of a family share theirs."
             )
+        if one.query.toolkit.flat_jaws is not None:
+            raise InputError(
+                f"a {one.query.toolkit.noun} has no holes to keep pegs in: the parts of a family share those, so plan "
+                "one with pegs."
+            )
         if one.query.program is not None:
             raise InputError(f"{one.name} has a program to let pass: a family of parts is planned without.")
         if one.query.rank_by[0] != first.rank_by[0]:

@@ -120,6 +120,9 @@ TYPES: Mapping[Form, Any] = {
     "heights": TwoNumbers,
     "holes": list[str],
     "directions": list[str] | list[Ways],
+    "lengths": list[FiniteFloat],
+    "choice": str,
+    "force": FiniteFloat,
 }
 
 
@@ -249,6 +252,7 @@ def workpiece_fault(error: ValidationError) -> str:
 
 
 Point = Annotated[list[float | str], Field(min_length=2, max_length=2)] | str
+Vector = Annotated[list[float | str], Field(min_length=3, max_length=3)]
 Angles = Annotated[list[float | str], Field(min_length=2, max_length=2)]
 
 
@@ -258,8 +262,13 @@ class LoadTable(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     name: str = Field(default="", max_length=LONGEST_NAME)
-    force: float | str = Field(default=0.0, description="in N, or with a unit: 0.2 kN, 45 lbf")
+    force: float | str | Vector = Field(
+        default=0.0, description="in N, or with a unit: 0.2 kN, 45 lbf; or along x, y and z of the part, z up"
+    )
     at: Point | None = Field(default=None, description="where the force acts; or path")
+    z: float | str | None = Field(
+        default=None, description="its height above the part's lower side; the part's top if not given"
+    )
     path: Annotated[list[Point], Field(min_length=2)] | str | None = Field(
         default=None, description="the points it runs along"
     )

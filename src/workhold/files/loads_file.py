@@ -12,13 +12,19 @@ degrees in the part's frame, and any if not given::
     force = 200                 # or "0.2 kN"
     direction = [30, 60]        # or 30, or "any"
     moment = 5000               # or "5 N.m"
+
+    [[load]]
+    name = "end mill, helix pulls"
+    force = [300, -200, 80]     # along x, y and z of the part, z up
+    at = [20, 5]
+    z = 12                      # above the part's lower side; its top if not given
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from math import isfinite
+from math import atan2, degrees, hypot, isfinite
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +36,7 @@ from workhold.units import unit_named
 
 __all__ = ["load_from_words", "read_loads"]
 
-KEYS = ("name", "force", "at", "path", "direction", "moment")
+KEYS = ("name", "force", "at", "path", "z", "direction", "moment")
 # Exact: 0.45359237 kg (international pound, 1959) times 9.80665 m/s^2 (standard gravity, 1901).
 POUND_FORCE = 4.4482216152605
 FORCE_UNITS = {"": 1.0, "n": 1.0, "kn": 1000.0, "lbf": POUND_FORCE}
@@ -95,7 +101,7 @@ def load_from_words(words: Mapping[str, Any], place: str, unit_scale: float) -> 
 
     Parameters
     ----------
-    words : values of name, force, at, path, direction and moment, as text (as in ``--load``), numbers or
+    words : values of name, force, at, path, z, direction and moment, as text (as in ``--load``), numbers or
         lists.
     place : where they come from, for messages.
     unit_scale : millimetres in one unit of ``at`` and ``path``.
@@ -118,10 +124,16 @@ def load_from_words(words: Mapping[str, Any], place: str, unit_scale: float) -> 
     if "at" in words and "path" in words:
         raise InputError(f"{place} has both at and path: a force acts at a point or along a path.")
     if "force" not in words:
-        for key in ("at", "path", "direction"):
+        for key in ("at", "path", "z", "direction"):
             if key in words:
                 raise InputError(f"{place} has {key} but no force: give its size in N, such as force=200.")
     points: list[tuple[float, float]] = []
+    height = None
+    if "z" in words:
+        height = number(words["z"])
+        if height is None:
+            raise InputError(f"{place}: z {shown(words['z'])} is not a height: give a number, such as 12.")
+    vector = components(words, place)
     if "at" in words:
         points = [point(words["at"], f"{place}: at")]
     elif "path" in words:
@@ -129,12 +141,16 @@ def load_from_words(words: Mapping[str, Any], place: str, unit_scale: float) -> 
     try:
         return Load(
             points=[(x * unit_scale, y * unit_scale) for x, y in points],
-            force=quantity(
-                words.get("force", 0), f"{place}: force", FORCE_UNITS, "200, 200N, 0.2kN or 45lbf"
-            ),
-            directions=directions(words["direction"], f"{place}: direction")
+            force=hypot(vector[0], vector[1])
+            if vector
+            else quantity(words.get("force", 0), f"{place}: force", FORCE_UNITS, "200, 200N, 0.2kN or 45lbf"),
+            directions=degrees(atan2(vector[1], vector[0]))
+            if vector
+            else directions(words["direction"], f"{place}: direction")
             if "direction" in words
             else ANY_DIRECTION,
+            upward=vector[2] if vector else 0.0,
+            height=None if height is None else height * unit_scale,
             moment=quantity(
                 words.get("moment", 0), f"{place}: moment", MOMENT_UNITS, "5000, 5000N.mm, 5N.m or 40lbf.in"
             ),
@@ -142,6 +158,27 @@ def load_from_words(words: Mapping[str, Any], place: str, unit_scale: float) -> 
         )
     except InputError as error:
         raise InputError(str(error) if str(error).startswith(place) else f"{place}: {error}") from None
+
+
+def components(words: Mapping[str, Any], place: str) -> tuple[float, float, float] | None:
+    """A force along x, y and z in N; None of one that is its size alone. Refuses other lists, and a direction
+    beside one.
+    """
+    given = words.get("force")
+    parts = given.split(",") if isinstance(given, str) and "," in given else given
+    if not isinstance(parts, list | tuple):
+        return None
+    if len(parts) != 3:
+        raise InputError(
+            f"{place}: force {shown(given)} is not a force along x, y and z: give three numbers, such as "
+            "[300, -200, 80], or its size."
+        )
+    if "direction" in words:
+        raise InputError(
+            f"{place} has a force along x, y and z, and a direction: give the size alone with that."
+        )
+    x, y, z = (quantity(one, f"{place}: force", FORCE_UNITS, "200, 200N, 0.2kN or 45lbf") for one in parts)
+    return x, y, z
 
 
 def is_number(value: Any) -> bool:

@@ -21,6 +21,7 @@ from collections.abc import Mapping
 from difflib import get_close_matches
 from functools import cache
 from importlib.resources import files
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -191,14 +192,14 @@ def described_toolkit(name: str, entries: Mapping[str, Any]) -> LoadedToolkit:
         unit=unit,
         kind=kind,
         fields=fields,
-        tolerance=tolerance_of(entries, unit, fields[PEG_RADIUS.name]),
+        tolerance=tolerance_of(entries, unit, fields.get(PEG_RADIUS.name, 0.0)),
         assumed=tuple(entries.get("assumed", ())),
     )
 
 
 def in_mm(form: Form, value: Any, unit: Unit) -> Any:
     """Convert what an entry gives for a field to the constructor's argument, with lengths in mm."""
-    if form in ("count", "directions"):
+    if form in ("count", "directions", "choice", "force"):
         return value
     if form == "holes":
         return tuple(value)
@@ -215,7 +216,7 @@ def lengths_in_mm(value: Any, unit: Unit) -> Any:
 
 def refuse_wide_pads(toolkit: Toolkit) -> None:
     """Refuses pads of supports that would overlap in neighbouring holes."""
-    apart = min(pitch for plate in toolkit.plates for pitch in plate.pitch)
+    apart = min((pitch for plate in toolkit.plates for pitch in plate.pitch), default=inf)
     radius = None if toolkit.supports is None else toolkit.supports.pad_radius
     if radius is not None and 2 * radius > apart:
         raise InputError(
@@ -291,7 +292,12 @@ def preset_names() -> tuple[str, ...]:
         if entry.name.endswith(ENDING)
     ]
     presets.sort(
-        key=lambda one: (one.name.split("-")[0], one.fields[PITCH.name], one.fields.get(COLUMNS.name, 0))
+        key=lambda one: (
+            one.name.split("-")[0],
+            one.fields.get(PITCH.name, (0.0, 0.0)),
+            one.fields.get(COLUMNS.name, 0),
+            one.name,
+        )
     )
     presets.sort(key=lambda one: (not is_sold(one.name), one.toolkit.moving.has_lattice))
     return tuple(one.name for one in presets)
@@ -310,6 +316,8 @@ def preset(name: str) -> LoadedToolkit:
     """The preset of a name that exists."""
     text = (files("workhold") / "data" / "toolkits" / f"{name}{ENDING}").read_text(encoding="utf-8")
     found = described_toolkit(name, tomllib.loads(text))
+    if found.toolkit.flat_jaws is not None:
+        return found
     clamp = found.fields.get(TOP_CLAMP) or TopClamp()
     if clamp.tip_margin is None:
         clamp = evolve(clamp, tip_margin=TIP_MARGIN)

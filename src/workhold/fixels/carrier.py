@@ -16,7 +16,7 @@ from typing import Any, Literal
 from attrs import frozen
 
 from workhold.errors import InputError
-from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, ROUND_PIN, TOWARDS, WALL_END, ContactKind
+from workhold.fixels.contacts import CLAMP_TIP, FLAT_JAW, FLAT_PIN, ROUND_PIN, TOWARDS, WALL_END, ContactKind
 from workhold.fixels.pegs import Flat
 
 __all__ = [
@@ -169,6 +169,7 @@ class Carrier:
     heights : between which what stands on it reaches, in mm above the plane on which the part lies. None
         where it reaches from below up to the peg height, as all pegs do.
     width : of a wall in mm, the columns beside it in its middle; None where it is endless.
+    is_jaw : whether it is a flat jaw, which holds by friction and has no holes.
     """
 
     name: str
@@ -187,11 +188,12 @@ class Carrier:
     flat: Flat | None = None
     heights: Heights | None = None
     width: float | None = None
+    is_jaw: bool = False
 
     @property
     def reach(self) -> tuple[float, float] | None:
         """The x from which and up to which a wall is there, in mm; None where it is endless."""
-        if self.width is None:
+        if self.width is None or self.is_jaw:
             return None
         middle = (self.column_count - 1) * self.pitch[0] / 2
         return middle - self.width / 2, middle + self.width / 2
@@ -228,6 +230,8 @@ class Carrier:
 
     @property
     def contact(self) -> ContactKind:
+        if self.is_jaw:
+            return FLAT_JAW
         if self.is_wall:
             return WALL_END
         if self.on is not None:

@@ -18,6 +18,7 @@ from attrs import frozen
 __all__ = [
     "CLAMP_TIP",
     "DIRECTIONS",
+    "FLAT_JAW",
     "FLAT_PIN",
     "ROUND_PIN",
     "TOWARDS",
@@ -51,6 +52,7 @@ ROUND_PIN = ContactKind("round pin", "locator")
 FLAT_PIN = ContactKind("flat pin", "locator", is_turned=True)
 WALL_END = ContactKind("wall", "locator", is_placed=False)
 CLAMP_TIP = ContactKind("clamp tip", "clamp")
+FLAT_JAW = ContactKind("flat jaw", "clamp", is_placed=False)
 
 
 # In the order in which fixtures are listed. Each has the angle of the line along which the clamp's travel is

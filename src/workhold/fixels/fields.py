@@ -29,6 +29,7 @@ NAMES: Mapping[str, str] = {
     "plate": "three locators on a plate of holes, and a clamp or two",
     "fence": "a straight wall that the part lies flush against, one locator and a clamp",
     "flat-jaw": "a vise with one flat jaw, and two pegs on the other",
+    "plain-vise": "a vise with two flat jaws, which hold the part by friction, on parallels",
 }
 
 
@@ -62,6 +63,7 @@ PITCH = ToolkitField(
     default=REQUIRED,
     entry="write the distance between holes as one number, or [x, y]",
     missing="distance between holes",
+    belongs_to="holes",
 )
 COLUMNS = ToolkitField(
     "columns",
@@ -72,6 +74,7 @@ COLUMNS = ToolkitField(
     entry="write how many columns of holes each jaw has, such as columns = 2",
     missing="columns",
     most=200,
+    belongs_to="holes",
 )
 PEG_RADIUS = ToolkitField(
     "peg_radius",
@@ -82,6 +85,7 @@ PEG_RADIUS = ToolkitField(
     entry="write the radius of the pegs as a number",
     missing="pegs' radius",
     least="0",
+    belongs_to="pegs",
 )
 BODY_RADIUS = ToolkitField(
     "body_radius",
@@ -106,6 +110,7 @@ FLAT = ToolkitField(
     (PageLabel("Centre to flat", "round, no flat"),),
     entry="write its distance from a peg's centre, or that and half its width, such as [2.5, 1.5]",
     least="0",
+    belongs_to="pegs",
 )
 ROWS = ToolkitField(
     "rows",
@@ -114,6 +119,7 @@ ROWS = ToolkitField(
     (PageLabel("Rows a jaw", "as needed"),),
     lifted=Lifted("rows of holes", "holes", "with as many rows as needed"),
     most=100_000,
+    belongs_to="holes",
 )
 BLOCKED = ToolkitField(
     "blocked",
@@ -161,6 +167,7 @@ JAW_WIDTH = ToolkitField(
     unset="endless",
     lifted=Lifted("width of the jaws", "reach", "with a flat jaw as wide as the part"),
     belongs_to="flat jaw",
+    entry="write the width of the jaws as a number",
 )
 ROW_OFFSET = ToolkitField(
     "row_offset",
@@ -272,6 +279,98 @@ CLAMP_HEIGHTS = heights_of("clamp", "the clamp's tip", "clamp beside its jaws")
 WALL_HEIGHTS = heights_of("wall", "the straight wall", "wall")
 JAW_HEIGHTS = heights_of("jaw", "the jaw's pegs", "single jaw with pegs")
 
+JAW_HEIGHT = ToolkitField(
+    "jaw_height",
+    "length",
+    "Of flat jaws: how high they stand above the vise's bed; any height if not given.",
+    (PageLabel("Height of the jaws", "any", is_usual=True),),
+    figure="height of the jaws above the bed",
+    unset="any",
+    belongs_to="pair of flat jaws",
+)
+JAW_THICKNESS = ToolkitField(
+    "jaw_thickness",
+    "length",
+    "Of flat jaws: how thick they are at their top, for the tools of a program; endless if not given.",
+    (PageLabel("Thickness of the jaws", "endless"),),
+    figure="thickness of the jaws",
+    unset="endless",
+    belongs_to="pair of flat jaws",
+)
+PARALLELS = ToolkitField(
+    "parallels",
+    "lengths",
+    "Heights of the parallels in the drawer, one fixture for each, such as 20,25,32; the part lies on the bed if "
+    "not given.",
+    (PageLabel("Parallels", "none", is_usual=True),),
+    default=(),
+    figure="parallels",
+    entry="write a list of heights, such as [20, 25, 32]",
+    least="0",
+    belongs_to="bed",
+)
+LEAST_GRIP = ToolkitField(
+    "least_grip",
+    "length",
+    "Least height that both flat jaws must grip.",
+    (PageLabel("Grip at least", "3 mm"),),
+    default=3.0,
+    figure="least grip",
+    belongs_to="pair of flat jaws",
+)
+STOP = ToolkitField(
+    "stop",
+    "choice",
+    "At which end of the flat jaws the work stop is; both: one fixture for each. Without one the part lies in the "
+    "middle.",
+    (
+        PageLabel(
+            "Work stop",
+            "none",
+            is_usual=True,
+            choices=(
+                Choice("left", "at the left end"),
+                Choice("right", "at the right end"),
+                Choice("both", "left and right, each a set-up"),
+            ),
+        ),
+    ),
+    figure="work stop",
+    unset="none",
+    entry='write "left", "right" or "both"',
+    choices=("left", "right", "both"),
+    belongs_to="work stop",
+)
+STOP_OFFSET = ToolkitField(
+    "stop_offset",
+    "length",
+    "How far inward from the end of the jaws the stop touches the part.",
+    (PageLabel("Stop inward by", "0"),),
+    default=0.0,
+    figure="stop from the jaws' end",
+    least="any",
+    belongs_to="work stop",
+)
+MAX_FORCE = ToolkitField(
+    "max_force",
+    "force",
+    "What the vise is rated for, in N or with its unit.",
+    (PageLabel("Rated force in N", "not known"),),
+    figure="rated force",
+    unset="not known",
+    entry="write the force in N as a number",
+    belongs_to="rated force",
+)
+SCREW_LEAD = ToolkitField(
+    "screw_lead",
+    "length",
+    "Of the vise's screw: how far one turn moves the jaw, for the torque that closes it.",
+    (PageLabel("Lead of the screw", "not known"),),
+    figure="lead of the screw",
+    unset="not known",
+    belongs_to="screw",
+)
+
 # All fields, in the order of the command's help; a kind may show some of them in another way.
 OPTIONS = (
     PITCH,
@@ -296,6 +395,14 @@ OPTIONS = (
     CLAMP_HEIGHTS,
     WALL_HEIGHTS,
     JAW_HEIGHTS,
+    JAW_HEIGHT,
+    JAW_THICKNESS,
+    PARALLELS,
+    LEAST_GRIP,
+    STOP,
+    STOP_OFFSET,
+    MAX_FORCE,
+    SCREW_LEAD,
 )
 ON_A_PLATE = (
     PITCH,

@@ -10,6 +10,7 @@ from attrs import NOTHING, fields_dict
 from workhold.errors import InputError
 from workhold.fixels.fence import Fence
 from workhold.fixels.flat_jaw import FlatJaw
+from workhold.fixels.plain_vise import PlainVise
 from workhold.fixels.plate import Plate
 from workhold.fixels.setup_words import PageWords
 from workhold.fixels.table import FieldTable, ToolkitField
@@ -18,7 +19,9 @@ from workhold.fixels.vise import OpeningVise, Vise
 
 __all__ = ["ALIASES", "KINDS", "PAGES", "TABLES", "USUAL", "kind_of", "owner_of", "table_of", "toolkit_of"]
 
-KINDS: Mapping[str, type[Toolkit]] = {one.kind: one for one in (Vise, OpeningVise, Plate, Fence, FlatJaw)}
+KINDS: Mapping[str, type[Toolkit]] = {
+    one.kind: one for one in (Vise, OpeningVise, Plate, Fence, FlatJaw, PlainVise)
+}
 # The fields of each kind; kinds that differ in no field share a table.
 TABLES: Mapping[str, FieldTable] = {name: kind.table for name, kind in KINDS.items()}
 # The kind that is meant where nobody says.
@@ -33,7 +36,7 @@ ALIASES: Mapping[str, tuple[str, Mapping[str, Any]]] = {
 
 # The kinds of the page by name, in its order, and an alias that says some fields.
 PAGES: Mapping[str, PageWords] = {
-    **{one.kind: one.page for one in (Plate, Fence, Vise, OpeningVise, FlatJaw)},
+    **{one.kind: one.page for one in (Plate, Fence, Vise, OpeningVise, FlatJaw, PlainVise)},
     "gripper": PageWords("Gripper, one column a jaw", "Close gripper", {**Vise.page.start, "columns": 1}),
 }
 

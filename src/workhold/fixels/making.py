@@ -24,7 +24,7 @@ from workhold.fixels.pegs import flat_of, resolved_flat
 from workhold.fixels.support_hardware import HARDWARE, hardware_of
 from workhold.fixels.table import SILENT, ToolkitField
 from workhold.fixels.toolkit import Change, Toolkit
-from workhold.limits import MOST_BLOCKED, MOST_HOLES, real, refuse_long
+from workhold.limits import MOST_BLOCKED, MOST_HOLES, MOST_LENGTHS, real, refuse_long, refuse_strong
 
 __all__ = [
     "finer",
@@ -32,6 +32,7 @@ __all__ = [
     "made_from_table",
     "optional_length",
     "pair",
+    "refuse_all_out_of_bounds",
     "refuse_many_holes",
     "settle",
     "wall_carrier",
@@ -135,6 +136,11 @@ def converter_of(row: ToolkitField) -> Callable[[Any], Any]:
             return number if row.is_required or row.default is not None else optional(number)
         case "count":
             return partial(whole, name=row.words)
+        case "force":
+            number = partial(real, name=row.words)
+            return number if row.is_required else optional(number)
+        case "choice":
+            return row.checked
         case "holes":
             return partial(all_holes, carriers=row.carriers, noun=row.carrier_noun)
         case form:
@@ -190,6 +196,12 @@ def refuse_direction(name: Any) -> None:
         )
 
 
+def several_lengths(value: float | Iterable[float] | None) -> tuple[float, ...]:
+    """Returns lengths, each once, by size; none for None."""
+    given = () if value is None else value if isinstance(value, Iterable) else (value,)
+    return tuple(sorted({real(one, "a length") for one in given}))
+
+
 CONVERTERS: dict[str, Callable[[Any], Any]] = {
     "pitch": pair,
     "span": partial(
@@ -203,6 +215,7 @@ CONVERTERS: dict[str, Callable[[Any], Any]] = {
         "touches, in mm.",
     ),
     "directions": direction_names,
+    "lengths": several_lengths,
 }
 
 
@@ -221,12 +234,17 @@ def settle(toolkit: Any, *, noun: str, peg: str) -> None:
             few = " or ".join(map(str, row.allowed))
             raise InputError(f"{row.words} {value} cannot be: a {toolkit.noun} has {few}.")
     refuse_lattice(toolkit.pitch, toolkit.columns, toolkit.rows, toolkit.peg_radius, noun, peg)
-    for row in rows:
-        refuse_out_of_bounds(toolkit, row)
+    refuse_all_out_of_bounds(toolkit)
     refuse_many_holes(toolkit.columns, toolkit.rows, noun)
     for row in rows:
         if row.form == "holes":
             refuse_blocked(toolkit, row)
+
+
+def refuse_all_out_of_bounds(toolkit: Any) -> None:
+    """Refuses values of any field that are below what they must be at least, or too large to reckon with."""
+    for row in toolkit.table.fields:
+        refuse_out_of_bounds(toolkit, row)
 
 
 def refuse_out_of_bounds(toolkit: Any, row: ToolkitField) -> None:
@@ -241,6 +259,18 @@ def refuse_out_of_bounds(toolkit: Any, row: ToolkitField) -> None:
             if value < least:
                 raise InputError(row.below.format(value=value, least=least))
             refuse_long(row.words, value)
+        case "force" if value is not None:
+            if not 0 < value < inf:
+                raise InputError(f"{row.words} {value} is not a force: give it in N.")
+            refuse_strong(row.words, value)
+        case "lengths":
+            if any(not 0 <= one < inf for one in value):
+                raise InputError(
+                    f"{row.words} {', '.join(map(str, value))} are not lengths: give 0 or more, in mm."
+                )
+            if len(value) > MOST_LENGTHS:
+                raise InputError(f"{len(value)} {row.words} are more than {MOST_LENGTHS}: name those to try.")
+            refuse_long(row.words, max(value, default=0.0))
         case "span" if value is not None:
             if not 0 <= value[0] <= value[1] < inf:
                 raise InputError(

@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 from workhold.errors import InputError
 from workhold.fixels.carrier import Carrier, Heights, Travel
 from workhold.fixels.contacts import CLAMP_TIP, Arrangement, ContactKind, Symmetry
+from workhold.fixels.jaw_pair import JawPair
 from workhold.fixels.setup_words import Datum, PageWords, SetupWords
 from workhold.fixels.support_hardware import PinLimits, SupportPads, TopClamp
 from workhold.fixels.table import FieldTable, ToolkitField
@@ -171,14 +172,14 @@ class Toolkit:
         return tuple(carrier for carrier in self.carriers if carrier.has_lattice)
 
     @property
-    def peg_diameter(self) -> float:
-        """Diameter in mm of the pegs that stand in its plates.
+    def peg_diameter(self) -> float | None:
+        """Diameter in mm of the pegs that stand in its plates; None where there are none.
 
         >>> from workhold import Vise
         >>> Vise(pitch=20, columns=3, peg_radius=3).peg_diameter
         6.0
         """
-        return 2 * self.plates[0].peg_radius
+        return 2 * self.plates[0].peg_radius if self.plates else None
 
     @property
     def is_in_inches(self) -> bool:
@@ -220,8 +221,14 @@ class Toolkit:
     def ends_on_walls(self) -> tuple[slice, ...]:
         """The contacts of a fixture that are the ends of the contact with a wall, for each wall."""
         standing = self.arrangements[0].carriers
-        walls = [number for number, carrier in enumerate(self.carriers) if not carrier.contact.is_placed]
+        flush = [number for number, carrier in enumerate(self.carriers) if not carrier.contact.is_placed]
+        walls = [number for number in flush if number in standing]
         return tuple(slice(standing.index(one), standing.index(one) + standing.count(one)) for one in walls)
+
+    @property
+    def flat_jaws(self) -> JawPair | None:
+        """The two flat jaws that hold the part by friction; None where pegs hold it."""
+        return None
 
     @property
     def half_turned(self) -> tuple[int, ...] | None:
@@ -398,7 +405,7 @@ class Toolkit:
             np.array([getattr(one, name) for one in self.carriers]) for name in ("offset", "pitch")
         )
         unit = np.array([(0.0, 0.0) if one.travel is None else one.travel.unit for one in self.carriers])
-        carriers = np.array([one.carriers for one in self.arrangements])
+        carriers = np.array([one.carriers for one in self.arrangements], np.int64)
 
         def of_pegs(values: NDArray[np.float64]) -> NDArray[np.float64]:
             """Numbers (C,) of carriers for each peg (N, K)."""

@@ -281,6 +281,8 @@ def entries(result: Result, with_unfit: bool = False) -> Entries:
     """The entries of the best of a result; fixtures that are none for a workshop make entries only if asked
     for, or if there are no others."""
     table = result.table
+    if result.toolkit.flat_jaws is not None:
+        return entries_of_holds(result, with_unfit)
     blocks = (table.take(slice(start, start + BLOCK)) for start in range(0, len(table), BLOCK))
     bad = np.concatenate(
         [np.zeros(0, np.bool_), *(unfit(block.quality, result.query.tolerance) for block in blocks)]
@@ -289,6 +291,13 @@ def entries(result: Result, with_unfit: bool = False) -> Entries:
     looked_at = shown[:MOST_LOOKED_AT]
     index, like = first_of_each(near_duplicates(table.take(looked_at), result.workpiece, result.toolkit))
     return Entries(shown[index], like, len(bad) - len(shown))
+
+
+def entries_of_holds(result: Result, with_unfit: bool) -> Entries:
+    """The entries of what flat jaws hold: each by itself, as they differ in parallels, stop or side."""
+    bad = np.array([hold.is_unfit for hold in result.holds], np.bool_)
+    shown = np.arange(len(bad)) if with_unfit or bad.all() else np.flatnonzero(~bad)
+    return Entries(shown, np.zeros(len(shown), np.int64), len(bad) - len(shown))
 
 
 def first_of_each(groups: IntArray) -> tuple[IntArray, IntArray]:
@@ -300,8 +309,9 @@ def first_of_each(groups: IntArray) -> tuple[IntArray, IntArray]:
 
 def near_duplicates(table: FixtureTable, workpiece: Workpiece, toolkit: Toolkit) -> IntArray:
     """A number (N,) for each fixture, the same for near duplicates."""
-    if len(table) == 0:
-        return np.zeros(0, np.int64)
+    if len(table) == 0 or table.column.shape[1] == 0:
+        # What flat jaws hold differs in side, parallels or stop.
+        return np.arange(len(table), dtype=np.int64)
     carriers = toolkit.peg_carriers(table.arrangement)
     # Faces of each carrier's pegs in order, the first carrier's in front; with the pegs of each type where
     # they belong.

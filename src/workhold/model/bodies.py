@@ -198,7 +198,8 @@ def fixture_bodies(
     InputError
         For pegs of radius 0, which have no body.
     """
-    if min(carrier.peg_radius for carrier in toolkit.carriers if carrier.contact.is_placed) <= 0:
+    radii = [carrier.peg_radius for carrier in toolkit.carriers if carrier.contact.is_placed]
+    if min(radii, default=1.0) <= 0:
         raise InputError(
             f"pegs of radius 0 have no body to write or show: give the {toolkit.noun} a peg radius."
         )
@@ -210,6 +211,7 @@ def fixture_bodies(
         FixtureBody(name, BodyKind.PART, part),
         *pegs(seen, sizes),
         *clamps(seen, sizes),
+        *flat_jaws(seen, fixture, toolkit, sizes),
         *(
             FixtureBody(
                 wall.carrier.noun,
@@ -281,6 +283,27 @@ def clamps(seen: Shown, sizes: BodySizes) -> Iterator[FixtureBody]:
             place = hole_name(clamp.carrier.stands_on, clamp.tip.column, clamp.tip.row)
             bolt = Slab(round_part, (), sizes.floor - sizes.plate_thickness, sizes.floor)
             yield FixtureBody(f"bolt {place}", BodyKind.CLAMP, (bolt,))
+
+
+def flat_jaws(seen: Shown, fixture: Fixture, toolkit: Toolkit, sizes: BodySizes) -> Iterator[FixtureBody]:
+    """Two flat jaws with the parallels between them and the work stop, and the bed that they stand on."""
+    jaws, hold = toolkit.flat_jaws, fixture.hold
+    if seen.jaws is None or jaws is None or hold is None:
+        return
+    low = 0.0 - hold.parallels
+    top = sizes.top if jaws.height is None else jaws.top(hold.parallels)
+    around = seen.jaws.fixed.union(seen.jaws.moving)
+    bed = Slab(rectangle(around), (), low - sizes.plate_thickness, low)
+    yield FixtureBody("fixed jaw", BodyKind.WALL, (Slab(rectangle(seen.jaws.fixed), (), low, top),))
+    yield FixtureBody(
+        "moving jaw", BodyKind.WALL, (Slab(rectangle(seen.jaws.moving), (), low, top),), (0.0, 1.0)
+    )
+    for number, box in enumerate(seen.jaws.parallels, 1):
+        yield FixtureBody(f"parallel {number}", BodyKind.WALL, (Slab(rectangle(box), (), low, 0.0),))
+    if seen.jaws.stop is not None:
+        stop = Slab(rectangle(seen.jaws.stop), (), 0.0, min(top, sizes.thickness))
+        yield FixtureBody("work stop", BodyKind.CLAMP, (stop,))
+    yield FixtureBody("bed of the vise", BodyKind.PLATE, (bed,))
 
 
 def rectangle(box: Box) -> Loop:

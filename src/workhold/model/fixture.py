@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from workhold.errors import InputError
 from workhold.fixels.carrier import JAWS, WALL, hole_name
+from workhold.model.jaw_hold import JawHold
 from workhold.model.pose import Pose
 
 if TYPE_CHECKING:
@@ -168,6 +169,7 @@ class Fixture:
         makes no difference between fixtures.
     seating : what else its pegs can do with the part, a ``model.seating.Seating``; None where that was not
         asked.
+    hold : how flat jaws hold it by friction, without pegs; None of other fixtures.
     passing, asking : of a file that is verified, what it says of where the program's tools pass, and of the
         forces that they ask for; None of all others.
     """
@@ -181,6 +183,7 @@ class Fixture:
     pair: Pair | None = None
     listed: Listed | None = field(default=None, eq=False)
     seating: Any = field(default=None, eq=False)
+    hold: JawHold | None = None
     passing: Any = field(default=None, eq=False, repr=False)
     asking: Any = field(default=None, eq=False, repr=False)
 
@@ -189,6 +192,10 @@ class Fixture:
 
     def __repr__(self) -> str:
         which = "Fixture" if self.listed is None else f"Fixture {self.listed.rank} of {self.listed.count}"
+        if self.hold is not None:
+            stop = f", stop {self.hold.stop}" if self.hold.stop else ""
+            on = f"parallels of {self.hold.parallels:g} mm{stop}"
+            return f"<{which}, {self.type}: on {on} at {self.pose.theta_deg:.3f} degrees>"
         kind = self.type if self.direction is None else f"{self.type} {self.direction}"
         caught = ""
         if self.seating is not None:
@@ -214,7 +221,11 @@ class Fixture:
 
     @property
     def jaw_separation(self) -> float | None:
-        """Of a vise the x distance in mm from the left jaw's last column to the right jaw's first; else None."""
+        """Of a vise the x distance in mm from the left jaw's last column to the right jaw's first, of flat jaws the
+        distance between them; else None.
+        """
+        if self.hold is not None:
+            return self.hold.opening
         return self.travel if {peg.carrier for peg in self.pegs} == set(JAWS) else None
 
     @property

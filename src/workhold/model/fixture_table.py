@@ -118,6 +118,8 @@ class FixtureTable:
 
     def same_holes(self, index: int) -> int:
         """How many other fixtures have their pegs in the same holes as the one of an index."""
+        if self.column.shape[1] == 0:
+            return 0
         same = self.arrangement == self.arrangement[index]
         for holes in (self.column, self.row):
             same &= (holes == holes[index]).all(axis=1)

@@ -112,6 +112,8 @@ def middle_move(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> Hol
     one counts. It is 0 along what has no end, and where all may stand in one place only. Rows of jaws are
     listed in the middle.
     """
+    if not toolkit.plates:
+        return 0, 0
     plate = toolkit.plates[0]
     held = held_box(placed_box(workpiece, fixture.pose), fixture, tuple(shown_clamps(fixture, toolkit)))
     centers = (held.x0 + held.x1) / 2, (held.y0 + held.y1) / 2
@@ -146,6 +148,8 @@ def move_to(fixture: Fixture, toolkit: Toolkit, name: str) -> Hole:
     InputError
         For what is no hole, and for a place in which the set-up cannot stand.
     """
+    if not toolkit.plates:
+        raise InputError(f"a {toolkit.noun} has no holes to stand at: a work stop says where the part lies.")
     match = NAME.fullmatch(name.strip().upper())
     if match is None:
         raise InputError(f"{name[:40]!r} names no hole to stand at: {REMEDY}.")
@@ -217,7 +221,8 @@ def overhangs(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> Itera
     A plate ends half a pitch beyond its holes.
     """
     part, wall = placed_box(workpiece, fixture.pose), toolkit.reaching
-    edge = plates_box(fixture, toolkit)
+    jaws = toolkit.flat_jaws
+    edge = plates_box(fixture, toolkit) if jaws is None else Box(0.0, -inf, jaws.width, inf)
     if wall is not None and wall.reach is not None:
         edge = Box(wall.reach[0], -inf, wall.reach[1], inf)
     sides = {
@@ -246,8 +251,8 @@ def overhang_words(
     if not found:
         return ""
     sides = listed([f"{text(one.length)} at the {SIDES[one.side]}" for one in found])
-    if wall is not None:
-        return f"The part stands out beyond the {wall.noun}: {sides}."
+    if wall is not None or toolkit.flat_jaws is not None:
+        return f"The part stands out beyond the {'jaws' if wall is None else wall.noun}: {sides}."
     nouns = listed([plate.title for plate in toolkit.plates])
     edges = "edge is" if len(toolkit.plates) == 1 else "edges are"
     return f"The part hangs over the {nouns}: {sides} (the {edges} taken half a pitch beyond the last holes)."

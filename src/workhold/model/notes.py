@@ -110,7 +110,10 @@ class NoFixture(Note):
     def words(self) -> str:
         wording, place = self.wording, STAGES.index(self.stage)
         together = f"No {wording.two} can touch the part together"
-        centre = "so the forces of all pegs meet in that point and nothing keeps the part from turning."
+        centre = (
+            "so the forces of all pegs meet in that point and nothing keeps the part from turning but friction, as in a "
+            "plain vise."
+        )
         if self.asked:
             with_it = f"With what was asked for ({listed(self.asked)})"
             if self.stage == "shape":

@@ -13,6 +13,8 @@ from workhold.asking.search import SearchQuestion
 from workhold.errors import InputError, refuse_kind
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.first_choice import figures_ranked_by, has_house_order
+from workhold.model.friction import SAFETY, Coefficients, coefficients_of
+from workhold.model.jaw_hold import hold_ranking
 from workhold.model.own_outlines import met_by
 from workhold.model.program import Program
 from workhold.model.quality import (
@@ -105,8 +107,11 @@ class Query(SearchQuestion):
     peg_height : of pegs, clamps and walls over the plane on which the part lies, in mm; None where nobody says.
         With a program it is needed; where the part is read from a solid it is the solid's.
     max_location_error : list only fixtures whose location error is at most this, in mm; None for any.
-    thickness : of the part in mm, for how far pegs bend; None where it is not known, and of a solid, which says
-        it itself.
+    thickness : of the part in mm, for how far pegs bend, and for what flat jaws grip; None where it is not known, and
+        of a solid, which says it itself.
+    friction : coefficients of friction by name where flat jaws hold the part, such as {"jaw": 0.15}; None for the
+        usual ones (``model.friction``).
+    safety : factor on the loads there; None for the usual 2.
 
     Raises
     ------
@@ -123,6 +128,7 @@ class Query(SearchQuestion):
     tolerance: Tolerance = field(default=None, converter=tolerance_given)
     loads: tuple[Load, ...] = field(default=(), converter=loads_of)
     program: Program | None = None
+    friction: Coefficients | None = field(default=None, converter=coefficients_of, kw_only=True)
 
     def __attrs_post_init__(self) -> None:
         given: Any = self.tolerance
@@ -134,19 +140,29 @@ class Query(SearchQuestion):
         known = self.toolkit.types
         object.__setattr__(self, "types", chosen_arrangements(self.types, known))
         pairs = self.toolkit.travels > 1
-        asked = self.is_loaded, pairs, self.seating is not None, self.toolkit.reaching is not None
-        object.__setattr__(self, "rank_by", chosen_ranking(self.rank_by, *asked))
+        self.refuse_loads_across()
+        if self.toolkit.flat_jaws is not None:
+            object.__setattr__(self, "rank_by", hold_ranking(self.rank_by))
+        else:
+            asked = self.is_loaded, pairs, self.seating is not None, self.toolkit.reaching is not None
+            object.__setattr__(self, "rank_by", chosen_ranking(self.rank_by, *asked))
         if PROGRAM_FIGURE.key in self.rank_by and self.program is None:
             raise InputError(f"there is no program to rank by the {PROGRAM_FIGURE.words}: give one.")
         if self.program is not None:
             object.__setattr__(self, "program", self.program.pressing_on(self.workpiece.outer_loops))
-        if self.program is not None or self.peg_height is not None:
+        if self.toolkit.flat_jaws is not None:
+            object.__setattr__(self, "peg_height", None)
+        elif self.program is not None or self.peg_height is not None:
             object.__setattr__(self, "peg_height", height_of_pegs(self.peg_height, self.workpiece))
         if self.workpiece.solid is not None:
             object.__setattr__(self, "thickness", None)
             if self.program is None:
                 object.__setattr__(self, "peg_height", None)
-        if not self.knows_heights and not set(PIN_KEYS).isdisjoint(self.rank_by):
+        if (
+            self.toolkit.flat_jaws is None
+            and not self.knows_heights
+            and not set(PIN_KEYS).isdisjoint(self.rank_by)
+        ):
             raise InputError(
                 "how far pegs bend depends on how high they touch the part, which is not known: give the "
                 "part's thickness, or the height of the pegs."
@@ -164,6 +180,60 @@ class Query(SearchQuestion):
                 "first ones only: give their number, such as seating 100."
             )
 
+    def refuse_loads_across(self) -> None:
+        """Refuses what only flat jaws feel where there are none, and what only pegs do where there are.
+
+        Of loads that act out of the plane flat jaws have to know how thick the part is.
+        """
+        across = next((number for number, load in enumerate(self.loads, 1) if load.upward), None)
+        if self.toolkit.flat_jaws is None:
+            if across is not None:
+                raise InputError(
+                    f"load {across} acts along z, which nothing keeps the part from following but friction: hold it "
+                    "in a plain vise, or find supports and a clamp on top."
+                )
+            for name, value in (("friction", self.friction), ("safety factor", self.safety)):
+                if value is not None:
+                    raise InputError(
+                        f"the {name} counts where flat jaws hold the part; pegs are reckoned without friction: leave "
+                        "it out, or take a plain vise."
+                    )
+            return
+        if across is not None and self.part_height is None:
+            raise InputError(
+                f"load {across} acts along z, and how high the part is decides what holds it: give its thickness."
+            )
+        only_of_pegs = {
+            "a contact margin": self.contact_margin > 0.0,
+            "a largest location error": self.max_location_error is not None,
+            "seating": self.seating is not None,
+            "a keep-out zone": bool(self.restrictions.zones),
+        }
+        if self.program is not None and self.program.forces is not None:
+            raise InputError(
+                "what the tools of a program push with is not reckoned between flat jaws: leave the forces out, and "
+                "give the worst of them as loads."
+            )
+        for asked, is_given in only_of_pegs.items():
+            if is_given:
+                raise InputError(f"{asked} is asked of pegs, and flat jaws have none: leave it out.")
+
+    @property
+    def part_height(self) -> float | None:
+        """How high the part is in mm; None where nobody says."""
+        solid = self.workpiece.solid
+        return self.thickness if solid is None else solid.height
+
+    @property
+    def safety_factor(self) -> float:
+        """What loads are multiplied by where friction holds the part."""
+        return SAFETY if self.safety is None else self.safety
+
+    @property
+    def unit_force(self) -> float | None:
+        """The jaw force that is given times the safety factor, which holds the loads once where so much is needed."""
+        return None if self.jaw_force is None else self.jaw_force * self.safety_factor
+
     def refuse_untouchable(self) -> None:
         """Refuses faces to touch that there are not, or more than a fixture can touch."""
         faces, toolkit = self.restrictions.touch, self.toolkit
@@ -174,7 +244,7 @@ class Query(SearchQuestion):
                 "faces to touch cannot be asked for with two clamps: take one clamp, or list all and "
                 "choose among them."
             )
-        if len(faces) > toolkit.peg_count:
+        if toolkit.peg_count and len(faces) > toolkit.peg_count:
             raise InputError(
                 f"{len(faces)} faces are to be touched, and a fixture has {toolkit.peg_count} contacts: name fewer."
             )

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 from attrs import evolve, field, frozen
+from attrs.converters import optional
 from numpy.typing import ArrayLike, NDArray
 
 from workhold.asking.search import RuledOut
@@ -110,6 +111,8 @@ class Load:
         counter-clockwise from the part's x axis and from low to high; (0, 360) is any direction.
     moment : in N mm, positive counter-clockwise.
     name : what the user calls it.
+    upward : a force along z in N, up positive, that acts together with the others; pegs do not feel it.
+    height : how high above the part's lower side the forces act, in mm; None is the top of the part.
 
     Raises
     ------
@@ -129,8 +132,14 @@ class Load:
     directions: tuple[float, float] = field(default=ANY_DIRECTION, converter=direction_range)
     moment: float = field(default=0.0, converter=real)
     name: str = ""
+    upward: float = field(default=0.0, converter=real)
+    height: float | None = field(default=None, converter=optional(real))
 
     def __attrs_post_init__(self) -> None:
+        if not all(map(isfinite, (self.upward, self.height or 0.0))):
+            raise InputError("a load's force along z, and its height, are numbers: give N and mm.")
+        refuse_strong("force along z", self.upward)
+        refuse_long("a load's height", self.height or 0.0)
         if not isfinite(self.force) or self.force < 0:
             raise InputError(
                 f"force {self.force:g} cannot be used: give its size in N, 0 or more, and its direction "
@@ -148,11 +157,11 @@ class Load:
                     f"the point ({x:g}, {y:g}) of a load is not a place: give finite coordinates in mm."
                 )
             refuse_long("a load's point", max(x, y, key=abs))
-        if self.force > 0 and not self.points:
+        if (self.force > 0 or self.upward) and not self.points:
             raise InputError(
-                f"a force of {self.force:g} N needs the point it acts at: give at=X,Y or path=X,Y;X,Y."
+                f"a force of {self.force or abs(self.upward):g} N needs the point it acts at: give at=X,Y or path=X,Y;X,Y."
             )
-        if self.force == 0 and self.moment == 0:
+        if self.force == 0 and self.moment == 0 and self.upward == 0:
             raise InputError(
                 "a load with neither force nor moment does nothing: give force=... or moment=...."
             )

@@ -14,6 +14,7 @@ from workhold.errors import InputError, quoted, refuse_kind
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture, Listed
 from workhold.model.fixture_table import BLOCK, FixtureTable, fixture_at, fixtures_of
+from workhold.model.jaw_hold import JawHold
 from workhold.model.notes import AskedFor, ChosenOnly, Cut, FittedOutline, KeptBest, Note, as_notes
 from workhold.model.query import Query
 from workhold.model.search_report import Proof
@@ -66,6 +67,7 @@ class Result:
     pairs, seats : with two clamps, how many pairs of clamps hold the part, and at how many seats and pairs of
         directions. None for other toolkits, and where only the best were sought.
     seating : where else the pegs can hold the part, of as many of the first fixtures as there are entries.
+    holds : of flat jaws, how each fixture holds the part; none of other toolkits.
     least_effective_error : in mm, the least effective location error of all fixtures that are fit and without
         warning, or as near to that as any is; steps count from it (``model.first_choice``). None where the
         order has no steps, and of results from before there were any.
@@ -83,6 +85,7 @@ class Result:
     seats: int | None = None
     seating: tuple[Seating, ...] = field(default=(), hash=False)
     least_effective_error: float | None = None
+    holds: tuple[JawHold, ...] = field(default=(), hash=False)
 
     def __attrs_post_init__(self) -> None:
         refuse_kind(self.query, Query, "the query", "give a Query, such as workhold.Query(part, toolkit)")
@@ -142,7 +145,10 @@ class Result:
         return self.seated(made, index)
 
     def seated(self, made: Fixture, index: int) -> Fixture:
-        """The fixture of an index with its seating, where that is known."""
+        """The fixture of an index with its seating, where that is known, and how flat jaws hold it."""
+        if index < len(self.holds):
+            hold = self.holds[index]
+            return evolve(made, hold=hold, quality={**made.quality, **hold.figures})
         return evolve(made, seating=self.seating[index]) if index < len(self.seating) else made
 
     def choose(self, rows: ArrayLike) -> Result:
@@ -195,6 +201,7 @@ class Result:
             self,
             table=self.table.take(chosen),
             seating=tuple(self.seating[row] for row in chosen if row < len(self.seating)),
+            holds=tuple(self.holds[row] for row in chosen if row < len(self.holds)),
             notes=(*kept, ChosenOnly(found, len(chosen))),
         )
 
@@ -221,7 +228,8 @@ class Result:
 
     def part(self, rows: slice) -> Result:
         """The result with the fixtures of a slice only."""
-        return evolve(self, table=self.table.take(rows), seating=self.seating[rows])
+        holds = self.holds[rows]
+        return evolve(self, table=self.table.take(rows), seating=self.seating[rows], holds=holds)
 
     def cut_short(self, listed: int) -> Result:
         """The result of a search that was stopped while its fixtures were sorted or written.

@@ -243,7 +243,7 @@ def settings_of(fixture: Fixture, toolkit: Toolkit) -> tuple[LengthSetting, ...]
             carrier=carrier,
         )
         for carrier in toolkit.carriers
-        if carrier.travel is not None and carrier.has_lattice
+        if carrier.travel is not None and (carrier.has_lattice or carrier.is_jaw)
     )
 
 

@@ -30,7 +30,7 @@ from workhold.errors import InputError
 from workhold.fixels.carrier import Carrier
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.segment import Arc, Box, Point
+from workhold.geometry.segment import Arc, Box, Point, Segment
 from workhold.geometry.symmetry import rotated
 from workhold.limits import MOST_STEPS
 from workhold.model.clamps import ShownClamp, clamping_direction, shown_clamps
@@ -45,6 +45,7 @@ __all__ = [
     "Axis",
     "Hole",
     "Shown",
+    "ShownJaws",
     "ShownCarrier",
     "Side",
     "held_box",
@@ -149,6 +150,9 @@ SHARE_OF_GAP = 0.48
 NEAR = 3
 # Of the pitch: how thick a wall is drawn, whose own thickness nobody knows.
 BAR = 0.4
+# In mm, what stands for a pitch where there are no holes; how thick jaws are drawn whose thickness nobody knows, of
+# their width; how wide parallels are drawn, of the opening and at most; and the size of a work stop, of the width.
+USUAL_PITCH, JAW, PARALLEL, WIDEST_PARALLEL, STOP = 10.0, 0.16, 0.2, 8.0, 0.07
 
 
 @frozen
@@ -289,6 +293,28 @@ class ShownWall:
 
 
 @frozen
+class ShownJaws:
+    """What shows of two flat jaws seen from above; lengths in mm.
+
+    Parameters
+    ----------
+    fixed, moving : the jaws, as thick as they are drawn.
+    parallels : the two under the part, as wide as they are drawn; none where it lies on the bed.
+    stop : the work stop; None without one.
+    """
+
+    fixed: Box
+    moving: Box
+    parallels: tuple[Box, ...]
+    stop: Box | None
+
+    @property
+    def extent(self) -> Box:
+        boxes = [self.fixed, self.moving, *([] if self.stop is None else [self.stop])]
+        return reduce(Box.union, boxes)
+
+
+@frozen
 class Shown:
     """What shows of a toolkit and a part.
 
@@ -299,6 +325,7 @@ class Shown:
     measured : the lengths to set, one for each thing that moves.
     part : extent of the part in mm.
     walls : what the part lies flush against.
+    jaws : two flat jaws that hold it by friction; None of other toolkits.
     """
 
     carriers: tuple[ShownCarrier, ...]
@@ -306,10 +333,12 @@ class Shown:
     measured: tuple[Dimension, ...]
     part: Box
     walls: tuple[ShownWall, ...] = ()
+    jaws: ShownJaws | None = None
 
     @property
     def extent(self) -> Box:
         boxes = [
+            *([] if self.jaws is None else [self.jaws.extent]),
             *(one.plate for one in self.carriers),
             *(one.room for one in self.clamps),
             *(one.bar for one in self.walls),
@@ -318,13 +347,57 @@ class Shown:
 
     @property
     def pitch(self) -> float:
-        """The smallest distance between neighbouring holes, in mm."""
-        return min(min(shown.carrier.pitch) for shown in self.carriers)
+        """The smallest distance between neighbouring holes, in mm; some usual one where there are none."""
+        return min((min(shown.carrier.pitch) for shown in self.carriers), default=USUAL_PITCH)
 
 
 def shown(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> Shown:
-    """What shows of a toolkit whose pegs hold a workpiece; raises as :func:`shown_beside`."""
+    """What shows of a toolkit that holds a workpiece; raises as :func:`shown_beside`."""
+    if fixture.hold is not None:
+        return shown_between(workpiece, fixture, toolkit)
     return shown_beside(placed_box(workpiece, fixture.pose), fixture, toolkit)
+
+
+def shown_between(workpiece: Workpiece, fixture: Fixture, toolkit: Toolkit) -> Shown:
+    """What shows of two flat jaws and a workpiece between them."""
+    jaws, hold, part = toolkit.flat_jaws, fixture.hold, placed_box(workpiece, fixture.pose)
+    assert jaws is not None and hold is not None
+    width, opening = jaws.width, hold.opening
+    thick = JAW * width if jaws.thickness is None else jaws.thickness
+    wide = min(PARALLEL * opening, WIDEST_PARALLEL)
+    rows = [(0.0, wide), (opening - wide, opening)] if hold.parallels else []
+    stop, size = None, STOP * width
+    if hold.stop is not None:
+        is_left = hold.stop == "left"
+        x = part.x0 if is_left else part.x1
+        points = (
+            point
+            for segment in workpiece.segments[: workpiece.outer_count]
+            for point in far_points(segment, fixture.pose)
+        )
+        there = [y for at, y in points if abs(at - x) < 1e-6] or [opening / 2]
+        y = (min(there) + max(there)) / 2
+        low, high = (x - 2 * size, x) if is_left else (x, x + 2 * size)
+        stop = Box(low, y - size / 2, high, y + size / 2)
+    seen = ShownJaws(
+        Box(0.0, -thick, width, 0.0),
+        Box(0.0, opening, width, opening + thick),
+        tuple(Box(0.0, low, width, high) for low, high in rows),
+        stop,
+    )
+    faces = ((0.0, 0.0), (width, 0.0)), ((0.0, opening), (width, opening))
+    measured = tuple(Dimension(setting, faces, True) for setting in settings_of(fixture, toolkit))
+    return Shown((), (), measured, part, jaws=seen)
+
+
+def far_points(segment: Segment, pose: Pose) -> list[Point]:
+    """The ends of a segment in a pose, and of an arc the points farthest left and right."""
+    placed = pose.carry(segment)
+    points = [placed.start, placed.end]
+    if isinstance(placed, Arc):
+        ways = [(placed.center[0] + way * placed.radius, placed.center[1]) for way in (-1, 1)]
+        points += [point for point in ways if abs(placed.parameter(point)) <= placed.half_sweep]
+    return points
 
 
 def placed_box(workpiece: Workpiece, pose: Pose) -> Box:

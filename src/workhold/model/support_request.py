@@ -161,8 +161,10 @@ class SpatialLoad:
     @classmethod
     def of(cls, load: Load) -> SpatialLoad:
         """A planar load, which acts at the top of the part."""
+        heights = None if load.height is None else (load.height, load.height)
+        axial = (0.0 - load.upward, 0.0 - load.upward)
         return cls(
-            load.points, load.force, load.directions, None, (0.0, 0.0), load.moment, (0.0, 0.0), load.name
+            load.points, load.force, load.directions, heights, axial, load.moment, (0.0, 0.0), load.name
         )
 
     @property

@@ -108,6 +108,8 @@ class Assembly:
             For lengths that are not positive, and for pegs and pads of radius 0.
         """
         if chosen is None:
+            if fixture.hold is not None and lengths.get("thickness") is None:
+                lengths = {**lengths, "thickness": result.query.part_height}
             sizes = BodySizes.of(result.workpiece, **lengths)
             bodies = fixture_bodies(fixture, result.workpiece, result.toolkit, sizes)
             return cls(fixture, result, sizes, bodies, shape)

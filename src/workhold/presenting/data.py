@@ -19,6 +19,7 @@ from attrs.filters import exclude
 
 from workhold.errors import InputError
 from workhold.files.result.fixture_text import column_names, fixture_rows, seating_values
+from workhold.files.result.holds import hold_entry
 from workhold.files.result.writer import load_entry, proof_entry, toolkit_fields, written
 from workhold.fixels.carrier import Carrier
 from workhold.fixels.contacts import FLAT_PIN
@@ -132,9 +133,17 @@ def fixture_data(fixture: Fixture, toolkit: Toolkit, rank: int | None = None) ->
         ],
         **pair_data(fixture),
         "quality": {key: finite(value) for key, value in fixture.quality.items()},
+        **({} if fixture.hold is None else hold_data(fixture)),
         **({} if fixture.seating is None else {"seating": fixture.seating.as_fields()}),
         **by_hand_data(fixture, rank),
     }
+
+
+def hold_data(fixture: Fixture) -> dict[str, Any]:
+    """Describes how flat jaws hold a part, as a result file does."""
+    entry = hold_entry(fixture)
+    names = ("parallels", "stop", "fixed", "moving", "jaw_separation", "warnings")
+    return {"pegs": [], **{name: entry[name] for name in names}, "quality": entry["quality"]}
 
 
 def pair_data(fixture: Fixture) -> dict[str, Any]:

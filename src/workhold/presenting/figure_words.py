@@ -113,7 +113,7 @@ def heading(figure: Figure, unit: Unit) -> str:
 
 
 def unit_of(figure: Figure, unit: Unit) -> str:
-    shown = {"mm": unit.abbreviation, "MPa": unit.pressure, "N": unit.force}
+    shown = {"mm": unit.abbreviation, "mm²": f"{unit.abbreviation}²", "MPa": unit.pressure, "N": unit.force}
     return shown.get(figure.unit, figure.unit)
 
 
@@ -164,7 +164,7 @@ def figure_text(figure: Figure, value: float, unit: Unit) -> str:
 
 def size_of(figure: Figure, unit: Unit) -> float:
     """How much in mm or N the unit is in which a figure is shown."""
-    return {"mm": unit.millimetres, "N": unit.newtons}.get(figure.unit, 1.0)
+    return {"mm": unit.millimetres, "mm²": unit.millimetres**2, "N": unit.newtons}.get(figure.unit, 1.0)
 
 
 def figure_words(figure: Figure, value: float, unit: Unit) -> str:

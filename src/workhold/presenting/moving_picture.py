@@ -10,7 +10,15 @@ from __future__ import annotations
 from attrs import evolve
 
 from workhold.drawing.bench import Bench, draw_part, draw_pegs
-from workhold.drawing.carriers import draw_clamp, draw_holes, draw_plate, draw_push, draw_wall, most_holes
+from workhold.drawing.carriers import (
+    draw_clamp,
+    draw_flat_jaws,
+    draw_holes,
+    draw_plate,
+    draw_push,
+    draw_wall,
+    most_holes,
+)
 from workhold.drawing.scene import Scene, View, number
 from workhold.geometry.segment import Point
 from workhold.model.clamps import ShownClamp
@@ -57,6 +65,8 @@ def draw_ground(scene: Scene, bench: Bench, view: View) -> None:
         most = {} if back is None else {"data_most": number(max(back, 0.0))}
         group = moving_group(scene, view, clamp.clamping, **most)
         draw_clamp(group, clamp, bench.shown.carriers[0], view, 1.0)
+    if bench.shown.jaws is not None:
+        draw_flat_jaws(scene.group("jaws"), bench.shown.jaws, view)
     draw_part(scene, bench, view, 1.0)
     for clamp in bench.shown.clamps:
         draw_push(moving_group(scene, view, clamp.clamping if clamp.hole is None else None), clamp, view, 1.0)

@@ -281,6 +281,11 @@ def model_bytes(fixture: Fixture, result: Result, ending: str, settings: dict[st
         fixture = moved_on(fixture, toolkit, placing_of(fixture, result, at))
     elif at is not None:
         chosen = chosen.standing_at(at)
+    if fixture.hold is not None and ending in (".csv", ".dxf"):
+        raise InputError(
+            f"a {ending} of a set-up is of pegs, and a {toolkit.noun} has none: let the name end in .step, or take the "
+            "setup sheet."
+        )
     if ending == ".csv":
         from workhold.files.result.fixture_text import pin_list
         from workhold.model.dowels import fit_words

@@ -18,7 +18,15 @@ from attrs import evolve
 from workhold.conventions import AGREEMENT
 from workhold.drawing.annotation import LabelPlacer
 from workhold.drawing.bench import ARROW, PART_FILL, PEG_FILL, TOUCHED, Bench, face_of, force_arrow
-from workhold.drawing.plan import LONGEST_ARROW, avoid_drawing, draw_flag, draw_tag, face_tag, peg_label
+from workhold.drawing.plan import (
+    LONGEST_ARROW,
+    avoid_drawing,
+    draw_flag,
+    draw_tag,
+    face_tag,
+    gripped_tag,
+    peg_label,
+)
 from workhold.drawing.scene import BLACK, GREY, Box, LengthUnit, Scene, View, number, text_width
 from workhold.fixels.carrier import column_letters
 from workhold.fixels.toolkit import Toolkit
@@ -167,7 +175,7 @@ def draw_travel(scene: Scene, bench: Bench, view: View, page: Box, place: int, m
     line = frame.x1 + BESIDE + FARTHER * nearer if upright else frame.y0 - ABOVE - FARTHER * nearer
     start, end = (view(high) for _, high in measured.axes)
     start, end = ((line, start[1]), (line, end[1])) if upright else ((start[0], line), (end[0], line))
-    clamping = ways_of(bench)[measured.setting.carrier.name]
+    clamping = ways_of(bench).get(measured.setting.carrier.name)
     # The distance of the line from the drawing keeps its size, its length does not.
     outer, along = ("x", "y") if upright else ("y", "x")
     group = kept(scene.group("travel"), (frame.x1, frame.y0), outer)
@@ -209,6 +217,7 @@ def draw_labels(
     numbers = list(dict.fromkeys(pegs[index].face for index in bench.touching))
     labels = [peg_label(bench, index, view) for index in range(len(pegs))]
     tags = [face_tag(bench, face, view) for face in numbers]
+    tags += [gripped_tag(bench, face, view) for face in bench.gripped]
     places = iter(placer.place([*labels, *tags]))
     # A clamp is named at its hole, which stays.
     bolted = {clamp.tip for clamp in bench.shown.clamps if clamp.hole is not None}
@@ -222,7 +231,7 @@ def draw_labels(
         draw_flag(flag, place, radius, peg.hole)
         flag.element.set("class", "kept flag")
     faces = scene.group("faces")
-    for face in numbers:
+    for face in (*numbers, *bench.gripped):
         place = next(places)
         tag = kept(faces, place.anchor)
         draw_tag(tag, place, str(face))
@@ -245,7 +254,9 @@ def draw_small(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> str:
     scene = Scene.page(SMALL, "")
     outline = "".join(f"{polyline(loop, view)}Z" for loop in loops)
     scene.path(outline, fill=PART_FILL, fill_rule="evenodd")
-    for face in dict.fromkeys(peg.face for peg in fixture.pegs if peg.beside is None):
+    hold = fixture.hold
+    gripped = () if hold is None else (*hold.fixed.segments, *hold.moving.segments)
+    for face in dict.fromkeys((*(peg.face for peg in fixture.pegs if peg.beside is None), *gripped)):
         scene.path(polyline([pose.carry(face_of(workpiece, face))], view), TOUCHED, 3.6)
     scene.path(outline, BLACK, 1.2)
     for peg, radius in zip(fixture.pegs, radii, strict=True):

@@ -400,9 +400,9 @@ def nearest_miss(contacts: ContactSets, miss: tuple[int, str], problem: Problem)
 def line_in_the_way(query: Query) -> int | None:
     """The line of a query's program whose tool passes the longest stretch of places for pegs.
 
-    None without a program, and where it passes none.
+    None without a program, where it passes none, and where there are no pegs.
     """
-    if query.program is None:
+    if query.program is None or query.toolkit.flat_jaws is not None:
         return None
     try:
         problem = Problem.of(query.without_program)

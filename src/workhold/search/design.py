@@ -32,9 +32,10 @@ from workhold.listing.results import (
     listed_result,
     stage,
 )
+from workhold.model.first_choice import figures_ranked_by
 from workhold.model.fixture import Fixture
 from workhold.model.notes import STAGES, NoFixture, NoPlace, Note, round_to_two_digits
-from workhold.model.quality import FIGURES, WARNINGS, asked_ranking
+from workhold.model.quality import FIGURES, WARNINGS, asked_ranking, ranked_number
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Restrictions, Tolerance
 from workhold.model.result import Result
@@ -197,6 +198,11 @@ def answer(
     """
     refuse_kind(query, Query, "the query", "give a Query, such as workhold.Query(part, toolkit)")
     workers = thread_count(counting_number("threads", threads))
+    if query.toolkit.flat_jaws is not None:
+        # What holds by friction loads its own solver, which pegs do not need.
+        from workhold.search.jaw_search import answer_between_jaws
+
+        return deliver(answer_between_jaws(query, progress, cancel), sink)
     if query.seating is not None:
         search = partial(answer, threads=workers, preview=preview)
         return seated_answer(query, search, threads=workers, progress=progress, cancel=cancel, sink=sink)
@@ -473,6 +479,8 @@ def explore(
         reason = "" if len(result) else " ".join(map(str, result.reasons))
         figures = dict(result[0].quality) if len(result) else {}
         fit = bool(figures) and not unfit(result.table.quality[:1], result.query.tolerance)[0]
+        if result.holds:
+            fit = not result.holds[0].is_unfit and result.holds[0].full_contact
         held = held_share(result[0], result.workpiece) if len(result) else 0.0
         known = None if count is None or not len(result) else round_to_two_digits(count)
         found = dict(result.found) if known is None else {}
@@ -484,7 +492,11 @@ def held_share(fixture: Fixture, workpiece: Workpiece) -> float:
     x0, y0, x1, y1 = workpiece.bounds
     sides, back = (x1 - x0, y1 - y0), fixture.pose.inverse
     longer = int(sides[1] > sides[0])
-    places = [float(back.apply(peg.x, peg.y)[longer]) for peg in fixture.pegs]
+    points = [(peg.x, peg.y) for peg in fixture.pegs]
+    if fixture.hold is not None:
+        jaws = (fixture.hold.fixed, 0.0), (fixture.hold.moving, fixture.hold.opening)
+        points = [(x, y) for patch, y in jaws for x in patch.ends]
+    places = [float(back.apply(x, y)[longer]) for x, y in points]
     return min((max(places) - min(places)) / sides[longer], 1.0)
 
 
@@ -504,7 +516,10 @@ def first_choice(
     quality = np.array([[item.figures.get(figure.key, np.nan) for figure in FIGURES] for item in able])
     keys = [np.array([not item.fit for item in able]), np.array([not is_sold(item.name) for item in able])]
     held = np.array([item.held for item in able])
-    figures, warned = figure_keys(quality, ranking), FIGURES[WARNINGS].key
+    known = [name for name in figures_ranked_by(ranking) if ranked_number(name) is not None]
+    figures, warned = figure_keys(quality, known) if known else [], FIGURES[WARNINGS].key
+    # What flat jaws hold has figures of its own, of which the area that they touch counts.
+    figures += [np.array([-item.figures.get("contact_area", 0.0) for item in able])]
     first = 1 if ranking[:1] == (warned,) else len(figures)
     tenths = -np.floor(10.0 * held + HELD_SLACK)
     keys += [*figures[:first], tenths, *figures[first:], -held]

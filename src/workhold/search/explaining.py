@@ -5,6 +5,7 @@ Of contacts on a lattice the rules are asked in ``search.broken_rules``, of cont
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from operator import attrgetter
@@ -38,6 +39,7 @@ from workhold.search.broken_rules import (
 )
 from workhold.search.design import answer
 from workhold.search.flush_search import FlushSearch
+from workhold.search.jaw_search import RULES, JawSearch
 from workhold.search.toolkit_search import is_round
 from workhold.search.wall_search import WallSearch
 from workhold.search.wall_shares import LatticePairSearch
@@ -181,13 +183,27 @@ def explain(query: Query, threads: int | None = None, unit: Unit = MILLIMETRE) -
     query = evolve(query, rank_by="warnings")
     toolkit, alone = query.toolkit, query.toolkit.travels == 1
     ways = [held_in(query, way) for way in toolkit.ways]
-    if WALL_END in toolkit.contacts:
+    if toolkit.flat_jaws is not None:
+        found = [removals_between_jaws(query)]
+    elif WALL_END in toolkit.contacts:
         found = [removals_beside_wall(way, alone) for way in ways]
     else:
         found = [removals_of(Problem.of(way), threads, unit, alone) for way in ways]
     together, helped = Removals.together(found), helps(query, threads, unit)
     nothing = None if together.first else no_contacts(ways)
     return Explanation(together.first, together.removals, together.nearest, helped, nothing)
+
+
+def removals_between_jaws(query: Query) -> Removals:
+    """What the rules leave of the ways in which a part can lie between flat jaws, and which rule takes how many."""
+    rules = Counter(one.rule for one in JawSearch(query).examined())
+    first = left = sum(rules.values())
+    removals = []
+    for rule, words in RULES.items():
+        if rules[rule]:
+            removals.append(Removal(words, left, left - rules[rule]))
+            left -= rules[rule]
+    return Removals(first, removals, None)
 
 
 def no_contacts(ways: Sequence[Query]) -> Note:

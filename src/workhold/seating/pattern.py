@@ -142,6 +142,8 @@ def refuse_unseated(toolkit: Toolkit) -> None:
         With two clamps, where no peg stands still, for pegs with a flat, and for pegs without a radius.
     """
     words = "the seating is worked out only"
+    if toolkit.flat_jaws is not None:
+        raise InputError(f"{words} for round pegs: flat jaws have none.")
     if not toolkit.closes_at_once:
         raise InputError(
             f"{words} for one clamp: with two clamps you push the part against its locators by hand."

@@ -302,6 +302,11 @@ def load_cases(
         For a fixture of another part or toolkit, a jaw force or a coefficient that is negative or not finite,
         and a jaw that is not known.
     """
+    if fixture.hold is not None:
+        raise InputError(
+            "flat jaws hold it by friction: how hard they must press under loads is found with the design, in the fixture's "
+            "hold.clamp_needed_each."
+        )
     fixture.refuse_others(workpiece, toolkit)
     loads = (loads,) if isinstance(loads, Load) else loads
     for name, value in (("jaw force", jaw_force), ("friction", friction)):

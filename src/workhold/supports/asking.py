@@ -56,6 +56,10 @@ def asked_request(query: Query, thickness: float | None, asked: Mapping[str, Any
     InputError
         For a name that there is none of, values that cannot be, and where nobody says how thick the part is.
     """
+    if query.toolkit.flat_jaws is not None:
+        raise InputError(
+            "between flat jaws the part lies on parallels: supports are found under fixtures with pegs."
+        )
     unknown = next((name for name in asked if name not in (*USUAL, *FURTHER)), None)
     if unknown is not None:
         known = ", ".join((*USUAL[1:], *FURTHER))

@@ -8,7 +8,8 @@ objects (``verification.reading``) or in columns. Nothing of the search is used.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import chain, islice
 from math import degrees, nan
 from pathlib import Path
 from typing import Any, overload
@@ -23,6 +24,7 @@ from workhold.asking.search import SearchQuestion
 from workhold.errors import InputError
 from workhold.files.result.fixture_forms import checked_seating, seatings_of
 from workhold.files.result.forms import Head
+from workhold.files.result.holds import HoldPart, is_hold, read_holds
 from workhold.files.result.notes import note_faults, read_notes
 from workhold.files.result.parts import HEAD, checked_head, columns_said, head_value, read_parts
 from workhold.fixels.fields import OPTIONS
@@ -251,7 +253,9 @@ def read_listing(path: str | Path) -> Listing:
         types, notes = query.toolkit.types, read_notes(head, query)
         return Listing(
             query,
-            taken_in(taken, seatings, ToolkitRules.of(query), query, path),
+            held_by_jaws(taken, query)
+            if query.toolkit.flat_jaws is not None
+            else taken_in(taken, seatings, ToolkitRules.of(query), query, path),
             numbers_of(head.counts, "counts", types),
             numbers_of(head.found, "found", types, head.counts),
             numbers_of(head.distinct, "distinct", types, head.counts),
@@ -268,7 +272,14 @@ def read_listing(path: str | Path) -> Listing:
         raise InputError(f"{path} cannot be verified: {error}") from error
 
 
-def head_and_fixtures(path: Path) -> tuple[Head, list[Fixture] | Columns, list[Any]]:
+def held_by_jaws(taken: Any, query: Query) -> list[Fixture]:
+    """The fixtures of flat jaws; refuses others."""
+    if not isinstance(taken, list) or not all(isinstance(one, HoldPart) for one in taken):
+        raise InputError(f"its fixtures are not those of a {query.toolkit.noun}.")
+    return [part.fixture(query.toolkit, query.unit_force) for part in taken]
+
+
+def head_and_fixtures(path: Path) -> tuple[Head, list[Fixture] | list[HoldPart] | Columns, list[Any]]:
     """The head of a file, its fixtures, or their columns, and the seating of the first of a file in columns."""
     try:
         if is_archive(path):
@@ -278,11 +289,19 @@ def head_and_fixtures(path: Path) -> tuple[Head, list[Fixture] | Columns, list[A
             return checked_head(data, path), columns, seatings_of(data, path)
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror or error}.") from error
-    return *read_parts(path, fixtures_of), []
+    return *read_parts(path, fixtures_of_any_kind), []
+
+
+def fixtures_of_any_kind(items: Iterable[Any], path: Path) -> list[Fixture] | list[HoldPart]:
+    """Fixtures with pegs, or such as flat jaws hold."""
+    iterator = iter(items)
+    first = list(islice(iterator, 1))
+    together = chain(first, iterator)
+    return read_holds(together, path) if first and is_hold(first[0]) else fixtures_of(together, path)
 
 
 def taken_in(
-    fixtures: list[Fixture] | Columns,
+    fixtures: list[Fixture] | list[HoldPart] | Columns,
     seatings: Sequence[Any],
     hardware: ToolkitRules,
     query: Query,
@@ -304,6 +323,8 @@ def taken_in(
         return evolve(listed, claims=claims)
     out = []
     for number, fixture in enumerate(fixtures, 1):
+        if not isinstance(fixture, Fixture):
+            raise InputError(f"its fixtures are not those of a {query.toolkit.noun}.")
         try:
             out.append(hardware.taken(fixture))
         except InputError as error:
@@ -321,6 +342,8 @@ def keys_missing(head: Head) -> list[str]:
     spared |= {"restrictions.touch", "max_location_error"}
     # Where steps count, its absence is a fault of the order.
     spared |= {"least_effective_error"}
+    # What acts along z, and how high, is written where it is said.
+    spared |= {f"loads.{number}.{key}" for number in range(len(head.loads)) for key in ("upward", "height")}
     # An older file has the sentences alone.
     spared |= {"note_data"}
     # A toolkit without flats, or heights of its own, says nothing of them.
@@ -343,7 +366,8 @@ def keys_missing(head: Head) -> list[str]:
     stated = {"contact_margin", "best", "jaw_force"} | ({"listing"} if has_pairs else set())
     if getattr(head, "seating", None) is not None:
         stated |= {"seating", "opening", "foolproof"}
-    if head.program is not None:
+    # Flat jaws are as high as they are.
+    if head.program is not None and not hasattr(head.toolkit, "jaw_height"):
         stated.add("peg_height")
     spared |= {row.name for row in declarations_of(SearchQuestion)} - stated
     spared |= set() if has_pairs else {"toolkit.clamps"}

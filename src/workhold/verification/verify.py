@@ -22,6 +22,7 @@ from workhold.verification.account import account_faults, seat_faults
 from workhold.verification.ball_geometry import PRECISIONS, ArcSide, LineSide, norm
 from workhold.verification.contacts import Balance, BallContact, BallPose, closure_findings, met_by
 from workhold.verification.figures import Measure, figure_missing, written_numbers
+from workhold.verification.flat_jaws import JawJudge
 from workhold.verification.force_walk import program_force_findings
 from workhold.verification.judging import order_faults
 from workhold.verification.listing import Listing, listing_of, read_listing
@@ -333,8 +334,30 @@ def verify_file(path: str | Path, progress: Progress = no_progress) -> Verificat
     return verify_listing(read_listing(path), progress)
 
 
+def verify_holds(listing: Listing, progress: Progress) -> Verification:
+    """What is shown of a result of flat jaws."""
+    judge, unproven = JawJudge(listing.query), list[Unproven]()
+    for place, fixture in enumerate(listing.fixtures):
+        fault = next(judge.faults(fixture, place), None)
+        if fault is not None:
+            unproven.append(Unproven(place, "refuted", fault))
+        progress((place + 1) / len(listing.fixtures), len(unproven))
+    listed = dict.fromkeys(listing.query.toolkit.types, 0)
+    for fixture in listing.fixtures:
+        listed[fixture.type] = listed.get(fixture.type, 0) + 1
+    faults = [*listing.faults, *judge.order_faults(listing.fixtures)]
+    if dict(listing.counts) != listed:
+        faults.append(f"the counts are {dict(listing.counts)}, and {listed} are listed")
+    if any(listing.found[name] < count for name, count in listed.items()):
+        faults.append("fewer fixtures are found than listed")
+    proven = len(listing.fixtures) - len(unproven)
+    return Verification(proven, len(unproven), 0, tuple(unproven), tuple(faults), 53)
+
+
 def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verification:
     query, everything = listing.query, listing.fixtures
+    if query.toolkit.flat_jaws is not None:
+        return verify_holds(listing, progress)
     judge, seating = Judge(query), SeatingJudge(query)
     turning = PartRotations.of(query.workpiece)
     seen = KnownFixtures.of(turning, judge.hardware)

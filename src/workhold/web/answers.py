@@ -11,12 +11,14 @@ from attrs import asdict, evolve
 
 from workhold.drawing.bench import bench_of
 from workhold.drawing.panel import arrangement_words
+from workhold.files.result.holds import hold_entry
 from workhold.files.result.writer import outlines_entry, proof_entry
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Segment
 from workhold.model.clamps import order_words
 from workhold.model.fixture import Fixture
 from workhold.model.fixture_table import FixtureTable, fixture_at
+from workhold.model.jaw_hold import JawHold
 from workhold.model.moved_setup import middle_move, moved_on, overhangs
 from workhold.model.quality import FIGURES
 from workhold.model.search_report import Explanation, Proof
@@ -126,17 +128,21 @@ def figures_answer() -> list[dict[str, Any]]:
 
 
 def rows_answer(
-    table: FixtureTable, workpiece: Workpiece, toolkit: Toolkit, ranks: Iterable[int]
+    table: FixtureTable,
+    workpiece: Workpiece,
+    toolkit: Toolkit,
+    ranks: Iterable[int],
+    holds: Sequence[JawHold] = (),
 ) -> list[dict[str, Any]]:
-    """Describes fixtures as rows; ``ranks`` are those of the table's fixtures."""
+    """Describes fixtures as rows; ``ranks`` are those of the table's fixtures, and ``holds`` how flat jaws hold them."""
     longest = no_edge(workpiece, toolkit)
-    return [
-        {
-            "rank": rank,
-            **row_answer(fixture_at(table, toolkit, number, workpiece), workpiece, toolkit, longest),
-        }
-        for number, rank in enumerate(ranks)
-    ]
+    fixtures = [fixture_at(table, toolkit, number, workpiece) for number in range(len(table))]
+    for number, hold in enumerate(holds):
+        fixtures[number] = evolve(
+            fixtures[number], hold=hold, quality={**fixtures[number].quality, **hold.figures}
+        )
+    rows = (row_answer(fixture, workpiece, toolkit, longest) for fixture in fixtures)
+    return [{"rank": rank, **row} for rank, row in zip(ranks, rows, strict=True)]
 
 
 def arrangements_answer(toolkit: Toolkit) -> list[dict[str, str]]:
@@ -152,16 +158,40 @@ def row_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, longest
     stands = moved_on(fixture, toolkit, middle_move(fixture, toolkit, workpiece))
     return {
         "type": fixture.type,
-        "title": toolkit.arrangement(fixture.type, fixture.direction).heading,
+        "title": row_title(fixture, toolkit),
         "settings": [
             {"sign": one.sign, "name": one.name, "length": one.length} for one in settings_of(stands, toolkit)
         ],
         "holes": [peg.hole for peg in stands.pegs],
         "faces": [peg.face for peg in fixture.pegs],
         "theta_deg": fixture.pose.theta_deg,
+        "hold": None if fixture.hold is None else hold_answer(fixture),
         "edgeless": is_edgeless(fixture.quality, longest),
         "quality": {key: finite(value) for key, value in fixture.quality.items()},
     }
+
+
+def hold_answer(fixture: Fixture) -> dict[str, Any]:
+    """Describes how flat jaws hold a part, as a result file does, with what to do and to beware of in words."""
+    hold = fixture.hold
+    assert hold is not None
+    entry = hold_entry(fixture)
+    names = ("parallels", "stop", "fixed", "moving", "warnings")
+    return {
+        **{name: entry[name] for name in names},
+        "full_contact": hold.full_contact,
+        "unfit": hold.is_unfit,
+        "clamp_needed_each": list(hold.clamp_needed_each),
+    }
+
+
+def row_title(fixture: Fixture, toolkit: Toolkit) -> str:
+    """The heading of a fixture in a list: its type, or which parallels it lies on and where the stop is."""
+    hold = fixture.hold
+    if hold is None:
+        return toolkit.arrangement(fixture.type, fixture.direction).heading
+    on = f"On {hold.parallels:g} mm parallels" if hold.parallels else "On the bed"
+    return f"{on}, stop {hold.stop}" if hold.stop else on
 
 
 def fixture_answer(
@@ -174,7 +204,8 @@ def fixture_answer(
     """
     move = middle_move(fixture, toolkit, workpiece)
     stands = moved_on(fixture, toolkit, move)
-    placed = [steps * pitch for steps, pitch in zip(move, toolkit.plates[0].pitch, strict=True)]
+    pitch = toolkit.plates[0].pitch if toolkit.plates else (0.0, 0.0)
+    placed = [steps * apart for steps, apart in zip(move, pitch, strict=True)]
     bench = evolve(bench_of(stands, workpiece, toolkit), is_exact=True)
     dx, dy = placed
     return {

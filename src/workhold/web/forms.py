@@ -20,6 +20,7 @@ from workhold.fixels.kinds import USUAL, table_of, toolkit_of
 from workhold.fixels.support_hardware import HARDWARE
 from workhold.fixels.table import ToolkitField
 from workhold.fixels.toolkit import Toolkit
+from workhold.limits import MOST_LENGTHS
 from workhold.model.quality import asked_ranking
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Tolerance
@@ -93,6 +94,9 @@ TYPES: Mapping[str, Any] = {
     "heights": Point,
     "holes": Annotated[list[Name], Field(max_length=MOST_NAMES)],
     "directions": Annotated[list[Name] | list[DirectionPair], Field(max_length=len(DIRECTIONS) ** 2)],
+    "lengths": Annotated[list[Number], Field(max_length=MOST_LENGTHS)],
+    "choice": Name,
+    "force": Number,
 }
 
 
@@ -153,6 +157,8 @@ class LoadForm(Form, LoadPart):
     force: Number = 0.0
     directions: Point = Field(default=[0.0, 360.0])
     moment: Number = 0.0
+    upward: Number = 0.0
+    height: Number | None = None
 
 
 class LoadsForm(Form):
@@ -187,6 +193,9 @@ class SearchForm(Form):
     tolerance: ToleranceForm | None = None
     loads: list[LoadForm] = Field(default=[], max_length=MOST_LOADS)
     program: ProgramForm | None = None
+    thickness: Annotated[float, Field(gt=0, le=LARGEST)] | None = Field(
+        default=None, description="of a drawn part in mm, for what flat jaws grip"
+    )
 
     def query(self, toolkit: Toolkit, most_segments: int) -> Query:
         loads = tuple(form.load() for form in self.loads)
@@ -203,6 +212,7 @@ class SearchForm(Form):
             loads,
             program,
             peg_height=height,
+            thickness=self.thickness,
             **given_in(self, OF_SEARCHES) | ({"listing": None} if toolkit.closes_at_once else {}),
         )
 

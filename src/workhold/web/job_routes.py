@@ -231,7 +231,9 @@ async def fixtures(
     found = await asyncio.to_thread(job.chosen, selection, result)
     page = found.index[offset : offset + limit]
     table, like = result.table.take(page), found.like[offset : offset + limit].tolist()
-    rows = await asyncio.to_thread(rows_answer, table, result.workpiece, result.toolkit, (page + 1).tolist())
+    holds = [result.holds[index] for index in page.tolist()] if result.holds else []
+    held = result.workpiece, result.toolkit, (page + 1).tolist(), holds
+    rows = await asyncio.to_thread(rows_answer, table, *held)
     bad = unfit_of(table.quality, result.query.tolerance).tolist()
     rows = [
         row | {"like": more, "unfit": none, "caught": caught_in(result, row["rank"])}

@@ -190,6 +190,8 @@ def with_best_first(result: Result, best: Result) -> Result:
 
     It is not complete all the same.
     """
+    if result.holds:
+        return result
     marks = {mark_of(best.table, k) for k in range(len(best))}
     others = np.array([mark_of(result.table, k) not in marks for k in range(len(result))], bool)
     table = FixtureTable.joined([best.table, result.table.take(others)])

@@ -84,8 +84,17 @@ class ColumnsSink:
             archive.close(HEAD, "".join(parts) + "}", FORMAT)
 
 
+def refuse_holds(query: Query, path: str | Path) -> None:
+    """Refuses what flat jaws hold, which has no pegs to stand in columns."""
+    if isinstance(query, Query) and query.toolkit.flat_jaws is not None:
+        raise InputError(
+            f"{path}: a file in columns is of pegs, and a {query.toolkit.noun} has none: let the name end in .json or .csv."
+        )
+
+
 def write_columns(result: Result, path: str | Path) -> None:
     """Writes a result file in columns; an earlier file of that name is replaced only when all went well."""
+    refuse_holds(result.query, path)
     ColumnsSink(Path(path)).receive(result, len(result), [result.table])
 
 
@@ -124,6 +133,7 @@ def answer_to_file(
     from workhold.search.design import answer
 
     path = Path(path)
+    refuse_holds(query, path)
     refuse_other_ending(path, [".npz"], "a result file in columns")
     refuse_output(path, force=overwrite)
     with plain_errors(path):

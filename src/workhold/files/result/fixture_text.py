@@ -298,6 +298,17 @@ def seating_values(result: Result) -> list[list[float]]:
     return known + [[nan] * len(SEATING_FIGURES)] * (len(result) - len(known))
 
 
+def hold_csv_text(result: Result) -> Iterator[str]:
+    """The same of what flat jaws hold."""
+    from workhold.files.result.holds import hold_columns, hold_rows
+
+    lines = io.StringIO()
+    table = csv.writer(lines, lineterminator="\n")
+    table.writerow(hold_columns())
+    table.writerows(["" if value is None else value for value in row] for row in hold_rows(result))
+    yield lines.getvalue()
+
+
 def result_csv_text(result: Result) -> Iterator[str]:
     """The fixtures of a result as comma-separated values, piece by piece, numbered by rank from 1.
 
@@ -305,6 +316,9 @@ def result_csv_text(result: Result) -> Iterator[str]:
     pictures.
     """
     toolkit, carriers = result.toolkit, result.toolkit.carriers
+    if toolkit.flat_jaws is not None:
+        yield from hold_csv_text(result)
+        return
     yield ",".join(column_names(result)) + "\n"
     moved, flats = 3 + toolkit.travels, FLAT_PIN in toolkit.contacts
     arrangements = [(one.title, [carriers[k] for k in one.carriers]) for one in toolkit.arrangements]

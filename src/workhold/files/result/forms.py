@@ -133,6 +133,9 @@ TYPES: Mapping[Form, Any] = {
     "heights": Pair,
     "holes": list[str],
     "directions": list[str | list[str]],
+    "lengths": list[float],
+    "choice": str,
+    "force": float,
 }
 
 
@@ -198,9 +201,13 @@ class LoadPart(FormPart):
     force: float = 0.0
     directions: Pair = list(ANY_DIRECTION)
     moment: float = 0.0
+    upward: float = 0.0
+    height: float | None = None
 
     def load(self) -> Load:
-        return Load(self.points, self.force, self.directions, self.moment, self.name)
+        return Load(
+            self.points, self.force, self.directions, self.moment, self.name, self.upward, self.height
+        )
 
 
 Counts = dict[str, Annotated[int, Field(ge=0)]]

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from workhold.archive import is_archive
 from workhold.errors import InputError
 from workhold.files.result.fixture_forms import with_seating
+from workhold.files.result.holds import is_hold
 from workhold.files.result.parts import (
     OtherLayoutError,
     checked_head,
@@ -74,6 +75,8 @@ def read_one(path: str | Path, rank: int) -> Result:
             if is_archive(path):
                 raise OtherLayoutError
             data, found = read_lines(path, partial(picked, rank=rank))
+            if found.texts and is_hold(parsed(found.texts[-1])):
+                raise OtherLayoutError
             columns = collected(map(parsed, found.texts), path, found.first)
     except OtherLayoutError:
         result = read_result(path)

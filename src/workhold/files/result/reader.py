@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from functools import partial
-from itertools import islice
+from itertools import chain, islice
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +22,7 @@ from workhold.conventions import AGREEMENT
 from workhold.errors import InputError
 from workhold.files.result.columns import read_columns
 from workhold.files.result.fixture_forms import checked_seating, with_seating
+from workhold.files.result.holds import HoldPart, holds_of, is_hold, read_holds, table_of_holds
 from workhold.files.result.parts import (
     LARGEST_LENGTH,
     LARGEST_NUMBER,
@@ -94,10 +95,26 @@ def read_result(path: str | Path) -> Result:
             return read_columns(path)
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror or error}.") from error
-    head, columns = read_parts(path, collected)
+    head, columns = read_parts(path, collected_of_any_kind)
     query = checked_query(head, path)
+    if isinstance(columns, list) != (query.toolkit.flat_jaws is not None):
+        if isinstance(columns, list) or len(columns.types):
+            raise InputError(f"{path}: its fixtures are not those of a {query.toolkit.noun}.")
+        columns = []
+    if isinstance(columns, list):
+        return evolve(
+            result_with(table_of_holds(columns), head, query, path), holds=holds_of(columns, query, path)
+        )
     result = result_with(measured(checked_table(columns, query, path), query), head, query, path)
     return with_seating(result, columns.seating, path)
+
+
+def collected_of_any_kind(fixtures: Iterable[Any], path: Path) -> Columns | list[HoldPart]:
+    """Fixtures as arrays; such as flat jaws hold as they are."""
+    iterator = iter(fixtures)
+    first = list(islice(iterator, 1))
+    together = chain(first, iterator)
+    return read_holds(together, path) if first and is_hold(first[0]) else collected(together, path)
 
 
 def collected(fixtures: Iterable[Any], path: Path, first: int = 0) -> Columns:

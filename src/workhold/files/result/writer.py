@@ -22,6 +22,7 @@ from workhold.asking.declaring import declarations_of
 from workhold.asking.search import SearchQuestion
 from workhold.files.atomic import text_file
 from workhold.files.result.fixture_text import as_written, fixture_lines, rounded_degrees
+from workhold.files.result.holds import hold_lines
 from workhold.fixels.carrier import Holes
 from workhold.fixels.kinds import USUAL
 from workhold.fixels.pegs import Flat
@@ -73,6 +74,10 @@ def result_text(result: Result) -> Iterator[str]:
     yield from head_texts(head(result, with_pieces=False), result.query.program, ",\n")
     yield ',\n"fixtures": ['
     separator, count = "\n", 0
+    if result.toolkit.flat_jaws is not None:
+        yield "".join(f"{',' * (number > 0)}\n{line}" for number, line in enumerate(hold_lines(result)))
+        yield "\n]}\n"
+        return
     for lines in fixture_lines(result.table, result.toolkit, result.workpiece):
         seatings = result.seating[count : count + len(lines)]
         lines[: len(seatings)] = [
@@ -253,6 +258,8 @@ def asked_entry(query: Query, with_pieces: bool = True) -> dict[str, Any]:
         if row.name not in asked
         and ((value := getattr(query, row.name)) != row.default or row.name in always)
     }
+    if query.friction is not None:
+        asked["friction"] = dict(query.friction)
     if query.program is not None:
         program = query.program.to_dict() if with_pieces else query.program.head()
         asked["program"] = program
@@ -288,7 +295,9 @@ def written(value: Any) -> Any:
 
 def load_entry(load: Load) -> dict[str, Any]:
     """A load as it is written: N, N mm, mm and degrees."""
-    return {"name": load.name} | asdict(load)
+    entry = {"name": load.name} | asdict(load)
+    # What stands in no plane is written where it is said.
+    return {key: value for key, value in entry.items() if key not in ("upward", "height") or value}
 
 
 def proof_entry(proof: Proof) -> dict[str, Any]:

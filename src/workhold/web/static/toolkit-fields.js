@@ -39,8 +39,8 @@ export function makeFields(field) {
     return [make("label", {}, field.label, make("select", { id }, ...options))];
   }
   if (field.form === "flag") return [make("label.check.wide", { title: field.help }, make("input", { type: "checkbox", id }), ` ${field.label}`)];
-  const mode = field.form === "count" ? "numeric" : ["faces", "holes", "rings", "text"].includes(field.form) ? "text" : "decimal";
-  const unit = ["length", "pitch", "place", "span", "rings"].includes(field.form) ? [" ", make("span.unit", {}, unitWord())] : [];
+  const mode = field.form === "count" ? "numeric" : ["faces", "holes", "lengths", "rings", "text"].includes(field.form) ? "text" : "decimal";
+  const unit = ["length", "lengths", "pitch", "place", "span", "rings"].includes(field.form) ? [" ", make("span.unit", {}, unitWord())] : [];
   if (field.form === "stress") unit.push(" ", make("span.pressure", {}, pressureWord()));
   if (field.form === "force") unit.push(" ", make("span.force-unit", {}, forceWord()));
   return idsOf(field).map((each, k) => {
@@ -75,6 +75,13 @@ export function readField(field, known) {
     input(id).setAttribute("aria-invalid", String(wrong));
     return { value: numbers.length ? numbers : null, wrong };
   }
+  if (field.form === "lengths") {
+    const before = known ?? [], text = input(id).value;
+    const values = text === lengthsText(before) ? before : text.split(/[\s;]+|,(?=\s)/).filter(Boolean).map(readLength);
+    const wrong = !values.every((one) => Number.isFinite(one) && one >= 0);
+    input(id).setAttribute("aria-invalid", String(wrong));
+    return { value: values.length ? values : null, wrong };
+  }
   if (field.form === "rings") {
     const rings = ringsOf(input(id).value, known);
     const wrong = rings === null;
@@ -95,6 +102,11 @@ export function readField(field, known) {
   ids.forEach((each, k) => input(each).setAttribute("aria-invalid", String(wrong[k])));
   if (wrong.includes(true)) return { value: null, wrong: true };
   return { value: empty ? null : values.length > 1 ? values : values[0], wrong: false };
+}
+
+/** Lengths as they are typed, with commas between them. @param {number[]|null} lengths */
+function lengthsText(lengths) {
+  return (lengths ?? []).map((one) => fieldLength(one)).join(", ");
 }
 
 /** Rings as they are typed: x, y, least and most of each, with semicolons between them. @param {number[][]|null} rings */
@@ -142,6 +154,7 @@ export function writeField(field, value) {
     if (input(each) === document.activeElement) return;
     if (["faces", "holes"].includes(field.form)) input(each).value = (value ?? []).join(", ");
     else if (field.form === "rings") input(each).value = ringsText(value);
+    else if (field.form === "lengths") input(each).value = lengthsText(value);
     else if (["count", "text"].includes(field.form)) input(each).value = String(values[k] ?? "");
     else input(each).value = (UNITS[field.form] ?? [fieldLength])[0](values[k]);
     input(each).setAttribute("aria-invalid", "false");

@@ -1,0 +1,85 @@
+"""Tables and sentences for the terminal of what flat jaws hold by friction."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from workhold.cli.table import Table
+from workhold.presenting.figure_words import figure_text, rounded, short_heading
+from workhold.units import Unit
+
+if TYPE_CHECKING:
+    from workhold.listing.identity import Entries
+    from workhold.model.fixture import Fixture
+    from workhold.model.result import Result
+
+__all__ = ["first_hold_sentence", "hold_fixture_tables", "hold_table"]
+
+# Figures that a table has where all else fits.
+SHOWN = ("clamp_needed", "slip_reserve", "safety_reached", "grip", "above", "contact_area")
+
+
+def hold_table(result: Result, entries: Entries, count: int, unit: Unit) -> Table:
+    """Tabulates the best holds: what lies on the fixed jaw, parallels, stop and opening, and figures."""
+    from workhold.model.hold_words import faces_words
+    from workhold.model.jaw_hold import HOLD_FIGURES
+
+    known = {key for hold in result.holds for key in hold.figures}
+    figures = [figure for figure in HOLD_FIGURES if figure.key in SHOWN and figure.key in known]
+    short = unit.abbreviation
+    has_stop = any(hold.stop for hold in result.holds)
+    columns = (
+        ">rank",
+        "fixed jaw on",
+        f">parallels {short}",
+        *(("stop",) if has_stop else ()),
+        f">opening {short}",
+        ">angle deg",
+        *(f">{short_heading(figure, unit)}" for figure in figures),
+    )
+    table = Table(columns, spare=len(figures) - 1)
+    for index in entries.index[:count].tolist():
+        fixture = result[index]
+        hold = fixture.hold
+        assert hold is not None
+        if hold.is_unfit or not hold.full_contact:
+            table.red.add(len(table.rows))
+        table.add_row(
+            str(index + 1),
+            faces_words(hold.fixed),
+            unit.number(hold.parallels, 1) if hold.parallels else "bed",
+            *((hold.stop or "",) if has_stop else ()),
+            unit.number(hold.opening),
+            rounded(fixture.pose.written_deg, 3),
+            *(
+                figure_text(figure, hold.figures[figure.key], unit) if figure.key in hold.figures else "-"
+                for figure in figures
+            ),
+        )
+    return table
+
+
+def first_hold_sentence(result: Result, unit: Unit) -> str:
+    """Says why the first hold stands first, and with which friction."""
+    from workhold.model.hold_words import coefficient_words, hold_reasons
+
+    first = result[0]
+    said = f"First: {'; '.join(hold_reasons(first, unit))}."
+    return f"{said} {coefficient_words(result.query)}" if result.query.loads else said
+
+
+def hold_fixture_tables(fixture: Fixture, rank: int, total: int, unit: Unit) -> tuple[Table | str, ...]:
+    """Says how to set up one hold, with lengths in a unit, and what each load asks for."""
+    from workhold.model.hold_words import coefficient_words, setup_sentences, warning_sentences
+
+    assert fixture.hold is not None
+    hold, query = fixture.hold, fixture.listing.result.query
+    steps = (f"{step}." for step in setup_sentences(fixture, query, unit))
+    tables: list[Table | str] = [f"Fixture {rank} of {total}", *steps]
+    if hold.clamp_needed_each:
+        needs = Table((">load", "name", f">jaw force needed {unit.force}"))
+        for number, (load, need) in enumerate(zip(query.loads, hold.clamp_needed_each, strict=True), 1):
+            text = "no force holds it" if need is None else rounded(need / unit.newtons, 1)
+            needs.add_row(str(number), load.name, text)
+        tables += [coefficient_words(query), needs]
+    return (*tables, *warning_sentences(hold))

@@ -1,0 +1,113 @@
+"""Two flat jaws from the end of the vise, with parallels and part: what is gripped, and what stands above."""
+
+from __future__ import annotations
+
+from math import inf
+
+from workhold.drawing.annotation import dimension
+from workhold.drawing.bench import PART_FILL, TOUCHED
+from workhold.drawing.carriers import draw_jaw
+from workhold.drawing.panel import TextColumn
+from workhold.drawing.scene import BLACK, GREY, Box, LengthUnit, Scene, View
+from workhold.fixels.jaw_pair import JawPair
+from workhold.model.fixture import Fixture
+
+__all__ = ["draw_jaw_side"]
+
+# Room for dimensions at the right and below, and the largest height of the view, page units.
+BESIDE, BELOW, HIGHEST = 74.0, 30.0, 190.0
+# From the words of one height to those of the next, page units.
+LABEL_ROOM = 24.0
+# Of the opening: how wide jaws and parallels are drawn.
+JAW_SHARE, PARALLEL_SHARE, WIDEST_PARALLEL = 0.28, 0.2, 8.0
+
+
+def draw_jaw_side(
+    column: TextColumn, fixture: Fixture, jaws: JawPair, height: float | None, lengths: LengthUnit
+) -> None:
+    """Draws the view from the left end of the jaws into a column, the fixed jaw at the left.
+
+    ``height`` is that of the part in mm; nothing is drawn where nobody knows it.
+    """
+    hold = fixture.hold
+    if hold is None or height is None:
+        return
+    opening, low = hold.opening, -hold.parallels
+    top = height if jaws.height is None else jaws.top(hold.parallels)
+    thick = JAW_SHARE * opening
+    bed = 0.12 * (height - low)
+    extent = Box(-thick, low - bed, opening + thick, max(height, top))
+    room = Box(column.x, column.y + 14, column.x + column.width - BESIDE, column.y + HIGHEST)
+    view = View.fitting(extent, room)
+    # The view stands at the upper left of its room.
+    (x, y), left = view((extent.x0, extent.y1)), view.left
+    view = View(view.scale, left - (x - room.x0), view.top - (y - room.y0))
+    foot = view((0.0, extent.y0))[1]
+    scene = column.scene.group("side-view")
+    draw_bodies(scene, view, hold.parallels, opening, top, thick, bed, low)
+    draw_part_side(scene, view, fixture, height)
+    draw_heights(scene, view, fixture, top, height, lengths)
+    start, end = view((0.0, extent.y0)), view((opening, extent.y0))
+    dimension(
+        scene, (start[0], foot + 22), (end[0], foot + 22), f"S = {lengths.words(opening)}", 12, bold=True
+    )
+    for x in (start[0], end[0]):
+        scene.line([(x, foot + 2), (x, foot + 25)], GREY, 0.6)
+    scene.text((view((-thick / 2, 0))[0], foot + 10), "fixed", 10, "middle", fill=GREY)
+    scene.text((view((opening + thick / 2, 0))[0], foot + 10), "moving", 10, "middle", fill=GREY)
+    column.y = foot + BELOW + 4
+
+
+def draw_bodies(
+    scene: Scene,
+    view: View,
+    parallels: float,
+    opening: float,
+    top: float,
+    thick: float,
+    bed: float,
+    low: float,
+) -> None:
+    """Draws the bed, both jaws and the parallels."""
+    scene.rectangle(view.box(Box(-thick, low - bed, opening + thick, low)), "#dfe3e8", GREY, 1.0)
+    draw_jaw(scene, view.box(Box(-thick, low, 0.0, top)), "right")
+    draw_jaw(scene, view.box(Box(opening, low, opening + thick, top)), "left")
+    if parallels:
+        wide = min(PARALLEL_SHARE * opening, WIDEST_PARALLEL)
+        for y in (0.0, opening - wide):
+            scene.rectangle(view.box(Box(y, low, y + wide, 0.0)), "#eef0f3", GREY, 1.0)
+
+
+def draw_part_side(scene: Scene, view: View, fixture: Fixture, height: float) -> None:
+    """Draws the part and the heights at which the jaws touch it."""
+    hold = fixture.hold
+    assert hold is not None
+    scene.rectangle(view.box(Box(0.0, 0.0, hold.opening, height)), PART_FILL, BLACK, 1.6)
+    for patch, y in ((hold.fixed, 0.0), (hold.moving, hold.opening)):
+        low, high = min(one[2] for one in patch.rectangles), max(one[3] for one in patch.rectangles)
+        scene.line([view((y, low)), view((y, high))], TOUCHED, 6.0)
+
+
+def draw_heights(
+    scene: Scene, view: View, fixture: Fixture, top: float, height: float, lengths: LengthUnit
+) -> None:
+    """Dimensions the grip, what stands above the jaws, and the parallels, at the right."""
+    hold = fixture.hold
+    assert hold is not None
+    edge = view((hold.opening * 1.28, 0.0))[0]
+    spans = [("above", top, height)] if height > top else []
+    if hold.grip > 0:
+        foot = max(hold.fixed.band[0], hold.moving.band[0])
+        spans.append(("grip", foot, foot + hold.grip))
+    if hold.parallels:
+        spans.append(("parallels", -hold.parallels, 0.0))
+    x, lowest = edge + 12, -inf
+    for name, low, high in spans:
+        (_, y0), (_, y1) = view((0.0, low)), view((0.0, high))
+        for y in (y0, y1):
+            scene.line([(edge + 2, y), (x + 5, y)], GREY, 0.6)
+        scene.line([(x, y0), (x, y1)], BLACK, 1.0)
+        # Words of what is low give way downward, so that none covers another.
+        middle = lowest = max((y0 + y1) / 2, lowest + LABEL_ROOM)
+        scene.text((x + 8, middle - 5.5), name, 10, fill=GREY)
+        scene.text((x + 8, middle + 5.5), lengths.short(high - low, 4), 11, bold=True)

@@ -1,0 +1,251 @@
+"""What flat jaws hold, in a result file: a line of JSON or a row for a spreadsheet for each, written and read back.
+
+A fixture without pegs gives what each jaw touches as rectangles in the jaw's plane, the height of the parallels and
+the side of the work stop. Figures that follow from these are written, too.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator, Sequence
+from math import radians
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from workhold.errors import InputError
+from workhold.fixels.toolkit import Toolkit
+from workhold.model.fixture import Fixture
+from workhold.model.fixture_table import FixtureTable, unknown_quality
+from workhold.model.jaw_hold import HOLD_FIGURES, JawHold, Patch
+from workhold.model.pose import Pose
+from workhold.model.quality import CLOSURE_MARGIN, TILT, WARNINGS
+from workhold.model.query import Query
+from workhold.model.result import Result
+
+__all__ = [
+    "HoldPart",
+    "hold_columns",
+    "hold_entry",
+    "hold_lines",
+    "hold_rows",
+    "holds_of",
+    "is_hold",
+    "read_holds",
+    "table_of_holds",
+]
+
+DIGITS = 12
+LARGEST = 1e9
+Whole = Annotated[int, Field(ge=0)]
+Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
+RectanglePart = Annotated[list[Number], Field(min_length=4, max_length=4)]
+
+
+def length(value: float) -> float:
+    """A length as it is written, to 1e-9 mm."""
+    return round(value, 9) + 0.0
+
+
+def figure(value: Any) -> Any:
+    """A figure as it is written, to twelve digits; a truth and nothing as they are."""
+    if isinstance(value, list):
+        return [figure(one) for one in value]
+    return value if value is None or isinstance(value, bool) else float(f"{value:.{DIGITS}g}") + 0.0
+
+
+def hold_entry(fixture: Fixture) -> dict[str, Any]:
+    """A fixture that flat jaws hold, as it is written."""
+    hold, pose = fixture.hold, fixture.pose
+    assert hold is not None
+
+    def patch_entry(patch: Patch) -> dict[str, Any]:
+        rectangles = [[length(end) for end in one] for one in patch.rectangles]
+        return {"segments": list(patch.segments), "rectangles": rectangles}
+
+    return {
+        "type": fixture.type,
+        "parallels": length(hold.parallels),
+        "stop": hold.stop,
+        "fixed": patch_entry(hold.fixed),
+        "moving": patch_entry(hold.moving),
+        "pose": {
+            "theta_deg": round(pose.theta_deg, 10) % 360.0 + 0.0,
+            "x": length(pose.x),
+            "y": length(pose.y),
+        },
+        "jaw_separation": length(hold.opening),
+        "warnings": list(hold.warnings),
+        "quality": {key: figure(value) for key, value in hold.as_quality().items()},
+    }
+
+
+def hold_lines(result: Result) -> Iterator[str]:
+    """The lines of a result's fixtures."""
+    return (json.dumps(hold_entry(fixture)) for fixture in result)
+
+
+class HoldKeys(BaseModel):
+    """Keys that must look like this; further keys are allowed."""
+
+    model_config = ConfigDict(strict=True, allow_inf_nan=False)
+
+
+class PatchPart(HoldKeys):
+    """What a jaw touches: the faces, and rectangles [x0, x1, z0, z1] in mm; a line has no width."""
+
+    segments: list[Whole] = Field(description="numbers of the faces; none where corners touch")
+    rectangles: list[RectanglePart] = Field(min_length=1)
+
+    def patch(self) -> Patch:
+        rows = tuple((x0, x1, z0, z1) for x0, x1, z0, z1 in self.rectangles)
+        return Patch(rows, tuple(self.segments), not self.segments)
+
+
+class HoldPosePart(HoldKeys):
+    """Where the workpiece lies."""
+
+    theta_deg: Number
+    x: Number
+    y: Number
+
+
+class HoldQualityPart(HoldKeys):
+    """Figures, in mm, mm², N and MPa."""
+
+    full_contact: bool
+    clamp_needed: Number | None = None
+    clamp_needed_each: list[Number | None] = Field(
+        default=[], description="for each load in its order; null where no jaw force holds it"
+    )
+    grip: Number | None = None
+    above: Number | None = None
+    contact_area: Number | None = None
+    max_pressure: Number | None = None
+    slip_reserve: Number | None = None
+    safety_reached: Number | None = None
+    tilt: Number = 0.0
+
+
+class HoldPart(HoldKeys):
+    """A fixture of two flat jaws; best first."""
+
+    type: str
+    parallels: Number
+    stop: Literal["left", "right"] | None
+    fixed: PatchPart
+    moving: PatchPart
+    pose: HoldPosePart
+    jaw_separation: Number
+    warnings: list[str] = []
+    quality: HoldQualityPart
+
+    def fixture(self, toolkit: Toolkit, unit_force: float | None = None) -> Fixture:
+        """The fixture with the figures that are written."""
+        pose = Pose(self.pose.theta_deg, self.pose.x, self.pose.y)
+        written = self.quality.model_dump(exclude={"full_contact", "clamp_needed_each"}, exclude_none=True)
+        return Fixture(self.type, (), pose, self.jaw_separation, written, hold=self.hold(toolkit, unit_force))
+
+    def hold(self, toolkit: Toolkit, unit_force: float | None = None) -> JawHold:
+        """How the jaws of a toolkit hold the part; refuses a toolkit without flat jaws."""
+        if toolkit.flat_jaws is None:
+            raise InputError(f"it lies between flat jaws, which a {toolkit.noun} does not have.")
+        quality = self.quality
+        return JawHold(
+            parallels=self.parallels,
+            stop=self.stop,
+            fixed=self.fixed.patch(),
+            moving=self.moving.patch(),
+            opening=self.jaw_separation,
+            above=quality.above,
+            full_contact=quality.full_contact,
+            clamp_needed_each=tuple(quality.clamp_needed_each),
+            max_pressure=quality.max_pressure,
+            max_force=toolkit.flat_jaws.max_force,
+            unit_force=unit_force,
+            warnings=tuple(self.warnings),
+        )
+
+
+def is_hold(fixture: Any) -> bool:
+    """Whether a fixture in a file is one of flat jaws."""
+    return isinstance(fixture, dict) and "moving" in fixture and "pegs" not in fixture
+
+
+def read_holds(fixtures: Iterable[Any], path: Path) -> list[HoldPart]:
+    """The fixtures of a file.
+
+    Raises
+    ------
+    InputError
+        Naming the first key that is missing or cannot be used.
+    """
+    out = []
+    for number, fixture in enumerate(fixtures, 1):
+        try:
+            out.append(HoldPart.model_validate(fixture))
+        except ValidationError as error:
+            first = error.errors()[0]
+            key, message = ".".join(map(str, first["loc"])), first["msg"]
+            reason = "it is missing" if first["type"] == "missing" else message[:1].lower() + message[1:]
+            raise InputError(f"{path}: fixture {number} cannot be used: {key}: {reason}.") from error
+    return out
+
+
+def holds_of(parts: Sequence[HoldPart], query: Query, path: Path) -> tuple[JawHold, ...]:
+    """How flat jaws hold the part in each fixture of a file; refuses faces that there are not."""
+    faces = {face.number for face in query.workpiece.numbered.faces}
+    names = query.toolkit.types
+    for number, part in enumerate(parts, 1):
+        if part.type not in names:
+            raise InputError(
+                f"{path}: fixture {number} cannot be used: its type is not {' or '.join(names)}."
+            )
+        if not faces.issuperset((*part.fixed.segments, *part.moving.segments)):
+            raise InputError(
+                f"{path}: fixture {number} touches a segment that does not name a face of the part."
+            )
+    return tuple(part.hold(query.toolkit, query.unit_force) for part in parts)
+
+
+def table_of_holds(parts: Sequence[HoldPart]) -> FixtureTable:
+    """The table of the fixtures of a file, which has poses and openings, and no pegs."""
+    count, nothing = len(parts), np.zeros((len(parts), 0), np.int32)
+    quality = unknown_quality(np.full(count, np.nan))
+    quality[:, CLOSURE_MARGIN] = np.nan
+    quality[:, TILT] = 0.0
+    quality[:, WARNINGS] = [len(part.warnings) for part in parts]
+    return FixtureTable(
+        arrangement=np.zeros(count, np.int8),
+        column=nothing,
+        row=nothing.copy(),
+        face=nothing.copy(),
+        theta=np.array([radians(part.pose.theta_deg) for part in parts]),
+        position=np.array([(part.pose.x, part.pose.y) for part in parts]).reshape(-1, 2),
+        jaw_separation=np.array([part.jaw_separation for part in parts]),
+        force=np.zeros((count, 0)),
+        quality=quality,
+    )
+
+
+BEFORE_FIGURES = ("number", "type", "theta_deg", "x", "y", "jaw_separation", "parallels", "stop")
+AFTER_FIGURES = ("full_contact", "faces_fixed", "faces_moving", "warnings")
+
+
+def hold_columns() -> list[str]:
+    """The names of the columns of :func:`hold_rows`."""
+    return [*BEFORE_FIGURES, *(figure.key for figure in HOLD_FIGURES), *AFTER_FIGURES]
+
+
+def hold_rows(result: Result) -> Iterator[list[Any]]:
+    """A row for each fixture, best first: lengths in mm, angles in degrees, forces in N; empty where not known."""
+    for number, fixture in enumerate(result, 1):
+        entry = hold_entry(fixture)
+        pose, quality = entry["pose"], entry["quality"]
+        faces = (" ".join(map(str, entry[jaw]["segments"])) for jaw in ("fixed", "moving"))
+        figures = [quality.get(figure.key) for figure in HOLD_FIGURES]
+        before = [number, entry["type"], pose["theta_deg"], pose["x"], pose["y"], entry["jaw_separation"]]
+        after = [quality["full_contact"], *faces, "; ".join(entry["warnings"])]
+        yield [*before, entry["parallels"], entry["stop"], *figures, *after]

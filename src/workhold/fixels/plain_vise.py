@@ -1,0 +1,225 @@
+"""A machine vise with two flat jaws, which hold the part by friction, on parallels and against a work stop."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from functools import cached_property
+from math import inf, pi
+from typing import TYPE_CHECKING, Any
+
+from workhold.errors import InputError
+from workhold.fixels import fields
+from workhold.fixels.carrier import Carrier, Heights
+from workhold.fixels.jaw_pair import JawPair
+from workhold.fixels.making import made_from_table, refuse_all_out_of_bounds
+from workhold.fixels.setup_words import Datum, PageWords, SetupWords
+from workhold.fixels.table import REQUIRED, FieldTable, PageLabel
+from workhold.fixels.toolkit import Arrangement, Change, Toolkit, Travel, Wording
+from workhold.units import Unit
+
+__all__ = ["PlainVise"]
+
+
+@made_from_table
+class PlainVise(Toolkit):
+    """A vise with two flat, parallel jaws: the part stands on parallels and is held by friction.
+
+    The fixed jaw stands along x at y = 0, the part above it on a hull edge, a straight piece of the boundary of the
+    part's convex hull. The jaw that moves closes along -y. Each hull edge, work stop and height of parallels makes
+    one fixture.
+
+    Parameters
+    ----------
+    jaw_width : of both jaws in mm.
+    jaw_height : how high the jaws stand above the vise's bed, in mm; None for any height.
+    max_opening : the largest distance between the jaws in mm, or None for no limit.
+    parallels : the heights in mm of those that there are; none where the part lies on the bed.
+    stop : "left", "right" or "both", the ends of the jaws at which the work stop is; None without one.
+    stop_offset : how far inward from the end of the jaws the stop touches the part, in mm.
+    least_grip : the least height in mm that both jaws must grip.
+    max_force : what the vise is rated for, in N; None where nobody says.
+    jaw_thickness : how thick the jaws are, for the tools of a program, in mm; None for any thickness.
+    screw_lead : how far a turn of the screw moves the jaw, in mm; None where nobody says.
+    supports, top_clamp, pins : as of every toolkit; flat jaws need none of them.
+    tolerance : of pegs, which there are none of.
+
+    Raises
+    ------
+    InputError
+        For values that are not finite and positive, and jaws that stand no higher than any of the parallels.
+
+    Examples
+    --------
+    >>> from workhold import PlainVise
+    >>> PlainVise(jaw_width=152, jaw_height=44, parallels=[32, 20]).parallels
+    (20.0, 32.0)
+    """
+
+    kind = "plain-vise"
+    table = FieldTable(
+        "plain vise",
+        "A vise with two flat jaws",
+        (
+            fields.JAW_WIDTH.shown(
+                PageLabel("Width of the jaws", is_usual=True),
+                help="How wide the flat jaws are.",
+                default=REQUIRED,
+                unset="",
+                lifted=None,
+                missing="width of its jaws",
+            ),
+            fields.JAW_HEIGHT,
+            fields.MAX_OPENING.shown(
+                PageLabel("Largest opening", "no limit", is_usual=True), at_least="", below=""
+            ),
+            fields.PARALLELS,
+            fields.STOP,
+            fields.STOP_OFFSET,
+            fields.LEAST_GRIP,
+            fields.MAX_FORCE,
+            fields.JAW_THICKNESS,
+            fields.SCREW_LEAD,
+        ),
+    )
+    noun = "plain vise"
+    locked = "a screw vise, its jaw"
+    law = "fence"
+    arrangements = (Arrangement("plain", (0, 0)),)
+    wording = Wording(
+        two="flat jaws",
+        four="two flat jaws",
+        inside="in this vise",
+        within="the jaws as asked: with the width, height, opening and parallels given",
+        rules="is pressed by both jaws",
+        backwards="the jaws are pressed apart, not when they close",
+        holes="holes that the jaws do not have",
+        sets="sides of the part, parallels and stops",
+        clear="jaws clear of the program",
+        reasons=(
+            "The part cannot lie flush against the fixed jaw: no straight piece of its convex hull is there to lie "
+            "on it, or none at an angle and on faces that are allowed.",
+            "No jaw can grip the part high enough: the jaws do not reach far enough above the parallels.",
+            "What both jaws touch does not lie opposite: as they close the part turns away.",
+            "The part is wider than the jaws open, or a jaw touches what is to be avoided.",
+        ),
+    )
+    setup_words = SetupWords(
+        standing="Jaws",
+        located_by="The fixed jaw",
+        put="Put the part on the parallels, {holes} against the fixed jaw.",
+        against="flush against the fixed jaw",
+        touching="flush",
+        resting="flush against the fixed jaw",
+    )
+    page = PageWords(
+        "Plain vise, two flat jaws and parallels",
+        "Close vise",
+        {
+            fields.JAW_WIDTH.name: 152.0,
+            fields.JAW_HEIGHT.name: 44.0,
+            fields.MAX_OPENING.name: 150.0,
+            fields.PARALLELS.name: [20.0, 25.0, 32.0],
+        },
+    )
+
+    jaw_width: float
+    jaw_height: float | None
+    max_opening: float | None
+    parallels: tuple[float, ...]
+    stop: str | None
+    stop_offset: float
+    least_grip: float
+    max_force: float | None
+    jaw_thickness: float | None
+    screw_lead: float | None
+
+    if TYPE_CHECKING:
+        # As the table makes it, for editors and mypy; a test compares the two.
+        def __init__(
+            self,
+            jaw_width: float,
+            jaw_height: float | None = None,
+            max_opening: float | None = None,
+            parallels: float | Iterable[float] | None = (),
+            stop: str | None = None,
+            stop_offset: float = 0.0,
+            least_grip: float = 3.0,
+            max_force: float | None = None,
+            jaw_thickness: float | None = None,
+            screw_lead: float | None = None,
+            *,
+            supports: Any = None,
+            top_clamp: Any = None,
+            pins: Any = None,
+            tolerance: Any = None,
+        ) -> None: ...
+
+    def __attrs_post_init__(self) -> None:
+        refuse_all_out_of_bounds(self)
+        lowest = min(self.parallels, default=0.0)
+        if self.jaw_height is not None and self.jaw_height <= lowest:
+            raise InputError(
+                f"jaws {self.jaw_height:g} mm high do not reach above parallels of {lowest:g} mm: give lower ones, "
+                "or how high the jaws stand above the bed."
+            )
+
+    @cached_property
+    def flat_jaws(self) -> JawPair:
+        return JawPair(
+            width=self.jaw_width,
+            height=self.jaw_height,
+            thickness=self.jaw_thickness,
+            max_opening=getattr(self, fields.MAX_OPENING.name),
+            parallels=self.parallels or (0.0,),
+            least_grip=self.least_grip,
+            stops=("left", "right") if self.stop == "both" else (self.stop,),
+            stop_offset=self.stop_offset,
+            max_force=self.max_force,
+            screw_lead=self.screw_lead,
+        )
+
+    @cached_property
+    def carriers(self) -> tuple[Carrier, ...]:
+        """The fixed jaw, and the one that moves."""
+        travel = Travel(pi / 2, 0.0, getattr(self, fields.MAX_OPENING.name))
+        size = (1.0, 1.0), None, None, 0.0, 0.0
+        fixed = Carrier("fixed jaw", *size, noun="jaw", width=self.jaw_width, is_jaw=True)
+        return fixed, Carrier(
+            "moving jaw", *size, travel=travel, noun="jaw", width=self.jaw_width, is_jaw=True
+        )
+
+    @property
+    def heights(self) -> dict[str, Heights]:
+        """The heights up to which the jaws reach, above the part's lower side, for each height of parallels."""
+        jaws = self.flat_jaws
+        tops = {one: jaws.top(one) for one in jaws.parallels}
+        return {jaws.role(one): (0.0, top) for one, top in tops.items() if 0.0 < top < inf}
+
+    @property
+    def datum(self) -> Datum:
+        """The left end of the fixed jaw's face, on top of the parallels."""
+        name = "the left end of the fixed jaw"
+        return Datum(
+            name=name,
+            point=name,
+            full=name,
+            mark="(0, 0)",
+            x="the left end of the jaws",
+            y="the fixed jaw",
+            lines=("the left end of the jaws", "the fixed jaw"),
+            rows_from="the fixed jaw",
+            substitute=name,
+        )
+
+    @property
+    def is_in_inches(self) -> bool:
+        """Whether its jaws are eighths of an inch wide, and not whole or half millimetres."""
+        eighths, halves = self.jaw_width / 3.175, self.jaw_width / 0.5
+        return abs(eighths - round(eighths)) < 1e-9 < abs(halves - round(halves))
+
+    def further_changes(self, unit: Unit) -> Iterator[Change]:
+        """The part on the bed, and lower parallels."""
+        if self.parallels:
+            yield Change("without parallels, on the bed", {fields.PARALLELS.name: ()})
+            lower = min(self.parallels) / 2
+            yield Change(f"on parallels of {unit.text(lower)}", {fields.PARALLELS.name: (lower,)})

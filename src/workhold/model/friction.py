@@ -1,0 +1,87 @@
+"""Coefficients of friction that a part is held with: their names, and what is usual where nobody says.
+
+Static friction between a smooth steel jaw and a milled steel part that cutting oil has wetted. Makers of chucks print
+0.10 for a smooth clamping surface on a milled part, the least of their tables but for ground ones (0.07): Röhm,
+"Force monitoring RN-1391", table 4, clamping coefficients; Hainbuch, manual of SPANNTOP nova, table 5, friction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import isfinite
+from typing import Any
+
+from attrs import frozen
+
+from workhold.errors import InputError
+from workhold.limits import MOST_FRICTION, real
+
+__all__ = ["COEFFICIENTS", "SAFETY", "Coefficient", "Coefficients", "coefficients_of", "friction_of"]
+
+# By name, in the order of their names.
+Coefficients = tuple[tuple[str, float], ...]
+# On every load but weight.
+SAFETY = 2.0
+
+
+@frozen
+class Coefficient:
+    """A coefficient of friction that is usual.
+
+    Parameters
+    ----------
+    value : the number.
+    between : what it is between.
+    source : where it is from.
+    """
+
+    value: float
+    between: str
+    source: str
+
+
+COEFFICIENTS: Mapping[str, Coefficient] = {
+    "jaw": Coefficient(0.10, "smooth jaw and milled steel", "clamping coefficients of Röhm and Hainbuch"),
+    "plate": Coefficient(0.10, "plate and milled steel", "as of a smooth jaw"),
+    "support": Coefficient(0.10, "support and milled steel", "as of a smooth jaw"),
+    "tip": Coefficient(0.10, "clamp tip and milled steel", "as of a smooth jaw"),
+}
+
+
+def coefficients_of(value: Any) -> Coefficients | None:
+    """Coefficients by name from a mapping or from pairs; None where none are given.
+
+    Raises
+    ------
+    InputError
+        For names that there are not, and numbers that are no coefficients.
+
+    Examples
+    --------
+    >>> coefficients_of({"plate": 0.2, "jaw": 0.15})
+    (('jaw', 0.15), ('plate', 0.2))
+    """
+    if value is None:
+        return None
+    try:
+        given = dict(value)
+    except (TypeError, ValueError) as error:
+        raise InputError(
+            f"friction cannot be {value!r}: give coefficients by name, such as jaw 0.15."
+        ) from error
+    for name, number in given.items():
+        if name not in COEFFICIENTS:
+            raise InputError(
+                f"friction of {str(name)[:40]!r} is not known: give that of {', '.join(COEFFICIENTS)}."
+            )
+        if not (isfinite(real(number, "a coefficient of friction")) and 0 < number <= MOST_FRICTION):
+            raise InputError(
+                f"friction {number:g} of the {name} cannot be used: give a coefficient above 0 and at most "
+                f"{MOST_FRICTION:g}, such as 0.15."
+            )
+    return tuple(sorted((str(name), float(number)) for name, number in given.items())) or None
+
+
+def friction_of(given: Coefficients | None, name: str) -> float:
+    """The coefficient of a name, as given or else the usual one."""
+    return dict(given or ()).get(name, COEFFICIENTS[name].value)

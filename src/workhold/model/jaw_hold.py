@@ -1,0 +1,196 @@
+"""How two flat jaws hold a part: what each of them touches, and the figures of that grip.
+
+The frame is the vise's. The fixed jaw stands at y = 0 with the part above it, the jaw that moves at y = S, the
+opening. x runs along the jaws from the left end of the fixed one, and z is 0 at the part's lower side.
+
+Glossary
+--------
+patch : where two flat faces touch, rectangles in one plane; also a line without width, where an arc touches.
+band : the heights between which a face can be touched.
+grip : the height that the bands of both jaws have in common.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import inf
+from typing import Any
+
+from attrs import field, frozen
+
+from workhold.errors import InputError
+from workhold.model.first_choice import has_house_order
+from workhold.model.quality import Figure
+
+__all__ = ["HOLD_FIGURES", "HOLD_RANKING", "JawHold", "Patch", "Rectangle", "hold_ranking"]
+
+# Least and greatest x, then least and greatest z, in mm.
+Rectangle = tuple[float, float, float, float]
+# The figures of a grip, in the order in which they are shown.
+HOLD_FIGURES = (
+    Figure(
+        "clamp_needed", "N", False, "The jaw force that the worst load asks for, with the safety factor.", 0
+    ),
+    Figure("slip_reserve", "", True, "What the vise is rated for, over the jaw force needed.", 2),
+    Figure("safety_reached", "", True, "How many times the loads the jaw force that is given holds.", 2),
+    Figure("grip", "mm", True, "The height that both jaws grip."),
+    Figure("above", "mm", True, "How far the part stands out above the jaws."),
+    Figure("contact_area", "mm²", True, "The smaller of the two areas that the jaws touch.", 0),
+    Figure(
+        "max_pressure", "MPa", False, "The least that the largest pressure can be at the jaw force needed.", 2
+    ),
+)
+# What a hold is ranked by, unfit ones last, and such as do not press all over or ask for more than the vise is rated
+# for before them: square to the drawing, then figures, of which the area counts to two digits.
+HOLD_RANKING = ("square", "contact_area", "clamp_needed", "above", "fixed_area")
+
+
+def hold_ranking(names: Sequence[str] | None) -> tuple[str, ...]:
+    """What holds are ranked by, from figures as a user writes them; the usual order for None.
+
+    An order that fixtures with pegs have stands for the usual one.
+
+    >>> hold_ranking(["clamp-needed", "grip"])
+    ('clamp_needed', 'grip')
+    """
+    keys = [name.strip().lower().replace("-", "_").replace(" ", "_") for name in names or HOLD_RANKING]
+    if has_house_order(keys) or keys == ["warnings"]:
+        return HOLD_RANKING
+    figures = {figure.key: figure.option for figure in HOLD_FIGURES}
+    for key, name in zip(keys, names or HOLD_RANKING, strict=True):
+        if key not in figures and key not in HOLD_RANKING:
+            known = ", ".join(figures.values())
+            raise InputError(f"{name!r} is no figure of flat jaws to rank by: choose among {known}.")
+    if len(set(keys)) < len(keys):
+        raise InputError(f"the figures to rank by, {', '.join(names or ())}, name one twice: name each once.")
+    return tuple(keys)
+
+
+@frozen
+class Patch:
+    """What of a part one jaw touches.
+
+    Parameters
+    ----------
+    rectangles : in mm, those of a line without width; in order.
+    segments : numbers of the faces that touch; none where corners do.
+    is_corner : whether corners alone touch, which mark the part.
+    """
+
+    rectangles: tuple[Rectangle, ...]
+    segments: tuple[int, ...]
+    is_corner: bool = False
+
+    @property
+    def is_line(self) -> bool:
+        """Whether it has no width."""
+        return all(x1 <= x0 for x0, x1, _, _ in self.rectangles)
+
+    @property
+    def area(self) -> float:
+        """Its area in mm²; of lines 0."""
+        return sum((x1 - x0) * (z1 - z0) for x0, x1, z0, z1 in self.rectangles)
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The least and the greatest x in mm."""
+        return min(one[0] for one in self.rectangles), max(one[1] for one in self.rectangles)
+
+    @property
+    def band(self) -> tuple[float, float]:
+        """The heights in mm that all of it has in common."""
+        return max(one[2] for one in self.rectangles), min(one[3] for one in self.rectangles)
+
+
+@frozen
+class JawHold:
+    """How two flat jaws hold a part.
+
+    Parameters
+    ----------
+    parallels : the height in mm of those under the part; 0 without.
+    stop : at which end of the jaws the work stop is; None without.
+    fixed, moving : what each jaw touches.
+    opening : S in mm.
+    above : how far the part stands out above the jaws, in mm; None where nobody knows how thick it is.
+    full_contact : whether both jaws can press all over what they touch, so that loads are held at all.
+    clamp_needed_each : the jaw force in N that each load asks for, in their order; None where none is enough.
+    max_pressure : in MPa, at the jaw force needed; None where it is not known.
+    max_force : what the vise is rated for, in N; None where nobody says.
+    unit_force : the jaw force that is given times the safety factor that loads have, in N; None where none is given.
+    warnings : what to beware of, sentences.
+    """
+
+    parallels: float
+    stop: str | None
+    fixed: Patch
+    moving: Patch
+    opening: float
+    above: float | None
+    full_contact: bool
+    clamp_needed_each: tuple[float | None, ...] = ()
+    max_pressure: float | None = None
+    max_force: float | None = None
+    unit_force: float | None = None
+    warnings: tuple[str, ...] = field(default=())
+
+    @property
+    def is_unfit(self) -> bool:
+        """Whether a jaw touches corners alone."""
+        return self.fixed.is_corner or self.moving.is_corner
+
+    @property
+    def grip(self) -> float:
+        """The height in mm that both jaws grip."""
+        (low, high), (other_low, other_high) = self.fixed.band, self.moving.band
+        return max(min(high, other_high) - max(low, other_low), 0.0)
+
+    @property
+    def fixed_area(self) -> float:
+        """The area in mm² that the fixed jaw touches."""
+        return self.fixed.area
+
+    @property
+    def contact_area(self) -> float:
+        """The smaller of the two areas in mm²."""
+        return min(self.fixed.area, self.moving.area)
+
+    @property
+    def clamp_needed(self) -> float | None:
+        """The jaw force in N that the worst load asks for; None without loads, and where none is enough."""
+        each = [one for one in self.clamp_needed_each if one is not None]
+        return max(each) if each and len(each) == len(self.clamp_needed_each) else None
+
+    @property
+    def slip_reserve(self) -> float | None:
+        """What the vise is rated for over what is needed; None where one of both is not known."""
+        if self.max_force is None or self.clamp_needed is None:
+            return None
+        return self.max_force / self.clamp_needed if self.clamp_needed > 0 else inf
+
+    @property
+    def safety_reached(self) -> float | None:
+        """How many times the loads the jaw force holds that is given; what is needed grows as the loads do."""
+        if self.unit_force is None or self.clamp_needed is None:
+            return None
+        return self.unit_force / self.clamp_needed if self.clamp_needed > 0 else inf
+
+    @property
+    def is_beyond_rating(self) -> bool:
+        """Whether a load asks for more than the vise is rated for, or for more than any force."""
+        if None in self.clamp_needed_each:
+            return True
+        return self.slip_reserve is not None and self.slip_reserve < 1
+
+    @property
+    def figures(self) -> dict[str, float]:
+        """The figures that are known, by their keys."""
+        named = {figure.key: getattr(self, figure.key) for figure in HOLD_FIGURES}
+        return {key: float(value) for key, value in named.items() if value is not None and value != inf}
+
+    def as_quality(self) -> dict[str, Any]:
+        """The figures as files have them."""
+        known: dict[str, Any] = {"tilt": 0.0, "full_contact": self.full_contact, **self.figures}
+        if self.clamp_needed_each:
+            known |= {"clamp_needed": self.clamp_needed, "clamp_needed_each": list(self.clamp_needed_each)}
+        return known

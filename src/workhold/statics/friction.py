@@ -1,0 +1,271 @@
+"""The jaw force that loads ask for, of a part held between two flat jaws by friction.
+
+Both jaws press with affine pressures (``statics.patches``). In each cell of a patch friction acts in any direction of
+the plane, at most the coefficient times the pressure at the cell's centre times its area; the circle of directions is
+a polygon of 16 sides inside it. Parallels push upward and the work stop along the jaws, without friction. A load is
+held at a jaw force F if such forces balance it where the jaw that moves presses with F. For given pressures every
+friction that balances is a safe one: the lower bound theorem of limit analysis.
+
+The least F is a linear program with six equations of balance, and its dual asks for a motion of the part. F is convex
+in the load, so that of a range of loads those at its corners are the worst.
+
+Reference: D. C. Drucker, W. Prager, H. J. Greenberg, *Extended limit design theorems for continuous media*, Quarterly of
+Applied Mathematics 9 (1952).
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from math import cos, pi, sin
+from typing import TYPE_CHECKING
+
+import numpy as np
+from attrs import define, field, frozen
+from numpy.typing import NDArray
+
+from workhold.errors import WorkholdError
+from workhold.model.jaw_hold import Patch
+from workhold.statics.linear_program import LinearProgram
+from workhold.statics.patches import PressedPatch, hulls_meet
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+__all__ = ["Grip", "directed", "is_pressed_all_over", "least_largest_pressure"]
+
+Array = NDArray[np.float64]
+# Directions of friction in a cell; one of them is upward.
+DIRECTIONS = 16
+# How far in mm, of the two kerns, may miss each other by rounding.
+KERN_SLACK = 1e-7
+# A motion is no larger than this per unit of load; a load that drives it so far is held by no jaw force.
+FARTHEST = 1e7
+# How much more work, of all that is done, breaks a condition, and how often conditions are added for a load.
+BROKEN, MOST_TURNS = 1e-9, 1000
+# Parts of the largest force and moment of a load below which they are rounding.
+NEGLIGIBLE = 1e-12
+
+
+@frozen(eq=False)
+class Grip:
+    """A part between two flat jaws, ready for the linear programs of its loads.
+
+    Parameters
+    ----------
+    fixed, moving : what each jaw touches.
+    opening : S in mm.
+    friction : the coefficient between jaws and part.
+    stop_points : (K, 3) in mm, where the work stop may push; empty without one.
+    stop_way : 1 where it pushes along x, -1 where against it.
+    """
+
+    fixed: PressedPatch
+    moving: PressedPatch
+    opening: float
+    friction: float
+    stop_points: Array
+    stop_way: float = 1.0
+
+    @classmethod
+    def of(
+        cls,
+        fixed: Patch,
+        moving: Patch,
+        opening: float,
+        friction: float,
+        stop_points: Sequence[tuple[float, float, float]] = (),
+        stop_way: float = 1.0,
+    ) -> Grip:
+        points = np.array(stop_points, np.float64).reshape(-1, 3)
+        return cls(PressedPatch(fixed), PressedPatch(moving), opening, friction, points, stop_way)
+
+    @cached_property
+    def centre(self) -> Array:
+        """What moments are taken about, in mm."""
+        ends = np.array([self.fixed.patch.ends, self.moving.patch.ends])
+        tops = [one[3] for patch in (self.fixed, self.moving) for one in patch.rectangles]
+        return np.array([ends.mean(), self.opening / 2, max(tops) / 2])
+
+    @cached_property
+    def length(self) -> float:
+        """What moments are divided by, in mm."""
+        ends = np.array([self.fixed.patch.ends, self.moving.patch.ends])
+        return float(max(self.opening, np.ptp(ends), 1.0) / 2)
+
+    def wrenches(self, points: Array, forces: Array) -> Array:
+        """Wrenches (N, 6) of forces (N, 3) at points (N, 3) in mm, moments over the length."""
+        arms = points - self.centre
+        return np.hstack([forces, np.cross(arms, forces) / self.length])
+
+    @cached_property
+    def pressing(self) -> Array:
+        """Wrenches (R, 6) of the edges of pressure, those of the fixed jaw first."""
+        rows = []
+        for patch, y, way in ((self.fixed, 0.0, 1.0), (self.moving, self.opening, -1.0)):
+            points = np.column_stack([patch.centres[:, 0], np.full(len(patch.edges), y), patch.centres[:, 1]])
+            rows.append(self.wrenches(points, np.tile([0.0, way, 0.0], (len(points), 1))))
+        return np.vstack(rows)
+
+    @cached_property
+    def pushing(self) -> Array:
+        """Wrenches (K, 6) of unit forces of the parallels, then of the work stop."""
+        points = [
+            (x, y, 0.0)
+            for patch, y in ((self.fixed, 0.0), (self.moving, self.opening))
+            for x in patch.patch.ends
+        ]
+        upward = self.wrenches(np.array(points), np.tile([0.0, 0.0, 1.0], (len(points), 1)))
+        ways = np.tile([self.stop_way, 0.0, 0.0], (len(self.stop_points), 1))
+        return np.vstack([upward, self.wrenches(self.stop_points, ways)])
+
+    @cached_property
+    def rubbing(self) -> Array:
+        """Wrenches (C, 16, 6) of unit forces of friction in the cells of both jaws, in each direction."""
+        turns = 2 * pi / DIRECTIONS * np.arange(DIRECTIONS)
+        ways = np.column_stack([np.sin(turns), np.zeros(DIRECTIONS), np.cos(turns)])
+        rows = []
+        for patch, y in ((self.fixed, 0.0), (self.moving, self.opening)):
+            centre = patch.cells.centre
+            points = np.column_stack([centre[:, 0], np.full(len(centre), y), centre[:, 1]])
+            rows.append(self.wrenches(np.repeat(points, DIRECTIONS, axis=0), np.tile(ways, (len(points), 1))))
+        return np.vstack(rows).reshape(-1, DIRECTIONS, 6)
+
+    @cached_property
+    def bearing(self) -> Array:
+        """The friction (C, R) that each cell bears per unit of each edge of pressure."""
+        own, other = (
+            (self.friction * patch.pressure(patch.cells.centre) * patch.cells.area).T
+            for patch in (self.fixed, self.moving)
+        )
+        count = len(own), len(other), own.shape[1], other.shape[1]
+        out = np.zeros((count[0] + count[1], count[2] + count[3]))
+        out[: count[0], : count[2]], out[count[0] :, count[2] :] = own, other
+        return out
+
+    def forces_needed(self, loads: Array) -> list[float | None]:
+        """The least jaw force in N for each of some loads (N, 6) as :meth:`wrenches` has them.
+
+        It is None for a load that no jaw force holds.
+        """
+        motions = MotionProgram(self)
+        return [motions.least_force(load) for load in loads]
+
+
+@define(eq=False)
+class MotionProgram:
+    """The motions of the part that both jaws resist, and which of them a load drives hardest.
+
+    By duality the least jaw force is the largest power of the load on a motion (6,) against which each pressure of the
+    fixed jaw, with the friction that goes with it, does no work, those of the moving jaw no more than 1 for a unit of
+    force, and parallels and stop none. Friction takes in each cell the direction that works most, so that each pressure
+    stands for very many linear conditions. Those are added that the last motion breaks, until it breaks none; loads of
+    one grip share them.
+
+    Parameters
+    ----------
+    grip : of the part.
+    """
+
+    grip: Grip
+    program: LinearProgram = field(init=False)
+    most_work: Array = field(init=False)
+
+    def __attrs_post_init__(self) -> None:
+        free = self.grip.pushing
+        below = np.full(len(free), -np.inf)
+        self.program = LinearProgram.of(free, np.zeros(6), below, np.zeros(len(free)), most=FARTHEST)
+        self.most_work = np.repeat([0.0, 1.0], [len(self.grip.fixed.edges), len(self.grip.moving.edges)])
+
+    def least_force(self, load: Array) -> float | None:
+        """The least jaw force in N that balances a load (6,); None where none does."""
+        size = float(np.abs(load).max())
+        if size == 0.0:
+            return 0.0
+        # Forces balance the load, so that it drives the part against the way they work.
+        driven = -load / size
+        driven[np.abs(driven) < NEGLIGIBLE] = 0.0
+        for _ in range(MOST_TURNS):
+            motion = self.program.with_costs(-driven)
+            if motion is None:
+                break
+            if not self.cut_off(motion):
+                return (
+                    None if np.abs(motion).max() > 0.5 * FARTHEST else max(float(driven @ motion), 0.0) * size
+                )
+        raise WorkholdError(
+            "the jaw force of a load was not found: report it with the part, the vise and the load."
+        )
+
+    def cut_off(self, motion: Array) -> bool:
+        """Adds the conditions that a motion (6,) breaks; whether there are any.
+
+        Forces on the part push it back, so that work is done against the motion by what they do along it.
+        """
+        grip = self.grip
+        along = grip.rubbing @ motion
+        chosen = along.argmax(axis=1)
+        rubbed = grip.rubbing[np.arange(len(chosen)), chosen]
+        forces = grip.pressing + grip.bearing.T @ rubbed
+        work = forces @ motion - self.most_work
+        broken = work > BROKEN * (1.0 + np.abs(forces * motion).sum(axis=1))
+        if broken.any():
+            self.program.add_rows(forces[broken], self.most_work[broken])
+        return bool(broken.any())
+
+
+def is_pressed_all_over(fixed: Patch, moving: Patch) -> bool:
+    """Whether both jaws can press all over what they touch with equal resultants: their kerns meet."""
+    one, other = PressedPatch(fixed), PressedPatch(moving)
+    return hulls_meet(one.centres, other.centres, KERN_SLACK)
+
+
+def least_largest_pressure(fixed: Patch, moving: Patch, force: float) -> float | None:
+    """The least that the largest pressure in MPa can be at a jaw force in N without a load.
+
+    It is None where a jaw touches along lines, whose pressure has no bound, and where the kerns do not meet.
+    """
+    if fixed.is_line or moving.is_line or not is_pressed_all_over(fixed, moving):
+        return None
+    patches = PressedPatch(fixed), PressedPatch(moving)
+    own, other = patches
+    counts, size = (
+        (len(own.edges), len(other.edges)),
+        max(float(one.largest_pressure().max()) for one in patches),
+    )
+    middle = own.integrals[0, 1:] / own.integrals[0, 0]
+    arms = [one.centres - middle for one in patches]
+    span = max(1.0, *(float(np.abs(one).max()) for one in arms))
+    corners = [one.largest_pressure().T / size for one in patches]
+    # Rows: the force of each jaw, the moments of both, and the pressure at each corner; the last column is the most.
+    matrix = np.zeros((4 + sum(map(len, corners)), sum(counts) + 1))
+    matrix[0, : counts[0]] = matrix[1, counts[0] : -1] = 1.0
+    matrix[2:4, : counts[0]], matrix[2:4, counts[0] : -1] = arms[0].T / span, -arms[1].T / span
+    matrix[4 : 4 + len(corners[0]), : counts[0]], matrix[4 + len(corners[0]) :, counts[0] : -1] = corners
+    matrix[4:, -1] = -1.0
+    # The kerns may miss each other by rounding.
+    slack = np.array([0.0, 0.0, *[2 * KERN_SLACK / span] * 2])
+    level = np.array([1.0, 1.0, 0.0, 0.0])
+    below = np.full(len(matrix) - 4, -np.inf)
+    lower, upper = (
+        np.concatenate([level - slack, below]),
+        np.concatenate([level + slack, np.zeros(len(below))]),
+    )
+    least = LinearProgram.of(matrix, np.eye(1, matrix.shape[1], matrix.shape[1] - 1)[0], lower, upper).least()
+    return None if least is None else least * size * force
+
+
+def directed(low: float, high: float, steps: int = 32) -> Array:
+    """Unit vectors (N, 2), and a little longer ones, whose hull holds those of a range of directions in radians.
+
+    One direction is itself. The corners of a range lie on tangents of the circle, at most 0.5 % outside it.
+    """
+    if high <= low:
+        return np.array([[cos(low), sin(low)]])
+    count = max(int(np.ceil((high - low) / (2 * pi / steps))), 1)
+    step = (high - low) / count
+    middles = low + (np.arange(count) + 0.5) * step
+    corners = np.column_stack([np.cos(middles), np.sin(middles)]) / cos(step / 2)
+    if high - low >= 2 * pi:
+        return corners
+    ends = np.array([[cos(low), sin(low)], [cos(high), sin(high)]])
+    return np.vstack([ends, corners])

@@ -1,0 +1,131 @@
+"""Pressure on flat faces that touch: affine on a patch, nowhere negative, its force and moment as exact integrals.
+
+Two flat and stiff faces on an elastic bed press on each other with p = a + b u + c v, u along the jaw and v upward.
+No part of a patch lets go where p is not negative at its corners. Such pressures are a cone, whose edges are those
+that vanish along one side of the convex hull of the corners: every other one is a sum of these. Where the resultants
+of pressures can act is the kern, the hull of where those of the edges do (the middle third of a rectangle's height).
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.geometry.hull import convex_hull
+from workhold.geometry.segment import Point
+from workhold.model.jaw_hold import Patch, Rectangle
+
+__all__ = ["Cells", "PressedPatch", "hulls_meet"]
+
+Array = NDArray[np.float64]
+# Cells of a rectangle along the jaw and upward; of a line, upward.
+CELLS_ALONG, CELLS_UP, CELLS_OF_LINE = 6, 4, 6
+
+
+@frozen(eq=False)
+class Cells:
+    """The cells of a patch, in which friction acts.
+
+    Parameters
+    ----------
+    centre : (C, 2) in mm.
+    area : (C,) in mm², of a line in mm.
+    """
+
+    centre: Array
+    area: Array
+
+
+@frozen(eq=False)
+class PressedPatch:
+    """A patch with the pressures that it can bear."""
+
+    patch: Patch
+
+    @property
+    def rectangles(self) -> tuple[Rectangle, ...]:
+        return self.patch.rectangles
+
+    @cached_property
+    def corners(self) -> list[Point]:
+        """The corners of the hull of the patch; two where it is one upright line."""
+        return convex_hull((x, z) for x0, x1, z0, z1 in self.rectangles for x in (x0, x1) for z in (z0, z1))
+
+    @cached_property
+    def integrals(self) -> Array:
+        """The integrals (3, 3) over the patch of the products of 1, u and v."""
+        total = np.zeros((3, 3))
+        for x0, x1, z0, z1 in self.rectangles:
+            width, height = x1 - x0, z1 - z0
+            area = height if self.patch.is_line else width * height
+            mean = np.array([1.0, (x0 + x1) / 2, (z0 + z1) / 2])
+            total += area * (np.outer(mean, mean) + np.diag([0.0, width**2 / 12, height**2 / 12]))
+        return total
+
+    @cached_property
+    def edges(self) -> Array:
+        """The pressures (R, 3), a, b and c of each, that are the edges of the cone, each with unit force."""
+        corners = self.corners
+        if len(corners) == 2:
+            (_, low), (_, high) = sorted(corners, key=lambda one: one[1])
+            rows = [(-low, 0.0, 1.0), (high, 0.0, -1.0)]
+        else:
+            rows = []
+            for (x, z), (other_x, other_z) in pairwise([*corners, corners[0]]):
+                along, up = other_x - x, other_z - z
+                rows.append((up * x - along * z, -up, along))
+        pressures = np.array(rows)
+        return np.asarray(pressures / (pressures @ self.integrals[0])[:, None])
+
+    @cached_property
+    def centres(self) -> Array:
+        """Where the resultants (R, 2) of these pressures act; their hull is the kern."""
+        return np.asarray((self.edges @ self.integrals)[:, 1:])
+
+    @cached_property
+    def cells(self) -> Cells:
+        centres, areas = list[tuple[float, float]](), list[float]()
+        for x0, x1, z0, z1 in self.rectangles:
+            along, up = (1, CELLS_OF_LINE) if self.patch.is_line else (CELLS_ALONG, CELLS_UP)
+            width, height = (x1 - x0) / along, (z1 - z0) / up
+            area = height if self.patch.is_line else width * height
+            for k in range(along):
+                for m in range(up):
+                    centres.append((x0 + (k + 0.5) * width, z0 + (m + 0.5) * height))
+                    areas.append(area)
+        return Cells(np.array(centres), np.array(areas))
+
+    def pressure(self, points: Array) -> Array:
+        """The pressures (R, N) of the edges at points (N, 2), none below 0."""
+        return np.maximum(self.edges @ np.column_stack([np.ones(len(points)), points]).T, 0.0)
+
+    def largest_pressure(self) -> Array:
+        """The pressures (R, K) of the edges at the corners of the hull."""
+        return self.pressure(np.array(self.corners))
+
+
+def hulls_meet(one: Array, other: Array, slack: float) -> bool:
+    """Whether the convex hulls of two sets of points (N, 2) and (M, 2) meet, or miss each other by ``slack`` in mm.
+
+    Two convex sets that miss each other lie apart in the direction of a normal of one of their sides; of sets
+    without an area also along these, or from one point to the other.
+
+    >>> hulls_meet(np.array([[0, 0], [2, 0], [0, 2]]), np.array([[1.5, 1.5], [1.5, 3]]), 1e-9)
+    False
+    """
+    hulls = [np.array(convex_hull(map(tuple, points.tolist()))) for points in (one, other)]
+    directions = [hulls[1][0] - hulls[0][0]]
+    for corners in hulls:
+        sides = np.roll(corners, -1, axis=0) - corners
+        directions += [way for side in sides for way in (side, np.array([-side[1], side[0]]))]
+    for way in directions:
+        size = np.hypot(*way)
+        if size > 0.0:
+            mine, theirs = (corners @ (way / size) for corners in hulls)
+            if max(theirs.min() - mine.max(), mine.min() - theirs.max()) > slack:
+                return False
+    return True

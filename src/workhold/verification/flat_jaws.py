@@ -1,0 +1,478 @@
+"""What flat jaws hold, derived anew: poses, what each jaw touches, the rules, and the forces that loads ask for.
+
+A fixture is given by a pose, parallels and a stop. What follows from these is derived from the loops of the part and
+compared with what is written: lengths to 1e-6 mm, forces to a thousandth. The forces come from another method
+(``verification.jaw_forces``), the resultants of pressures from second moments, and whether hulls meet from the hull of
+all differences.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from math import cos, hypot, inf, pi, radians, sin
+
+import numpy as np
+from attrs import field, frozen
+from numpy.typing import NDArray
+
+from workhold.fixels.jaw_pair import JawPair
+from workhold.geometry.segment import Arc, Line, Segment
+from workhold.model.fixture import Fixture
+from workhold.model.friction import friction_of
+from workhold.model.jaw_hold import JawHold, Patch, Rectangle
+from workhold.model.query import Query
+from workhold.model.requirements import Load
+from workhold.verification.jaw_forces import (
+    HeldBetweenJaws,
+    UnsettledError,
+    hull_of,
+    pressures_of,
+    resultants_of,
+)
+from workhold.verification.tolerances import AGREEMENT
+from workhold.verification.tool_walk import Element, walk_of
+
+__all__ = ["JawJudge"]
+
+# mm. What lies this near to a jaw lies on it.
+ON_JAW = 1e-6
+# mm. Two hulls miss each other if they do so by more; by less than the second either may be said.
+MISSED, EITHER = 1e-7, 1e-6
+# Parts of a force, and N, by which it may differ; and by how much the worst of a range of directions may be above.
+FORCE_PART, FORCE_HAIR, RANGE_PART = 1e-3, 1e-3, 0.01
+# Directions of a range that are looked at.
+DIRECTIONS = 64
+UNKNOWN_HEIGHT = 1.0
+# mm. How far outward jaws reach whose thickness nobody gives.
+ENDLESS = 1e4
+
+
+@frozen
+class Lies:
+    """A stretch or a point of the part on a jaw: from x to x, the heights at which it touches, the face, or none."""
+
+    low: float
+    high: float
+    bottom: float
+    top: float
+    face: int | None
+
+
+@frozen(eq=False)
+class JawJudge:
+    """Derives the fixtures of a query whose toolkit has flat jaws."""
+
+    query: Query
+    seen: dict[tuple[int, float, str | None], int] = field(factory=dict, init=False)
+
+    @property
+    def jaws(self) -> JawPair:
+        jaws = self.query.toolkit.flat_jaws
+        assert jaws is not None
+        return jaws
+
+    @property
+    def height(self) -> float:
+        known = self.query.part_height
+        return UNKNOWN_HEIGHT if known is None else known
+
+    def faults(self, fixture: Fixture, place: int) -> Iterator[str]:
+        """What is wrong with a fixture in a place of the list, one sentence each, without a full stop."""
+        hold = fixture.hold
+        if hold is None:
+            yield "it is not held by flat jaws"
+            return
+        if not any(abs(hold.parallels - one) <= AGREEMENT for one in self.jaws.parallels):
+            yield f"there are no parallels of {hold.parallels:g} mm"
+            return
+        if hold.stop not in self.jaws.stops:
+            yield f"the work stop is {hold.stop or 'missing'}, and none of those asked for is there"
+            return
+        yield from self.placed_faults(fixture, hold)
+        key = round(fixture.pose.theta_deg * 1e4), round(hold.parallels, 6), hold.stop
+        if (first := self.seen.setdefault(key, place)) != place:
+            yield f"it is the same as fixture {first + 1}"
+
+    def order_faults(self, fixtures: Sequence[Fixture]) -> Iterator[str]:
+        """A fault for a fixture that what comes first puts before the one before it."""
+        rows = [first_of_order(one.hold) for one in fixtures if one.hold is not None]
+        for place, (before, after) in enumerate(pairwise(rows), 2):
+            if after < before:
+                yield f"fixture {place} is better than the one before it: unfit ones, and such as hold less, come last"
+                return
+
+    def placed_faults(self, fixture: Fixture, hold: JawHold) -> Iterator[str]:
+        outline, first = self.query.workpiece.outline_of(self.jaws.role(hold.parallels))
+        segments = [fixture.pose.carry(segment) for segment in outline.segments[: outline.outer_count]]
+        face_of = {number: first + face.number for face in outline.outer_faces for number in face.segments}
+        solid = outline.solid
+        bands = {
+            number: (0.0, self.height) if solid is None else solid.bands[number]
+            for number in range(len(segments))
+        }
+        boxes = np.array([box_of(segment) for segment in segments])
+        (low_x, low_y), (high_x, high_y) = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
+        if abs(low_y) > AGREEMENT or abs(high_y - hold.opening) > AGREEMENT:
+            yield f"the part reaches from y = {low_y:.9g} to {high_y:.9g}, not from 0 to {hold.opening:.9g}"
+            return
+        most = self.jaws.max_opening
+        if most is not None and hold.opening > most + AGREEMENT:
+            yield f"the jaws would open {hold.opening:.9g} mm, and they open {most:g}"
+        top = self.jaws.top(hold.parallels)
+        lies = [self.lying(segments, bands, face_of, level) for level in (0.0, float(high_y))]
+        if len({(round(one.low, 5), round(one.high, 5)) for one in lies[0]}) == 1 and all(
+            one.low == one.high for one in lies[0]
+        ):
+            has_edge = self.has_hull_edge(segments)
+            if has_edge or abs((fixture.pose.theta_deg + 180) % 360 - 180) > AGREEMENT:
+                yield "no straight side of the part's hull lies on the fixed jaw"
+                return
+        known = self.query.part_height is not None
+        gripped = [grip_of(some, top, self.jaws.least_grip if known else 0.0) for some in lies]
+        if top < self.jaws.least_grip or not all(gripped):
+            yield "the jaws do not grip the part high enough"
+            return
+        yield from self.shift_faults(hold, gripped, (float(low_x), float(high_x)))
+        derived = [patch_on(some, self.jaws.width) for some in gripped]
+        for name, mine, theirs in zip(("fixed", "moving"), derived, (hold.fixed, hold.moving), strict=True):
+            if not are_alike(mine.rectangles, theirs.rectangles):
+                yield f"what the {name} jaw touches is {list(mine.rectangles)}, not {list(theirs.rectangles)}"
+            if mine.segments != theirs.segments:
+                yield f"the {name} jaw touches faces {list(mine.segments)}, not {list(theirs.segments)}"
+        asked, touched = self.query.restrictions, {*derived[0].segments, *derived[1].segments}
+        if asked.avoid and not touched.isdisjoint(asked.avoid):
+            yield "a jaw touches a face that is to be avoided"
+        if asked.touch and not set(asked.touch) <= touched:
+            yield "a face that is to be touched is not"
+        theta = fixture.pose.theta_deg
+        if asked.angles and not any(
+            (theta - low + 1e-6) % 360 <= high - low + 2e-6 for low, high in asked.angles
+        ):
+            yield f"the part is turned by {theta:g} degrees, which is not asked for"
+        yield from self.program_faults(fixture, hold)
+        yield from self.grip_faults(fixture, hold, derived[0], derived[1], segments)
+
+    def program_faults(self, fixture: Fixture, hold: JawHold) -> Iterator[str]:
+        """Whether the program's tools keep clear of both jaws: of their sides, and not inside."""
+        program, jaws = self.query.program, self.jaws
+        if program is None:
+            return
+        walk, top, turn = walk_of(program), jaws.top(hold.parallels), radians(-fixture.pose.theta_deg)
+        deep = ENDLESS if jaws.thickness is None else jaws.thickness
+        at = fixture.pose.apply(0.0, 0.0)
+
+        def drawn(x: float, y: float) -> tuple[float, float]:
+            """A place beside the jaws, as the part was drawn."""
+            off = complex(x - float(at[0]), y - float(at[1])) * complex(cos(turn), sin(turn))
+            return off.real, off.imag
+
+        for name, low, high in (("fixed", -deep, 0.0), ("moving", hold.opening, hold.opening + deep)):
+            ring = [drawn(*place) for place in ((0, low), (jaws.width, low), (jaws.width, high), (0, high))]
+            near = [
+                walk.nearest(Element(name, name, start, end, 0.0, top))
+                for start, end in zip(ring, [*ring[1:], ring[0]], strict=True)
+            ]
+            for one in near:
+                if one.high < program.clearance - AGREEMENT:
+                    yield (
+                        f"line {one.line} of the program brings a tool within {max(one.high, 0.0):.6g} mm of the "
+                        f"{name} jaw, and {program.clearance:g} mm are to be kept"
+                    )
+                    return
+            for move in range(len(program.moves)):
+                low_end = min(
+                    (one.low for one in program.tools[int(program.moves.tool[move])].cylinders), default=inf
+                )
+                for x, y, z in (program.moves.start[move], program.moves.end[move]):
+                    seen = fixture.pose.apply(float(x), float(y))
+                    inside = 0 < seen[0] < jaws.width and low < seen[1] < high
+                    if inside and z + low_end <= top:
+                        yield f"line {int(program.moves.line[move])} of the program is in the {name} jaw"
+                        return
+
+    def has_hull_edge(self, segments: Sequence[Segment]) -> bool:
+        """Whether the hull of an outline has a straight piece: by far sides of a fine fan of directions."""
+        points = np.array([point for one in segments for point in samples(one)])
+        hull = np.array(hull_of([(float(x), float(y)) for x, y in points.round(9)]))
+        sides = np.hypot(*(np.roll(hull, -1, axis=0) - hull).T)
+        arcs = [one.radius for one in segments if isinstance(one, Arc)]
+        return bool(sides.max() > 2 * max(arcs, default=0.0) * sin(pi / SAMPLES) + 1e-4)
+
+    def lying(
+        self,
+        segments: Sequence[Segment],
+        bands: dict[int, tuple[float, float] | None],
+        face_of: dict[int, int],
+        level: float,
+    ) -> list[Lies]:
+        """What of an outline lies on a jaw at a y."""
+        out = list[Lies]()
+        ends = list[tuple[float, int]]()
+        for number, one in enumerate(segments):
+            band = bands[number]
+            points = [one.start, one.end]
+            on = [abs(y - level) <= ON_JAW for _, y in points]
+            if isinstance(one, Line) and all(on):
+                if band is not None:
+                    (x0, _), (x1, _) = sorted(points)
+                    out.append(Lies(x0, x1, *band, face_of[number]))
+                continue
+            if isinstance(one, Arc) and one.sign > 0:
+                foot = one.center[0], one.center[1] + (one.radius if level > 0 else -one.radius)
+                if abs(foot[1] - level) <= ON_JAW and abs(one.parameter(foot)) <= one.half_sweep + 1e-9:
+                    if band is not None:
+                        out.append(Lies(foot[0], foot[0], *band, face_of[number]))
+                    continue
+            ends += [(x, number) for (x, _), is_on in zip(points, on, strict=True) if is_on]
+        for x, _ in ends:
+            near = [other for at, other in ends if abs(at - x) <= ON_JAW]
+            if any(one.low - ON_JAW <= x <= one.high + ON_JAW for one in out):
+                continue
+            some = [bands[other] for other in near]
+            if any(band is None for band in some):
+                continue
+            bottom, top = max(band[0] for band in some if band), min(band[1] for band in some if band)
+            out.append(Lies(x, x, bottom, top, None))
+        return out
+
+    def shift_faults(
+        self, hold: JawHold, gripped: Sequence[Sequence[Lies]], ends: tuple[float, float]
+    ) -> Iterator[str]:
+        """Whether the part lies along the jaws where stop or middle say."""
+        jaws = self.jaws
+        if hold.stop == "left":
+            off = ends[0] - jaws.stop_offset
+        elif hold.stop == "right":
+            off = ends[1] - (jaws.width - jaws.stop_offset)
+        else:
+            low = max(min(one.low for one in some) for some in gripped)
+            high = min(max(one.high for one in some) for some in gripped)
+            offs = [(ends[0] + ends[1]) / 2 - jaws.width / 2] if low > high - EITHER else []
+            offs += [(low + high) / 2 - jaws.width / 2] if low <= high + EITHER else []
+            off = min(offs, key=abs)
+        if abs(off) > AGREEMENT:
+            yield f"the part lies {off:.9g} mm along the jaws from where {'the stop' if hold.stop else 'the middle'} is"
+
+    def grip_faults(
+        self, fixture: Fixture, hold: JawHold, fixed: Patch, moving: Patch, segments: Sequence[Segment]
+    ) -> Iterator[str]:
+        """Whether the push clamps, and whether figures are those that follow."""
+        corners = [np.array(pressures_of(patch)[1]) for patch in (fixed, moving)]
+        if apart(*corners) > EITHER:
+            yield "the jaws do not press opposite each other: the part turns away as they close"
+        missed = apart(resultants_of(fixed), resultants_of(moving))
+        if (missed <= MISSED) != hold.full_contact and not -EITHER <= missed <= EITHER:
+            yield f"{'both jaws press' if missed <= 0 else 'a jaw cannot press'} all over what they touch, not as written"
+        is_marked = any(words.startswith("unfit") for words in hold.warnings)
+        if is_marked != (fixed.is_corner or moving.is_corner):
+            yield "it is unfit where a jaw touches corners alone, and nowhere else"
+        for name, value, derived in self.figures(hold, fixed, moving):
+            if abs(value - derived) > AGREEMENT * (1 + abs(derived)):
+                yield f"{name} is {value:.9g} in the file and comes to {derived:.9g}"
+        for key, derived in self.ratios(hold):
+            written = fixture.quality.get(key, derived)
+            if abs(written - derived) > AGREEMENT * (1 + abs(derived)):
+                yield f"{key.replace('_', ' ')} is {written:.9g} in the file and comes to {derived:.9g}"
+        loads = self.query.loads
+        if len(hold.clamp_needed_each) != len(loads):
+            yield f"there are forces for {len(hold.clamp_needed_each)} loads, and {len(loads)} were given"
+            return
+        if not hold.full_contact:
+            if any(need is not None for need in hold.clamp_needed_each):
+                yield "loads are held by jaws that cannot press all over"
+            return
+        points, way = self.stop_points(hold, segments)
+        friction = friction_of(self.query.friction, "jaw")
+        held = HeldBetweenJaws.of(fixed, moving, hold.opening, friction, points, way)
+        for number, (load, need) in enumerate(zip(loads, hold.clamp_needed_each, strict=True), 1):
+            yield from self.force_faults(number, load, need, fixture, held)
+        stated = fixture.quality.get("clamp_needed")
+        worst = [need for need in hold.clamp_needed_each if need is not None]
+        if len(worst) == len(loads) > 0 and stated is not None and abs(stated - max(worst)) > FORCE_HAIR:
+            yield f"the jaw force needed is {stated:.9g} N in the file, and the worst load asks for {max(worst):.9g} N"
+
+    def figures(self, hold: JawHold, fixed: Patch, moving: Patch) -> Iterator[tuple[str, float, float]]:
+        """Figures by name as written and as derived."""
+        tops = [min(one[3] for one in patch.rectangles) for patch in (fixed, moving)]
+        feet = [max(one[2] for one in patch.rectangles) for patch in (fixed, moving)]
+        yield "the grip", hold.grip, max(min(tops) - max(feet), 0.0)
+        areas = [
+            sum((x1 - x0) * (z1 - z0) for x0, x1, z0, z1 in patch.rectangles) for patch in (fixed, moving)
+        ]
+        yield "the contact area", hold.contact_area, min(areas)
+        top = self.jaws.top(hold.parallels)
+        if hold.above is not None and top < inf:
+            yield "what stands above the jaws", hold.above, max(self.height - top, 0.0)
+
+    def ratios(self, hold: JawHold) -> Iterator[tuple[str, float]]:
+        """Figures by key that follow from what else is written."""
+        yield "grip", hold.grip
+        yield "contact_area", hold.contact_area
+        needs = [need for need in hold.clamp_needed_each if need is not None]
+        if not needs or len(needs) < len(hold.clamp_needed_each) or max(needs) <= 0:
+            return
+        if self.jaws.max_force is not None:
+            yield "slip_reserve", self.jaws.max_force / max(needs)
+        if self.query.jaw_force is not None:
+            yield "safety_reached", self.query.safety_factor * self.query.jaw_force / max(needs)
+
+    def stop_points(
+        self, hold: JawHold, segments: Sequence[Segment]
+    ) -> tuple[list[tuple[float, float, float]], float]:
+        """Where the work stop may push, and which way along x."""
+        if hold.stop is None:
+            return [], 1.0
+        way = 1.0 if hold.stop == "left" else -1.0
+        reached = [(way * x, x, y) for one in segments for x, y in extremes(one)]
+        least = min(one[0] for one in reached)
+        there = [(x, y) for along, x, y in reached if along <= least + ON_JAW]
+        high = min(self.jaws.top(hold.parallels), self.height)
+        ends = min(there, key=lambda one: one[1]), max(there, key=lambda one: one[1])
+        return [(x, y, z) for x, y in ends for z in (0.0, high)], way
+
+    def force_faults(
+        self, number: int, load: Load, need: float | None, fixture: Fixture, held: HeldBetweenJaws
+    ) -> Iterator[str]:
+        """Whether a load asks for the jaw force that is written."""
+        low, high = load.directions
+        turns = (
+            [low]
+            if high <= low or not load.force
+            else [low + (high - low) * k / DIRECTIONS for k in range(DIRECTIONS + 1)]
+        )
+        height = (
+            self.height / 2
+            if self.query.part_height is None
+            else self.height
+            if load.height is None
+            else load.height
+        )
+        factor, worst = self.query.safety_factor, 0.0
+        try:
+            for x, y in load.points or ((0.0, 0.0),):
+                at = fixture.pose.apply(x, y)
+                for turn in turns:
+                    way = radians(turn + fixture.pose.theta_deg)
+                    force = (
+                        load.force * cos(way) * factor,
+                        load.force * sin(way) * factor,
+                        load.upward * factor,
+                    )
+                    one = held.force_needed((float(at[0]), float(at[1]), height), force, load.moment * factor)
+                    if one is None:
+                        if need is not None:
+                            yield f"load {number} is held by no jaw force, and {need:.9g} N are written"
+                        return
+                    worst = max(worst, one)
+        except (UnsettledError, np.linalg.LinAlgError):
+            return
+        if need is None:
+            yield f"load {number} is held at {worst:.9g} N, and none is written"
+            return
+        spare = FORCE_HAIR + FORCE_PART * worst
+        above = spare + (RANGE_PART * worst if len(turns) > 1 else 0.0)
+        if not -spare <= need - worst <= above:
+            yield f"load {number} asks for {worst:.9g} N, and {need:.9g} N are written"
+
+
+SAMPLES = 256
+
+
+def first_of_order(hold: JawHold) -> tuple[bool, bool, bool]:
+    """Whether a jaw touches corners alone, whether one cannot press all over, and whether the vise is too weak."""
+    needs = [need for need in hold.clamp_needed_each if need is not None]
+    strong = hold.max_force is None or not needs or max(needs) <= hold.max_force
+    return (
+        not (hold.fixed.segments and hold.moving.segments),
+        not hold.full_contact,
+        len(needs) < len(hold.clamp_needed_each) or not strong,
+    )
+
+
+def samples(segment: Segment) -> list[tuple[float, float]]:
+    """Points along a segment, close together on an arc."""
+    if isinstance(segment, Line):
+        return [segment.start, segment.end]
+    half = segment.half_extent
+    return [segment.at(half * (2 * k / SAMPLES - 1)) for k in range(SAMPLES + 1)]
+
+
+def extremes(segment: Segment) -> list[tuple[float, float]]:
+    """The ends of a segment, and of an arc the points farthest along the axes."""
+    points = [segment.start, segment.end]
+    if isinstance(segment, Arc):
+        (x, y), radius = segment.center, segment.radius
+        for a, b in ((1, 0), (-1, 0), (0, 1), (0, -1)):
+            point = x + a * radius, y + b * radius
+            if abs(segment.parameter(point)) <= segment.half_sweep + 1e-9:
+                points.append(point)
+    return points
+
+
+def box_of(segment: Segment) -> tuple[float, float, float, float]:
+    """Least x and y, greatest x and y."""
+    x, y = zip(*extremes(segment), strict=True)
+    return min(x), min(y), max(x), max(y)
+
+
+def grip_of(lies: Sequence[Lies], top: float, least: float) -> list[Lies]:
+    """What of a part a jaw grips: stretches, or else points."""
+    cut = [Lies(one.low, one.high, max(one.bottom, 0.0), min(one.top, top), one.face) for one in lies]
+    high = [one for one in cut if one.top - one.bottom >= least - 1e-9]
+    return [one for one in high if one.high > one.low] or high
+
+
+def patch_on(lies: Sequence[Lies], width: float) -> Patch:
+    """What lies on a jaw of a width, neighbours of one band together."""
+    rows = list[list[float]]()
+    for one in sorted(lies, key=lambda one: (one.low, one.bottom, one.top)):
+        low, high = max(one.low, 0.0), min(one.high, width)
+        if low > high or (one.high > one.low and low == high):
+            continue
+        last = rows[-1] if rows else None
+        if (
+            last is not None
+            and one.high > one.low
+            and last[2:] == [one.bottom, one.top]
+            and low - last[1] <= ON_JAW
+        ):
+            last[1] = max(last[1], high)
+        else:
+            rows.append([low, high, one.bottom, one.top])
+    faces = tuple(sorted({one.face for one in lies if one.face is not None}))
+    return Patch(tuple((a, b, c, d) for a, b, c, d in rows), faces, not faces)
+
+
+def are_alike(mine: Sequence[Rectangle], theirs: Sequence[Rectangle]) -> bool:
+    return len(mine) == len(theirs) and all(
+        abs(a - b) <= AGREEMENT
+        for one, other in zip(sorted(mine), sorted(theirs), strict=True)
+        for a, b in zip(one, other, strict=True)
+    )
+
+
+def apart(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
+    """How far two hulls of points (N, 2) and (M, 2) are apart; below 0 how deep they overlap.
+
+    It is how far the origin lies outside the hull of all differences.
+    """
+    differences = [(float(x), float(y)) for x, y in (one[:, None] - other[None]).reshape(-1, 2).round(12)]
+    hull = hull_of(differences)
+    if len(hull) > 2:
+        depth = inf
+        for (x, y), (ahead_x, ahead_y) in zip(hull, [*hull[1:], hull[0]], strict=True):
+            size = hypot(ahead_x - x, ahead_y - y)
+            depth = min(depth, (-(ahead_x - x) * y + (ahead_y - y) * x) / size)
+        if depth >= 0:
+            return -depth
+    ends = hull if len(hull) > 1 else [hull[0], hull[0]]
+    return min(distance(p, q) for p, q in zip(ends, [*ends[1:], ends[0]], strict=True))
+
+
+def distance(p: tuple[float, float], q: tuple[float, float]) -> float:
+    """The distance of the origin from a straight piece."""
+    dx, dy = q[0] - p[0], q[1] - p[1]
+    square = dx * dx + dy * dy
+    share = 0.0 if square == 0 else min(max(-(p[0] * dx + p[1] * dy) / square, 0.0), 1.0)
+    return hypot(p[0] + share * dx, p[1] + share * dy)

@@ -1,0 +1,266 @@
+"""The jaw force that a load asks for between two flat jaws, by another way than the search's.
+
+A jaw's pressures are sums of a few with unit force, and its friction is a sum of what each of them lets its cells bear.
+So the wrenches of a jaw with unit force are a convex set, of which a motion of the part (a twist) finds the point that
+works most against it. The least force is found by such points alone: a linear program in six equations to which a
+point is added for the prices of the last one, until none helps (column generation). It is solved by the revised
+simplex method with bases of six columns. Nothing of the search's program is used.
+
+Reference: G. B. Dantzig, P. Wolfe, *Decomposition principle for linear programs*, Operations Research 8 (1960).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import cos, pi, sin
+
+import numpy as np
+from attrs import field, frozen
+from numpy.typing import NDArray
+
+from workhold.model.jaw_hold import Patch, Rectangle
+
+__all__ = ["HeldBetweenJaws", "UnsettledError", "pressures_of", "resultants_of"]
+
+Array = NDArray[np.float64]
+# Cells of a rectangle, and of a line, and directions of friction: part of what is claimed.
+CELLS, CELLS_OF_LINE, WAYS = (6, 4), 6, 16
+# A twist that gains less than this, of loads of size 1, gains nothing; how large the side is moved so that no step of
+# the method stands still; and how many steps there are at most.
+GAIN, MOVED, MOST_STEPS = 1e-9, 1e-10, 4000
+# A length in mm by which moments are divided.
+LENGTH = 50.0
+
+
+class UnsettledError(Exception):
+    """The method came to no end."""
+
+
+def hull_of(points: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    """The corners of the convex hull counter-clockwise, by wrapping."""
+    left = sorted(set(points))
+    if len(left) < 3:
+        return left
+    out, at = [left[0]], left[0]
+    while True:
+        ahead = left[0] if left[0] != at else left[1]
+        for one in left:
+            turn = (ahead[0] - at[0]) * (one[1] - at[1]) - (ahead[1] - at[1]) * (one[0] - at[0])
+            far = (one[0] - at[0]) ** 2 + (one[1] - at[1]) ** 2 > (ahead[0] - at[0]) ** 2 + (
+                ahead[1] - at[1]
+            ) ** 2
+            if one != at and (turn < 0 or (turn == 0 and far)):
+                ahead = one
+        if ahead == out[0]:
+            return out
+        out.append(ahead)
+        at = ahead
+
+
+def moments_of(rectangles: Sequence[Rectangle]) -> tuple[float, Array, Array]:
+    """The area of rectangles, its centre (2,), and its second moments (2, 2) about that; of lines those of lengths."""
+    line = all(x0 == x1 for x0, x1, _, _ in rectangles)
+    areas = np.array([(z1 - z0) * (1.0 if line else x1 - x0) for x0, x1, z0, z1 in rectangles])
+    centres = np.array([((x0 + x1) / 2, (z0 + z1) / 2) for x0, x1, z0, z1 in rectangles])
+    sizes = np.array([(x1 - x0, z1 - z0) for x0, x1, z0, z1 in rectangles])
+    area = float(areas.sum())
+    centre = areas @ centres / area
+    off = centres - centre
+    second = np.einsum("k,ki,kj->ij", areas, off, off) + np.diag(areas @ sizes**2 / 12)
+    return area, centre, second
+
+
+def pressures_of(patch: Patch) -> tuple[Array, list[tuple[float, float]]]:
+    """Pressures (R, 3) of unit force, p = (1, x, z) . row, each of which vanishes along one side of the hull.
+
+    The second are the hull's corners.
+    """
+    area, centre, _ = moments_of(patch.rectangles)
+    corners = hull_of([(x, z) for x0, x1, z0, z1 in patch.rectangles for x in (x0, x1) for z in (z0, z1)])
+    rows = []
+    if len(corners) == 2:
+        sides = [((0.0, 1.0), corners[0][1]), ((0.0, -1.0), -corners[1][1])]
+        centre = np.array([corners[0][0], centre[1]])
+    else:
+        sides = []
+        for (x, z), (other_x, other_z) in zip(corners, [*corners[1:], corners[0]], strict=True):
+            inward = np.array([z - other_z, other_x - x]) / np.hypot(other_x - x, other_z - z)
+            sides.append(((float(inward[0]), float(inward[1])), float(inward @ (x, z))))
+    for normal, level in sides:
+        # p rises from the side as the distance does; its mean is what it is at the centre.
+        mean = float(np.dot(normal, centre)) - level
+        rows.append(np.array([-level, *normal]) / (mean * area))
+    return np.array(rows), corners
+
+
+def resultants_of(patch: Patch) -> Array:
+    """Where the resultants (R, 2) of these pressures act: from the centre on, the second moments times the slope."""
+    pressures, _ = pressures_of(patch)
+    _, centre, second = moments_of(patch.rectangles)
+    return np.asarray(centre + pressures[:, 1:] @ second)
+
+
+@frozen(eq=False)
+class PressingJaw:
+    """A jaw at y in mm that presses along ``way``, with the cells of its patch.
+
+    Parameters
+    ----------
+    pressing : (R, 6) wrenches of its pressures.
+    rubbing : (C, 16, 6) wrenches of unit friction of its cells.
+    bearing : (R, C) the friction that each pressure lets each cell bear.
+    """
+
+    pressing: Array
+    rubbing: Array
+    bearing: Array
+
+    @classmethod
+    def of(cls, patch: Patch, y: float, way: float, friction: float) -> PressingJaw:
+        pressures, _ = pressures_of(patch)
+        acting = resultants_of(patch)
+        pressing = wrench(
+            np.column_stack([acting[:, 0], np.full(len(acting), y), acting[:, 1]]), (0.0, way, 0.0)
+        )
+        line = all(x0 == x1 for x0, x1, _, _ in patch.rectangles)
+        points, areas = list[tuple[float, float, float]](), list[float]()
+        for x0, x1, z0, z1 in patch.rectangles:
+            across, up = (1, CELLS_OF_LINE) if line else CELLS
+            for j in range(up):
+                for i in range(across):
+                    points.append(
+                        (
+                            x0 + (2 * i + 1) * (x1 - x0) / (2 * across),
+                            y,
+                            z0 + (2 * j + 1) * (z1 - z0) / (2 * up),
+                        )
+                    )
+                    areas.append((z1 - z0) / up * (1.0 if line else (x1 - x0) / across))
+        at = np.array(points)
+        turns = [2 * pi * k / WAYS for k in range(WAYS)]
+        rubbing = np.stack([wrench(at, (cos(turn), 0.0, sin(turn))) for turn in turns], axis=1)
+        local = pressures @ np.column_stack([np.ones(len(at)), at[:, 0], at[:, 2]]).T
+        return cls(pressing, rubbing, friction * np.maximum(local, 0.0) * np.array(areas))
+
+    def best(self, twist: Array) -> tuple[float, Array]:
+        """The wrench with unit force that works most with a twist (6,), and its work."""
+        works = self.rubbing @ twist
+        chosen = works.argmax(axis=1)
+        friction = self.bearing @ np.take_along_axis(works, chosen[:, None], axis=1)[:, 0]
+        total = self.pressing @ twist + friction
+        row = int(total.argmax())
+        rubbed = self.rubbing[np.arange(len(chosen)), chosen]
+        return float(total[row]), self.pressing[row] + self.bearing[row] @ rubbed
+
+
+def wrench(points: Array, force: tuple[float, float, float]) -> Array:
+    """Wrenches (N, 6) of a force at points (N, 3)."""
+    forces = np.tile(force, (len(points), 1))
+    x, y, z = points.T
+    fx, fy, fz = forces.T
+    return np.column_stack(
+        [forces, (y * fz - z * fy) / LENGTH, (z * fx - x * fz) / LENGTH, (x * fy - y * fx) / LENGTH]
+    )
+
+
+@frozen(eq=False)
+class HeldBetweenJaws:
+    """A part between two jaws, on parallels and perhaps against a stop.
+
+    Parameters
+    ----------
+    fixed, moving : the jaws.
+    free : (K, 6) wrenches of unit forces that cost nothing: of parallels and the stop.
+    """
+
+    fixed: PressingJaw
+    moving: PressingJaw
+    free: Array
+    side: Array = field(init=False)
+
+    @side.default
+    def small_side(self) -> Array:
+        """A small side (6,) without any symmetry."""
+        return MOVED * np.array([0.61803399, 0.41421356, 0.73205081, 0.23606798, 0.64575131, 0.31662479])
+
+    @classmethod
+    def of(
+        cls,
+        fixed: Patch,
+        moving: Patch,
+        opening: float,
+        friction: float,
+        stop: Sequence[tuple[float, float, float]],
+        stop_way: float,
+    ) -> HeldBetweenJaws:
+        feet = [
+            (end, y, 0.0)
+            for patch, y in ((fixed, 0.0), (moving, opening))
+            for end in (min(one[0] for one in patch.rectangles), max(one[1] for one in patch.rectangles))
+        ]
+        free = wrench(np.array(feet), (0.0, 0.0, 1.0))
+        if stop:
+            free = np.vstack([free, wrench(np.array(stop), (stop_way, 0.0, 0.0))])
+        return cls(
+            PressingJaw.of(fixed, 0.0, 1.0, friction), PressingJaw.of(moving, opening, -1.0, friction), free
+        )
+
+    def force_needed(
+        self, point: tuple[float, float, float], force: tuple[float, float, float], moment: float
+    ) -> float | None:
+        """The least jaw force in N for a force at a point and a moment about z; None where none is enough.
+
+        Raises
+        ------
+        UnsettledError
+            Where the method comes to no end.
+        """
+        load = wrench(np.array([point]), force)[0]
+        load[5] += moment / LENGTH
+        size = float(np.abs(load).max())
+        if size == 0.0:
+            return 0.0
+        least = self.least(-load / size + self.side)
+        return None if least is None else max(least, 0.0) * size
+
+    def least(self, side: Array) -> float | None:
+        """The least cost of forces whose wrenches sum to a side (6,)."""
+        # The first basis stands for what is not balanced yet.
+        columns = np.diag(np.where(side < 0, -1.0, 1.0))
+        missing = np.ones(6, np.bool_)
+        costs = np.zeros(6)
+        for is_first in (True, False):
+            for _ in range(MOST_STEPS):
+                inverse = np.linalg.inv(columns)
+                amount = inverse @ side
+                prices = (np.where(missing, 1.0, 0.0) if is_first else costs) @ inverse
+                gain, column, cost = self.entering(prices, is_first)
+                if gain <= GAIN:
+                    break
+                change = inverse @ column
+                # What is missing stays so, once it is nothing.
+                at_rest = missing & (np.abs(change) > 1e-11) if not is_first else np.zeros(6, np.bool_)
+                ratios = np.full(6, np.inf)
+                down = change > 1e-11
+                ratios[down] = np.maximum(amount[down], 0.0) / change[down]
+                ratios[at_rest] = 0.0
+                if not np.isfinite(ratios).any():
+                    raise UnsettledError
+                leaving = int(ratios.argmin())
+                columns[:, leaving], costs[leaving], missing[leaving] = column, cost, False
+            else:
+                raise UnsettledError
+            if is_first and np.where(missing, amount, 0.0).sum() > 10 * MOVED:
+                return None
+        return float(costs @ amount)
+
+    def entering(self, prices: Array, is_first: bool) -> tuple[float, Array, float]:
+        """What gains most at some prices (6,): the gain, its wrench and its cost."""
+        found = []
+        for jaw, cost in ((self.fixed, 0.0), (self.moving, 0.0 if is_first else 1.0)):
+            work, best = jaw.best(prices)
+            found.append((work - cost, best, 0.0 if jaw is self.fixed else 1.0))
+        works = self.free @ prices
+        number = int(works.argmax())
+        found.append((float(works[number]), self.free[number], 0.0))
+        return max(found, key=lambda one: one[0])
