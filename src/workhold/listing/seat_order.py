@@ -38,9 +38,11 @@ import numpy as np
 from attrs import evolve
 from numpy.typing import NDArray
 
+from workhold.contact.features import meeting_ends
 from workhold.contact.problem import QUARTERS, ROUNDINGS, Problem
 from workhold.conventions import SAME_PLACE, SAME_POSE, SQUARE_TILT
-from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y
+from workhold.geometry.symmetry import rotated
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
 from workhold.kernels.contact import record
 from workhold.kernels.contact.quality import LOAD_LENGTH, figures
 from workhold.kernels.contact.seats import numbers_of_seats
@@ -254,9 +256,11 @@ def keys_bounding(
 ) -> OrderKeys:
     """Keys that no fixture has less than whose locators touch as those of records (N, 19) do.
 
-    Places may be ``off`` by so many mm (N,); ``pairs`` (N, 3) are bounds of the pairs of clamps, None where
-    they are not known.
+    A contact at a joint may be listed on either face; what is less counts. Places may be ``off`` by so many mm
+    (N,); ``pairs`` (N, 3) are bounds of the pairs of clamps, None where they are not known.
     """
+    number, records = on_each_face(records, problem)
+    off, pairs = off[number], None if pairs is None else pairs[number]
     quality = best_figures(records, off, problem, query, pairs)
     theta = seen_angles(records, problem)
     error = (
@@ -265,7 +269,33 @@ def keys_bounding(
         else None
     )
     keys = keys_of(quality, query, error, angle_classes(theta, ANGLE))
-    return keys.unknown_where(np.isnan(quality[:, LOCATION_ERROR]))
+    return keys.unknown_where(np.isnan(quality[:, LOCATION_ERROR])).least_of(number)
+
+
+def on_each_face(records: Array, problem: Problem) -> tuple[IntArray, Array]:
+    """Which contacts (N, 19) may be listed on which faces: numbers (M,) in order, and contacts (M, 19)."""
+    ends = ends_of(problem.rows[slice(*problem.standing)])
+    # A feature shorter than that has others beside it that do not begin where it ends.
+    one, other = meeting_ends(ends.reshape(-1, 2), 4.0 * NEAR_END)
+    points, numbers = candidates_of(records, problem).point, np.arange(len(records))
+    for k in range(LOCATORS):
+        feature = records[:, record.FEATURES + k].astype(np.int64)
+        beside = np.abs(points[numbers, k, None] - ends[feature]).max(axis=2) <= NEAR_END
+        near = np.flatnonzero(beside.any(axis=1))
+        place, joint = np.nonzero((feature[near, None] == one // 2) & beside[near][:, one % 2])
+        more = records[near[place]]
+        more[:, record.FEATURES + k] = other[joint] // 2
+        records, numbers = np.concatenate([records, more]), np.concatenate([numbers, numbers[near[place]]])
+    order = np.argsort(numbers, kind="stable")
+    return numbers[order], records[order]
+
+
+def ends_of(rows: Array) -> Array:
+    """The low and the high end (F, 2, 2) of features (F, 12)."""
+    half, axis = rows[:, HALF_EXTENT, None] * np.array([-1.0, 1.0]), rows[:, None, AXIS_X : AXIS_Y + 1]
+    turned = np.stack(rotated(axis[..., 0], axis[..., 1], half), axis=-1) * rows[:, None, None, RADIUS]
+    is_arc = rows[:, IS_ARC, None, None] != 0.0
+    return np.asarray(rows[:, None, X : Y + 1] + np.where(is_arc, turned, axis * half[..., None]))
 
 
 def seen_angles(records: Array, problem: Problem) -> Array:
@@ -330,12 +360,15 @@ def best_figures(
     rows = problem.rows[c.feature[:, :LOCATORS]]
     curved = (1.0 / np.where(rows[..., IS_ARC] != 0.0, rows[..., RADIUS], inf)).max(axis=1, initial=0.0)
     place = 4.0 * SAME_PLACE + 16.0 * off
+    # Beside a joint it may be off the feature that goes on there by as much as it is from it.
+    nearest = np.abs(ends).min(axis=1, initial=inf)
+    place = place + np.where(nearest <= NEAR_END, nearest, 0.0)
     share = SHARE + 8.0 * norm * place * (1.0 / touched.length + curved)
-    known = (share < MOST_SHARE) & (ends.min(axis=1, initial=inf) > NEAR_END) & (place < NEAR_END)
+    known = (share < MOST_SHARE) & (place < 2.0 * NEAR_END)
     error = out[:, LOCATION_ERROR] * (1.0 - share)
-    nearest, edge = (np.min(values, axis=1, initial=inf) + place for values in (ends, edges))
+    end, edge = (np.min(values, axis=1, initial=inf) + place for values in (ends, edges))
     out = best_possible(len(records), query)
-    out[:, END_DISTANCE], out[:, EDGE_DISTANCE] = nearest, np.minimum(edge, touched.length)
+    out[:, END_DISTANCE], out[:, EDGE_DISTANCE] = end, np.minimum(edge, touched.length)
     tilt = tilts(seen_angles(records, problem), main_direction(problem.workpiece))
     out[:, TILT] = np.where(tilt < SQUARE_TILT + ANGLE, 0.0, tilt - ANGLE)
     out[:, SMALLEST_FACE] = face_sizes(problem.workpiece).take(faces).min(axis=1, initial=inf)

@@ -45,6 +45,7 @@ from workhold.search.error_limits import (
     ErrorLimit,
     LocatorSpots,
     can_limit_errors,
+    first_limit,
     is_enough,
     next_limit,
     precision_of,
@@ -255,7 +256,7 @@ def best_answer(
         else [Problem.of(evolve(query, toolkit=way)) for way in query.toolkit.ways]
     )
     spots = [LocatorSpots.of(problem) for problem in problems[: 1 if is_paired else None]]
-    most, number = min(one.first for one in spots), 0
+    most, number = first_limit(spots, query), 0
     search_up_to = paired_up_to if is_paired else ways_up_to
     while most < inf:
         share, number = stage(progress, 1.0 - 0.5**number, 1.0 - 0.5 ** (number + 1)), number + 1

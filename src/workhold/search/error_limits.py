@@ -50,6 +50,7 @@ __all__ = [
     "ErrorLimit",
     "LocatorSpots",
     "can_limit_errors",
+    "first_limit",
     "is_enough",
     "keys_beyond",
     "next_limit",
@@ -70,8 +71,9 @@ BESIDE = 0.1
 # Directions over half a turn, and points of the silhouette, in which movements are looked at.
 DIRECTIONS, OUTERMOST = 8, 8
 # The first limit is so many times the least error of any three contacts, and the next so many times the last
-# one as long as too few fixtures are found. After so many there is none.
-FIRST_TIMES, NEXT_TIMES, MOST_LIMITS = 1.1, 1.3, 9
+# one as long as too few fixtures are found. After so many there is none. The contacts of two clamps wait
+# together in memory, and grow with the tenth power of the limit. So their limits grow slowly.
+OF_ONE, OF_TWO = (1.1, 1.3, 9), (0.9, 1.1, 25)
 IN_BORE = next(one.times for one in FACTORS if one.key == "dowel_in_bore")
 # Limits between two among which the next is chosen.
 NEARER = 40
@@ -154,9 +156,9 @@ class LocatorSpots:
         return near, counts
 
     @property
-    def first(self) -> float:
-        """The limit to begin with, in mm."""
-        return FIRST_TIMES * float(least_middle_error(self.spots, self.roots, self.precision))
+    def least(self) -> float:
+        """The least effective error in mm of three contacts in the middles of the coarsest spots."""
+        return float(least_middle_error(self.spots, self.roots, self.precision))
 
 
 def precision_of(problem: Problem) -> Precision:
@@ -310,6 +312,16 @@ def keys_beyond(most: float, query: Query) -> OrderKeys:
     return keys_of(quality, query, np.full(len(rows), most), np.array([place for place, _ in rows]))
 
 
+def first_limit(spots: Sequence[LocatorSpots], query: Query) -> float:
+    """The limit in mm to begin with, given the spots of each way of the toolkit."""
+    return growth_of(query)[0] * min(one.least for one in spots)
+
+
+def growth_of(query: Query) -> tuple[float, float, int]:
+    """The first limit and each next one, relative to the one before, and how many there are."""
+    return OF_ONE if query.toolkit.travels == 1 else OF_TWO
+
+
 def is_enough(most: float, kept: OrderKeys, query: Query) -> bool:
     """Whether nothing beyond a limit in mm is among the best, given the keys of what was found up to it."""
     if most == inf:
@@ -322,13 +334,14 @@ def next_limit(most: float, kept: OrderKeys, query: Query, number: int) -> float
     """The limit in mm after one that was not enough, the so-manieth, given the keys of what it found."""
     known = kept.last_fine_error(query.best or 0)
     if known is None:
-        return inf if number >= MOST_LIMITS else NEXT_TIMES * most
+        _, times, limits = growth_of(query)
+        return inf if number >= limits else times * most
     # Of the limits up to where all others surely have a step more, the least that will be enough.
     last = A_STEP * known
     if last <= most:
         return inf
-    limits = np.linspace(most, last, NEARER + 1)[1:].tolist()
-    return next((limit for limit in limits if is_enough(limit, kept, query)), last)
+    nearer = np.linspace(most, last, NEARER + 1)[1:].tolist()
+    return next((limit for limit in nearer if is_enough(limit, kept, query)), last)
 
 
 def factor(key: str | None) -> float:
