@@ -14,7 +14,7 @@ from workhold import OpeningVise, Plate, Query, Result, Tolerance, Vise, Workpie
 from workhold.contact.problem import Problem
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.hull import convex_hull
-from workhold.kernels.base.feature import IS_ARC, X, Y
+from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, X, Y
 from workhold.listing.bounds import preferred_angles
 from workhold.listing.canonical_form import listed_once
 from workhold.listing.collector import Needed, listed_form
@@ -214,6 +214,11 @@ def test_spots_join_what_fixtures_touch() -> None:
     ]
     assert shares[0] < shares[1] < shares[2]
     near = spots.limit(spots.least).square
+    # Whole circles count as one stretch, which is joined where any of its arcs is.
+    rows = problem.rows[slice(*problem.standing)]
+    circles = (rows[:, IS_ARC] != 0.0) & (rows[:, HALF_EXTENT] >= np.pi)
+    assert circles.any() and (np.diff(near.starts)[circles] == 1).all()
+    assert (np.diff(near.starts)[~circles & (rows[:, IS_ARC] == 0.0)] > 1).any()
     assert (near.joined == near.joined.T).all()
     marked = np.argwhere(near.triples)
     assert {tuple(row) for row in marked.tolist()} == {tuple(row) for row in marked[:, [2, 0, 1]].tolist()}

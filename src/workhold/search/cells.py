@@ -33,6 +33,8 @@ NAP = 5e-4
 AHEAD = 32
 # Curves are of a cell that they end so near to.
 SLACK = 1e-9
+# Radians, of which there are whole numbers in a turn: curves of neighbouring cells are sought together.
+SECTOR = tau / 64
 
 
 @define(frozen=True)
@@ -67,9 +69,24 @@ def cell_edges(half_turns: int, cells: int) -> NDArray[np.float64]:
 
 def members_of_cell(table: CurveTable, low: float, high: float) -> NDArray[np.int64]:
     """Indices of the curves that exist somewhere in a cell of orientations (or within 1e-9 of it)."""
-    first, last = table.spans
     begin = (low - SLACK) % tau
     end = begin + (high - low) + 2 * SLACK
+    sector = int(begin / SECTOR)
+    if not (sector * SECTOR <= begin and end <= (sector + 1) * SECTOR):
+        return members_between(table.spans, begin, end)
+    # Those of a sector are sought once for all of its cells.
+    if sector not in table.sectors:
+        table.sectors[sector] = members_between(table.spans, sector * SECTOR, (sector + 1) * SECTOR)
+    some = table.sectors[sector]
+    first, last = table.spans
+    return some[members_between((first[some], last[some]), begin, end)]
+
+
+def members_between(
+    spans: tuple[NDArray[np.float64], NDArray[np.float64]], begin: float, end: float
+) -> NDArray[np.int64]:
+    """Which curves, given their spans (N,), exist somewhere from one orientation in [0, 2 pi) to another."""
+    first, last = spans
     # Where the cell runs over a whole turn, or a curve does, the other may be met a turn later.
     there = (first <= end) & (last >= begin)
     return np.flatnonzero(there | (first <= end - tau) | (last >= begin + tau))

@@ -37,6 +37,7 @@ from workhold.kernels.contact.location_bounds import (
     join_near_spots,
     least_middle_error,
 )
+from workhold.kernels.curves.near_spots import NEARLY_WHOLE
 from workhold.listing.ranking import A_STEP, OrderKeys, best_possible, keys_of
 from workhold.model.first_choice import FACTORS
 from workhold.model.quality import LOCATION_ERROR, PENALTY, SMALLEST_FACE, TILT
@@ -65,7 +66,7 @@ SPOTS_ACROSS, MOST_TURN = 32, pi / 8
 # Spots are cut in two so many times at most.
 MOST_CUTS = 3
 # Of more spots no triples are kept, which would take too much memory.
-MOST_TRIPLED = 320
+MOST_TRIPLED = 360
 # Points nearer than this part of L are side by side.
 BESIDE = 0.1
 # Directions over half a turn, and points of the silhouette, in which movements are looked at.
@@ -137,7 +138,10 @@ class LocatorSpots:
                 zip(rows[first:end], precision.gives[first:end].tolist(), strict=True)
             )
         ]
-        starts = np.cumsum([0, *(len(levels[-1]) for levels in cut)])
+        # Nobody asks where on a whole circle a contact is, so all its spots count as one.
+        whole = (rows[first:end, IS_ARC] != 0.0) & (rows[first:end, HALF_EXTENT] > NEARLY_WHOLE)
+        sizes = [1 if is_one else len(levels[-1]) for is_one, levels in zip(whole, cut, strict=True)]
+        starts = np.cumsum([0, *sizes])
         roots = sum(len(levels[0]) for levels in cut)
         return cls(joined_spots(cut, starts), roots, starts, precision)
 
@@ -287,10 +291,13 @@ def joined_spots(cut: Sequence[Sequence[Array]], starts: IntArray) -> Array:
     offsets = (np.cumsum(sizes.ravel()) - sizes.ravel()).reshape(sizes.shape)
     for number, levels in enumerate(cut):
         for k, spots in enumerate(levels):
-            is_last = k == len(levels) - 1
-            first = starts[number] if is_last else offsets[k + 1, number]
-            spots[:, SPOT_COUNT] = 0.0 if is_last else 2.0
-            spots[:, SPOT_FIRST] = first + (1 if is_last else 2) * np.arange(len(spots))
+            if k < len(levels) - 1:
+                spots[:, SPOT_COUNT] = 2.0
+                spots[:, SPOT_FIRST] = offsets[k + 1, number] + 2 * np.arange(len(spots))
+            else:
+                # The spots of a whole circle have one number.
+                last = starts[number + 1] - 1
+                spots[:, SPOT_FIRST] = np.minimum(starts[number] + np.arange(len(spots)), last)
     return np.concatenate([levels[k] for k in range(MOST_CUTS + 1) for levels in cut if k < len(levels)])
 
 
