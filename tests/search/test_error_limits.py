@@ -22,6 +22,7 @@ from workhold.listing.placing import placed
 from workhold.listing.ranking import PER_MM, measured, order_keys, usual_errors
 from workhold.proof.deciding import Course
 from workhold.search import design as designing
+from workhold.search import shares
 from workhold.search.error_limits import (
     LocatorSpots,
     can_limit_errors,
@@ -112,6 +113,31 @@ def test_the_best_are_the_first_of_all(part: str, kit: str, limited: list[float]
         assert best.least_effective_error == everything.least_effective_error
         assert best.complete
     assert bool(limited) == bool(len(everything))
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("kit", ["vise", "opening"])
+@pytest.mark.parametrize("part", ["widget", "bores", "flange"])
+def test_what_is_known_beforehand_does_not_show(part: str, kit: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In vises some chord curves tell which error is to be reached; the best are the first of all."""
+    asked = list[float]()
+    plain = ToolkitSearch.run
+
+    def run(self: ToolkitSearch, kernel: Any, low: float, high: float, stats: Any, needed: Needed) -> Any:
+        asked.append(needed.error if self.every == 1 else inf)
+        return plain(self, kernel, low, high, stats, needed)
+
+    everything = answer(Query(PARTS[part], KITS[kit], tolerance=TOLERANCE))
+    monkeypatch.setattr(shares, "SCOUTED_FROM", 0.0)
+    monkeypatch.setattr(shares, "SCOUTED", 2)
+    monkeypatch.setattr(ToolkitSearch, "run", run)
+    for count in (1, 5, 20):
+        asked.clear()
+        best = answer(Query(PARTS[part], KITS[kit], tolerance=TOLERANCE, best=count), threads=1)
+        assert listed(best, count) == listed(everything, count)
+        assert best.least_effective_error == everything.least_effective_error
+        assert best.complete
+        assert count > 1 or not len(everything) or max(asked[len(asked) // 2 :]) < inf
 
 
 @pytest.mark.thorough

@@ -144,7 +144,7 @@ class BestFixtures:
     ----------
     problem : what is searched.
     cancel : when set, only what needs no ball arithmetic and the like is decided, and soon after nothing.
-    needed : what further fixtures must reach.
+    needed : what further fixtures must reach; may be known beforehand.
     keys : of those kept, once more were decided than are.
     """
 
@@ -205,7 +205,7 @@ class BestFixtures:
             self.needed = Needed(margin=max(margin, 0.0))
         # What is surely a step behind so many is not among the best.
         if (last := self.keys.last_fine_error(self.most)) is not None:
-            self.needed = Needed(error=A_STEP * last)
+            self.needed = Needed(error=min(A_STEP * last, self.needed.error))
         return everything.take(chosen)
 
     @property

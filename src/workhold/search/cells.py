@@ -26,6 +26,7 @@ Records = NDArray[np.float64]
 FIRST_ORIENTATION = -0.7320508075688772
 # A block is given what is needed as known so many blocks before it; as many may run at the same time.
 LAG = 8
+ANYTHING = Needed()
 # Seconds in which threads are left alone: waking for every small block takes the interpreter from them, and
 # time to wake up.
 NAP = 5e-4
@@ -111,6 +112,7 @@ def run_blocks(
     look: Callable[[Records], None] | None = None,
     stop: Callable[[], None] | None = None,
     pool: Executor | None = None,
+    needed: Needed = ANYTHING,
 ) -> tuple[list[Records], list[Block]]:
     """Does all blocks on some threads.
 
@@ -123,6 +125,7 @@ def run_blocks(
     stop : called once when the work is cancelled or given up: blocks that run then end soon, with what they
         have found.
     pool : of so many threads, where there is one already.
+    needed : what fixtures must reach as is known before any is received.
 
     Returns
     -------
@@ -131,7 +134,7 @@ def run_blocks(
     total = sum(block.cost for block in blocks) or 1.0
     results: dict[int, Records] = {}
     # What is needed once so many blocks have been received.
-    margins = [Needed()]
+    margins = [needed]
     done_cost, found = 0.0, 0
     done: list[Block] = []
     known = margins if receive is not None else None
@@ -194,7 +197,7 @@ def finished_blocks(
                     known = max(first - LAG, 0)
                     if margins is not None and known >= len(margins):
                         break
-                    needed = Needed() if margins is None else margins[known]
+                    needed = ANYTHING if margins is None else margins[known]
                     future = workers.submit(blocks[first].work, needed)
                     running[future] = first
                     future.add_done_callback(ended.put)
