@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from attrs import evolve
 
 from cad_parts import cad_part
 from workhold import OpeningVise, Plate, Query, Result, Tolerance, Vise, Workpiece, answer, load
@@ -113,6 +114,19 @@ def test_the_best_are_the_first_of_all(part: str, kit: str, limited: list[float]
         assert best.least_effective_error == everything.least_effective_error
         assert best.complete
     assert bool(limited) == bool(len(everything))
+
+
+@pytest.mark.thorough
+@pytest.mark.usefixtures("limited")
+@pytest.mark.parametrize("clamps", [1, 2])
+def test_a_contact_at_a_joint_is_on_the_face_of_the_lowest_number(clamps: int) -> None:
+    """Also where that makes an error too large, and the contact on the other face has a small one."""
+    query = Query(
+        rounded(100.0, 60.0, 3.0), Plate(pitch=20, peg_radius=3, clamps=clamps), tolerance=TOLERANCE
+    )
+    everything = answer(query)
+    for count in (2, 10, 40):
+        assert listed(answer(evolve(query, best=count)), count) == listed(everything, count)
 
 
 @pytest.mark.thorough

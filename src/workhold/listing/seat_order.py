@@ -38,16 +38,14 @@ import numpy as np
 from attrs import evolve
 from numpy.typing import NDArray
 
-from workhold.contact.features import meeting_ends
 from workhold.contact.problem import QUARTERS, ROUNDINGS, Problem
 from workhold.conventions import SAME_PLACE, SAME_POSE, SQUARE_TILT
-from workhold.geometry.symmetry import rotated
-from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y
 from workhold.kernels.contact import record
 from workhold.kernels.contact.quality import LOAD_LENGTH, figures
 from workhold.kernels.contact.seats import numbers_of_seats
 from workhold.listing.bounds import BOUNDED, first_of_clamps, pair_bounds
-from workhold.listing.canonical_form import candidates_of
+from workhold.listing.canonical_form import NEAR_END, candidates_of, on_each_face
 from workhold.listing.contact_groups import PackedContacts, SeatGroups
 from workhold.listing.ranking import OrderKeys, best_possible, keys_of
 from workhold.model.clamps import LOCATORS
@@ -91,8 +89,6 @@ STEPS = ((1 << 24) - 1) / tau
 SHARE, ANGLE = 1e-6, 1e-4
 # Bounds that are off by more than this part of one are none.
 MOST_SHARE = 0.01
-# mm. Contacts this near to an end may be at a joint, and be listed on the face beside it.
-NEAR_END = 1e-4
 # Larger than the number of any contact.
 NO_CONTACT = np.iinfo(np.int64).max
 # How often places of locators are found from what they were before.
@@ -259,7 +255,7 @@ def keys_bounding(
     A contact at a joint may be listed on either face; what is less counts. Places may be ``off`` by so many mm
     (N,); ``pairs`` (N, 3) are bounds of the pairs of clamps, None where they are not known.
     """
-    number, records = on_each_face(records, problem)
+    number, records = on_each_face(records, problem, LOCATORS)
     off, pairs = off[number], None if pairs is None else pairs[number]
     quality = best_figures(records, off, problem, query, pairs)
     theta = seen_angles(records, problem)
@@ -270,32 +266,6 @@ def keys_bounding(
     )
     keys = keys_of(quality, query, error, angle_classes(theta, ANGLE))
     return keys.unknown_where(np.isnan(quality[:, LOCATION_ERROR])).least_of(number)
-
-
-def on_each_face(records: Array, problem: Problem) -> tuple[IntArray, Array]:
-    """Which contacts (N, 19) may be listed on which faces: numbers (M,) in order, and contacts (M, 19)."""
-    ends = ends_of(problem.rows[slice(*problem.standing)])
-    # A feature shorter than that has others beside it that do not begin where it ends.
-    one, other = meeting_ends(ends.reshape(-1, 2), 4.0 * NEAR_END)
-    points, numbers = candidates_of(records, problem).point, np.arange(len(records))
-    for k in range(LOCATORS):
-        feature = records[:, record.FEATURES + k].astype(np.int64)
-        beside = np.abs(points[numbers, k, None] - ends[feature]).max(axis=2) <= NEAR_END
-        near = np.flatnonzero(beside.any(axis=1))
-        place, joint = np.nonzero((feature[near, None] == one // 2) & beside[near][:, one % 2])
-        more = records[near[place]]
-        more[:, record.FEATURES + k] = other[joint] // 2
-        records, numbers = np.concatenate([records, more]), np.concatenate([numbers, numbers[near[place]]])
-    order = np.argsort(numbers, kind="stable")
-    return numbers[order], records[order]
-
-
-def ends_of(rows: Array) -> Array:
-    """The low and the high end (F, 2, 2) of features (F, 12)."""
-    half, axis = rows[:, HALF_EXTENT, None] * np.array([-1.0, 1.0]), rows[:, None, AXIS_X : AXIS_Y + 1]
-    turned = np.stack(rotated(axis[..., 0], axis[..., 1], half), axis=-1) * rows[:, None, None, RADIUS]
-    is_arc = rows[:, IS_ARC, None, None] != 0.0
-    return np.asarray(rows[:, None, X : Y + 1] + np.where(is_arc, turned, axis * half[..., None]))
 
 
 def seen_angles(records: Array, problem: Problem) -> Array:

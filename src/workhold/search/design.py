@@ -284,7 +284,7 @@ def ways_up_to(
     """What one carrier that moves holds up to limits, one for each way of the toolkit."""
     kepts, works = list[BestFixtures](), list[Work]()
     for place, (problem, limit) in enumerate(zip(problems, limits, strict=True)):
-        kept = BestFixtures(problem, cancel)
+        kept = BestFixtures(problem, cancel, is_limited=True)
         part = stage(progress, place / len(problems), (place + 1) / len(problems))
         look = None if preview is None else Previews(problem, preview).add
         works.append(limited_work(limit, problem, kept, threads, part, cancel, look))

@@ -214,7 +214,7 @@ class LatticeShares:
             contacts_of_candidates(self.proven(some, problem), problem)
             for some, problem in zip(records, problems, strict=True)
         ]
-        return seats_of(parts, problems[0], within)
+        return seats_of(parts, problems[0], within, self.collector.is_limited)
 
     def proven(self, records: Array, problem: Problem) -> Candidates:
         """Contacts of three locators and a clamp that are proven, each once."""
