@@ -257,7 +257,7 @@ def test_contacts_at_joints_bound_their_seats(monkeypatch: pytest.MonkeyPatch) -
     groups = seat_order.ordered_groups([PackedContacts.of([each]) for each in records], problems, query)
     assert (~groups.bounds.is_known).mean() < 0.05
     for each, problem in zip(records, problems, strict=True):
-        number, more = seat_order.on_each_face(each, problem)
+        number, more = seat_order.on_each_face(each, problem, 3)
         assert (np.diff(number) >= 0).all() and len(np.unique(number)) == len(each) < len(more)
         # Nothing but the feature differs, and the places are the same.
         features = slice(record.FEATURES, record.FEATURES + 3)

@@ -111,7 +111,7 @@ def canonical_form(c: Candidates, swapped: int) -> Candidates:
     return Candidates(c.standing, feature, column, row, theta, point, c.gap, null, force)
 
 
-def on_each_face(records: Array, problem: Problem, pegs: int = MOST_PEGS) -> tuple[IntArray, Array]:
+def on_each_face(records: Array, problem: Problem, pegs: int) -> tuple[IntArray, Array]:
     """Which contacts (N, 19) may be listed on which faces: numbers (M,) in order, and contacts (M, 19).
 
     Of the first ``pegs`` those at a joint may touch either feature.
