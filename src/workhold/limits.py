@@ -299,5 +299,6 @@ def refuse_much_work(
         raise InputError(
             f"the part is {extent[0]:.6g} x {extent[1]:.6g} mm large, too large for two clamps on holes "
             f"{pitch[0]:g} x {pitch[1]:g} mm apart, which leave {ways:.1g} ways to look at: use a pitch of "
-            f"{enough:g} mm or more, fewer columns and rows, or a small range of angles."
+            f"{enough:g} mm or more, fewer columns and rows, a small range of angles, or ask for the best alone, "
+            "in the usual order."
         )

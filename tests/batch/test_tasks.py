@@ -6,6 +6,7 @@ import errno
 from hashlib import sha256
 from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
 import pytest
 from attrs import evolve
@@ -14,11 +15,14 @@ from batch_helpers import COARSE, FINE, Failing, Unprepared
 import workhold
 from workhold import Query, answer, conventions, load
 from workhold.batch import tasks
+from workhold.batch.run import Job
 from workhold.batch.store import FolderStore, checksum, is_whole, plain_record, workpiece_of
-from workhold.batch.tables import BEST
+from workhold.batch.tables import BEST, take_record
 from workhold.batch.tasks import Answering, Reading, done, name_of, program
 from workhold.errors import InputError
 from workhold.files.result.writer import result_text
+from workhold.search import estimate
+from workhold.verification import verify_file
 from workhold.version import ANSWERS
 
 FLANGE = Path(str(files("workhold"))) / "data" / "parts" / "flange.json"
@@ -43,6 +47,30 @@ def test_a_drawing_becomes_the_part_that_it_is(part: bytes) -> None:
     assert workpiece_of(record).loops[0].tolist() == flange.loops[0].tolist()
     assert (record["faces"], record["refusal"]) == (len(flange.faces), "")
     assert record["size"] == [flange.bounds[2] - flange.bounds[0], flange.bounds[3] - flange.bounds[1]]
+
+
+def test_of_very_many_fixtures_the_best_are_sought(
+    part: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """They are the first of all, and how many there are is told about."""
+    assert isinstance(COARSE.query, Query)
+    counted = done(Answering("name", "title", part, COARSE.query, 3)).record
+    monkeypatch.setattr(estimate, "estimated_fixtures", lambda *asked, **more: 4_240_000)
+    sought = done(Answering("name", "title", part, COARSE.query, 3)).record
+    assert counted is not None and sought is not None
+    all_counted, best = plain_record(counted), plain_record(sought)
+    assert best["fixtures"] == all_counted["fixtures"] and len(best["fixtures"]) == 3
+    assert best["note_data"][0] == {"kind": "many", "count": 4_240_000, "listed": 3}
+    assert sum(best["found"].values()) == 3 < sum(all_counted["found"].values())
+    (tmp_path / "best.json").write_bytes(sought)
+    assert verify_file(tmp_path / "best.json").faults == ()
+    rows = [dict[str, Any](), dict[str, Any]()]
+    nobodys: Any = None
+    for row, record in zip(rows, (all_counted, best), strict=True):
+        take_record(row, {}, record, Job(nobodys, COARSE))
+    assert rows[0]["fixtures"] == sum(all_counted["found"].values()) and rows[0]["reason"] is None
+    assert (rows[1]["fixtures"], rows[1]["distinct"]) == (4_200_000, None)
+    assert "about 4,200,000 fixtures" in rows[1]["reason"]
 
 
 def test_a_drawing_that_cannot_be_read_is_a_record_without_a_name_of_its_file() -> None:
@@ -160,7 +188,7 @@ def test_names_outlive_what_decides_nothing(monkeypatch: pytest.MonkeyPatch) -> 
 def test_other_records_have_another_number(part: bytes) -> None:
     """Where this fails because answers or files have changed, raise ``version.ANSWERS`` and write the new pair here."""
     records = [part, *(done(Answering("name", "title", part, one.query, 3)).record for one in (COARSE, FINE))]
-    assert (ANSWERS, sha256(b"".join(records)).hexdigest()[:16]) == (1, "0cd87a47255268de")
+    assert (ANSWERS, sha256(b"".join(records)).hexdigest()[:16]) == (2, "0cd87a47255268de")
 
 
 def test_a_record_cut_short_anywhere_is_none(part: bytes, tmp_path: Path) -> None:

@@ -132,8 +132,28 @@ def test_ranges_of_orientation_do_not_show(monkeypatch: pytest.MonkeyPatch) -> N
     assert_first(answer(query), whole)
 
 
+def rounded(width: float, height: float, radius: float) -> workhold.Workpiece:
+    """A rectangle with rounded corners."""
+    x, y = width - radius, height - radius
+    points = [
+        (radius, 0),
+        (x, 0),
+        (width, radius),
+        (width, y),
+        (x, height),
+        (radius, height),
+        (0, y),
+        (0, radius),
+    ]
+    bulged = [(*point, (2**0.5 - 1) * (k % 2)) for k, point in enumerate(points)]
+    return workhold.Workpiece.from_loops("rounded", [bulged])
+
+
 @pytest.mark.thorough
-def test_no_fixture_ranks_before_the_bound_of_its_locators(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("workpiece", [part(NOTCHED), rounded(80.0, 60.0, 3.0)], ids=["notched", "rounded"])
+def test_no_fixture_ranks_before_the_bound_of_its_locators(
+    workpiece: workhold.Workpiece, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """The lemma on which the search stops."""
     seen: list[int] = []
 
@@ -162,7 +182,7 @@ def test_no_fixture_ranks_before_the_bound_of_its_locators(monkeypatch: pytest.M
         ["clamp_freedom"],
         ["warnings"],
     ):
-        answer(Query(part(NOTCHED), Plate((20, 16), 3, clamps=2), rank_by=ranking, listing="all", best=10**6))
+        answer(Query(workpiece, Plate((20, 16), 3, clamps=2), rank_by=ranking, listing="all", best=10**6))
     assert sum(seen) > 100
 
 
@@ -227,6 +247,24 @@ def test_no_contact_stands_for_two_seats(monkeypatch: pytest.MonkeyPatch) -> Non
         number = np.searchsorted(groups.starts, place, side="right") - 1
         assert not groups.bounds.is_known[number].any()
         assert (~groups.bounds.is_known).sum() == (~before.bounds.is_known).sum() + 1
+
+
+@pytest.mark.thorough
+def test_contacts_at_joints_bound_their_seats(monkeypatch: pytest.MonkeyPatch) -> None:
+    """On whole pitches pegs stand where an edge becomes a corner; such seats are bounded on either face."""
+    query = Query(rounded(120.0, 80.0, 3.0), Plate(pitch=20, peg_radius=3, clamps=2), best=5)
+    records, problems = contacts_of(query, monkeypatch)
+    groups = seat_order.ordered_groups([PackedContacts.of([each]) for each in records], problems, query)
+    assert (~groups.bounds.is_known).mean() < 0.05
+    for each, problem in zip(records, problems, strict=True):
+        number, more = seat_order.on_each_face(each, problem, 3)
+        assert (np.diff(number) >= 0).all() and len(np.unique(number)) == len(each) < len(more)
+        # Nothing but the feature differs, and the places are the same.
+        features = slice(record.FEATURES, record.FEATURES + 3)
+        rest = np.delete(more, np.arange(record.RECORD_LENGTH)[features], axis=1)
+        assert (rest == np.delete(each, np.arange(record.RECORD_LENGTH)[features], axis=1)[number]).all()
+        known = set(map(tuple, np.column_stack([number, more[:, features]]).tolist()))
+        assert all((k, *row[features]) in known for k, row in enumerate(each.tolist()))
 
 
 @pytest.mark.parametrize("large", [7.0, 1e6])

@@ -8,13 +8,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from attrs import evolve
 
 from cad_parts import cad_part
 from workhold import OpeningVise, Plate, Query, Result, Tolerance, Vise, Workpiece, answer, load
 from workhold.contact.problem import Problem
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.hull import convex_hull
-from workhold.kernels.base.feature import IS_ARC, X, Y
+from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, X, Y
 from workhold.listing.bounds import preferred_angles
 from workhold.listing.canonical_form import listed_once
 from workhold.listing.collector import Needed, listed_form
@@ -22,6 +23,7 @@ from workhold.listing.placing import placed
 from workhold.listing.ranking import PER_MM, measured, order_keys, usual_errors
 from workhold.proof.deciding import Course
 from workhold.search import design as designing
+from workhold.search import shares
 from workhold.search.error_limits import (
     LocatorSpots,
     can_limit_errors,
@@ -33,6 +35,7 @@ from workhold.search.error_limits import (
     outermost,
     precision_of,
 )
+from workhold.search.lattice_shares import LatticeShares
 from workhold.search.shares import one_clamp
 from workhold.search.toolkit_search import ToolkitSearch, with_limit
 
@@ -45,12 +48,21 @@ def rectangle(width: float, height: float) -> Workpiece:
     return Workpiece("rectangle", [np.array(corners)])
 
 
+def rounded(width: float, height: float, radius: float) -> Workpiece:
+    """A rectangle with rounded corners: pegs on whole pitches stand exactly at their ends."""
+    x, y, bulge = width - radius, height - radius, np.tan(np.pi / 8)
+    corners = [(radius, 0.0), (x, 0.0), (width, radius), (width, y), (x, height), (radius, height)]
+    points = [*corners, (0.0, y), (0.0, radius)]
+    return Workpiece("rounded", [np.array([(*at, bulge * (k % 2)) for k, at in enumerate(points)])])
+
+
 PARTS = {
     "flange": load("flange"),
     "widget": load("widget"),
     "bores": cad_part(2),
     "arcs": cad_part(7),
     "rectangle": rectangle(120.0, 80.0),
+    "rounded": rounded(120.0, 90.0, 4.0),
 }
 KITS: dict[str, Toolkit] = {
     "plate": Plate(pitch=16, peg_radius=3),
@@ -105,6 +117,44 @@ def test_the_best_are_the_first_of_all(part: str, kit: str, limited: list[float]
 
 
 @pytest.mark.thorough
+@pytest.mark.usefixtures("limited")
+@pytest.mark.parametrize("clamps", [1, 2])
+def test_a_contact_at_a_joint_is_on_the_face_of_the_lowest_number(clamps: int) -> None:
+    """Also where that makes an error too large, and the contact on the other face has a small one."""
+    query = Query(
+        rounded(100.0, 60.0, 3.0), Plate(pitch=20, peg_radius=3, clamps=clamps), tolerance=TOLERANCE
+    )
+    everything = answer(query)
+    for count in (2, 10, 40):
+        assert listed(answer(evolve(query, best=count)), count) == listed(everything, count)
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("kit", ["vise", "opening"])
+@pytest.mark.parametrize("part", ["widget", "bores", "flange"])
+def test_what_is_known_beforehand_does_not_show(part: str, kit: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In vises some chord curves tell which error is to be reached; the best are the first of all."""
+    asked = list[float]()
+    plain = ToolkitSearch.run
+
+    def run(self: ToolkitSearch, kernel: Any, low: float, high: float, stats: Any, needed: Needed) -> Any:
+        asked.append(needed.error if self.every == 1 else inf)
+        return plain(self, kernel, low, high, stats, needed)
+
+    everything = answer(Query(PARTS[part], KITS[kit], tolerance=TOLERANCE))
+    monkeypatch.setattr(shares, "SCOUTED_FROM", 0.0)
+    monkeypatch.setattr(shares, "SCOUTED", 2)
+    monkeypatch.setattr(ToolkitSearch, "run", run)
+    for count in (1, 5, 20):
+        asked.clear()
+        best = answer(Query(PARTS[part], KITS[kit], tolerance=TOLERANCE, best=count), threads=1)
+        assert listed(best, count) == listed(everything, count)
+        assert best.least_effective_error == everything.least_effective_error
+        assert best.complete
+        assert count > 1 or not len(everything) or max(asked[len(asked) // 2 :]) < inf
+
+
+@pytest.mark.thorough
 def test_what_limits_save_is_told(limited: list[float]) -> None:
     """How many boxes were looked at and ruled out, and far fewer contacts than a whole search examines."""
     query = Query(rectangle(150.0, 90.0), Plate(pitch=15, peg_radius=3, clamps=2), tolerance=TOLERANCE)
@@ -129,6 +179,31 @@ def found_errors(search: ToolkitSearch, **asked: Any) -> tuple[np.ndarray[Any, A
     )
     assert keys.error is not None
     return keys.error / PER_MM, keys.is_fine
+
+
+@pytest.mark.thorough
+def test_what_lies_aslant_is_bounded_while_square_seats_are_looked_at(
+    limited: list[float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """So most contacts of square seats are not even proven, though others may be found up to the limit."""
+    floors, looked = list[int](), list[int]()
+    plain, proven = LatticeShares.floor, LatticeShares.seats_among
+
+    def floor(self: LatticeShares, share: int) -> int:
+        floors.append(plain(self, share))
+        return floors[-1]
+
+    def seats_among(self: LatticeShares, records: Any, within: Any) -> Any:
+        looked.append(sum(map(len, records)))
+        return proven(self, records, within)
+
+    monkeypatch.setattr(LatticeShares, "floor", floor)
+    monkeypatch.setattr(LatticeShares, "seats_among", seats_among)
+    query = Query(rounded(300.0, 200.0, 3.0), Plate(pitch=20, peg_radius=3, clamps=2), best=20)
+    best = answer(query)
+    least = best.least_effective_error
+    assert least is not None and min(floors) > least * PER_MM
+    assert 0 < 2 * max(looked) < best.statistics["contacts_examined"]
 
 
 @pytest.mark.thinned(9)
@@ -173,12 +248,17 @@ def test_spots_join_what_fixtures_touch() -> None:
     query = Query(PARTS["bores"], KITS["plate"], tolerance=TOLERANCE, best=5)
     problem = Problem.of(query)
     spots = LocatorSpots.of(problem)
-    assert spots.first > 0.0
+    assert spots.least > 0.0
     shares = [
-        spots.limit(most).square.joined.mean() for most in (0.5 * spots.first, spots.first, 4.0 * spots.first)
+        spots.limit(most).square.joined.mean() for most in (0.5 * spots.least, spots.least, 4.0 * spots.least)
     ]
     assert shares[0] < shares[1] < shares[2]
-    near = spots.limit(spots.first).square
+    near = spots.limit(spots.least).square
+    # Whole circles count as one stretch, which is joined where any of its arcs is.
+    rows = problem.rows[slice(*problem.standing)]
+    circles = (rows[:, IS_ARC] != 0.0) & (rows[:, HALF_EXTENT] >= np.pi)
+    assert circles.any() and (np.diff(near.starts)[circles] == 1).all()
+    assert (np.diff(near.starts)[~circles & (rows[:, IS_ARC] == 0.0)] > 1).any()
     assert (near.joined == near.joined.T).all()
     marked = np.argwhere(near.triples)
     assert {tuple(row) for row in marked.tolist()} == {tuple(row) for row in marked[:, [2, 0, 1]].tolist()}
@@ -243,7 +323,12 @@ def test_the_next_limit_is_no_larger_than_it_must_be() -> None:
     assert len(beyond) > 10
     for row in beyond.rest:
         assert any(tuple(least_row) <= tuple(row) for least_row in bound.rest if least_row[0] == row[0])
-    few = keys.take(np.flatnonzero(keys.is_fine)[:4])
+    # Of two clamps, whose contacts wait in memory, limits grow slowly.
+    few, pair = (
+        keys.take(np.flatnonzero(keys.is_fine)[:4]),
+        Query(PARTS["flange"], KITS["two clamps"], best=5),
+    )
+    assert next_limit(1.0, few, pair, 1) < next_limit(1.0, few, query, 1)
     assert 1.0 < next_limit(1.0, few, query, 1) < inf == next_limit(1.0, few, query, 99)
 
 

@@ -100,6 +100,22 @@ def test_what_is_thinned_counts_as_often(monkeypatch: pytest.MonkeyPatch) -> Non
     assert about is not None and about != known and known / 2 <= about <= 2 * known
 
 
+@pytest.mark.thorough
+@pytest.mark.usefixtures("unasked")
+def test_triples_of_stretches_stand_for_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With two clamps some are drawn where cells hold too much; seats are drawn whole, on bores and corners too."""
+    monkeypatch.setattr(estimate, "WORK_OF_TWO", 1e9)
+    monkeypatch.setattr(estimate, "MOST_OF_TWO", 1 << 10)
+    monkeypatch.setattr(estimate, "CONTACTS_DECIDED", 1 << 20)
+    query = Query(PARTS["bores"], KITS["two clamps"])
+    known = len(answer(query))
+    assert estimate.estimated_fixtures(query, 2) == pytest.approx(known, rel=0.05)
+    monkeypatch.setattr(estimate, "MOST_IN_CELL", 3e3)
+    about = estimate.estimated_fixtures(query, 2)
+    assert about is not None and about != known and known / 1.5 <= about <= 1.5 * known
+    assert estimate.estimated_fixtures(query, 1) == about
+
+
 @pytest.mark.usefixtures("unasked")
 def test_candidates_that_are_not_proven_do_not_count(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of those that are decided the share that is proven counts."""

@@ -20,6 +20,7 @@ from workhold.batch.run import Job
 from workhold.batch.store import Store, plain_record
 from workhold.errors import encodable
 from workhold.files.atomic import binary_file, text_file
+from workhold.model.notes import Many, round_to_two_digits
 from workhold.model.quality import FIGURES, PROGRAM_FIGURE, SEATING_FIGURES
 from workhold.model.query import Query
 from workhold.model.result import Result
@@ -107,11 +108,12 @@ def take_record(row: Row, named: Row, record: Mapping[str, Any], job: Job) -> li
     if record["refusal"]:
         row |= {"state": "refused", "reason": record["refusal"]}
         return []
-    found = sum(record["found"].values())
+    found, distinct = (sum(record[key].values()) for key in ("found", "distinct"))
+    about = next((note["count"] for note in record["note_data"] if note["kind"] == Many.kind), None)
     row |= {
         "state": "held" if found else "none",
-        "fixtures": found,
-        "distinct": sum(record["distinct"].values()),
+        "fixtures": found if about is None else round_to_two_digits(about),
+        "distinct": distinct if about is None else None,
     }
     row["reason"] = " ".join(record["notes"]) or None
     best = [

@@ -157,7 +157,7 @@ class Answering(Task):
     ----------
     part : the record of its drawing.
     query : what is asked, of another part whose place it takes.
-    best : how many of the fixtures, the best, to keep; all are counted.
+    best : how many of the fixtures, the best, to keep; all are counted, or where they are very many, estimated.
     """
 
     part: bytes = field(repr=False)
@@ -170,9 +170,16 @@ class Answering(Task):
     def record(self) -> bytes:
         """The result file; see :meth:`Task.record`."""
         from workhold.files.result.writer import result_text
+        from workhold.model.notes import Many
         from workhold.search.design import answer
+        from workhold.search.estimate import MANY, estimated_fixtures
 
         query = evolve(self.query, workpiece=workpiece_of(plain_record(self.part)))
+        count = estimated_fixtures(query, threads=1)
+        if count is not None and count > MANY:
+            result = answer(evolve(query, best=self.best), threads=1)
+            made = evolve(result, notes=(Many(count, len(result)), *result.notes))
+            return "".join(result_text(made)).encode()
         with tempfile.TemporaryDirectory(prefix="workhold-") as folder:
             kept = FirstFixtures(self.best, Path(folder))
             result = answer(query, threads=1, sink=kept)

@@ -81,6 +81,11 @@ class CurveTable:
         return first, first + (reals[:, NEAR_TO] - reals[:, NEAR_FROM])
 
     @cached_property
+    def sectors(self) -> dict[int, NDArray[np.int64]]:
+        """Which curves exist in each sector of orientations that was asked for (``search.cells``)."""
+        return {}
+
+    @cached_property
     def sorted_spans(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """The beginnings (N,) and the ends (N,) of :attr:`spans`, each ascending."""
         first, last = self.spans

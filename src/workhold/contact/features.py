@@ -36,6 +36,7 @@ __all__ = [
     "face_of_segment",
     "feature_rows",
     "features_met",
+    "meeting_ends",
 ]
 
 # Pairs of ends looked at together.
@@ -242,12 +243,23 @@ def joint_slacks(pieces: list[Segment]) -> NDArray[np.float64]:
     )
     points, directions = ends.reshape(-1, 2), normals.reshape(-1, 2)
     slack = np.full(len(points), -END_SLACK)
-    together = max(TOGETHER // max(len(points), 1), 1)
+    one, other = meeting_ends(points)
+    smooth = (np.abs(directions[one] - directions[other]) <= TANGENT).all(axis=1)
+    slack[one[smooth]] = END_SLACK
+    return slack.reshape(-1, 2)
+
+
+def meeting_ends(
+    points: NDArray[np.float64], within: float = JOINT
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Which ends (2 F, 2), low and high ones of features after each other, meet which of other features.
+
+    They do within so many mm along x and y.
+    """
+    out, together = [np.zeros((0, 2), np.int64)], max(TOGETHER // max(len(points), 1), 1)
     for start in range(0, len(points), together):
         x, y = points[start : start + together].T
-        beside = (np.abs(points[:, 0] - x[:, None]) <= JOINT) & (np.abs(points[:, 1] - y[:, None]) <= JOINT)
-        one, other = np.nonzero(beside)
-        one += start
-        smooth = (np.abs(directions[one] - directions[other]) <= TANGENT).all(axis=1)
-        slack[one[smooth & (one // 2 != other // 2)]] = END_SLACK
-    return slack.reshape(-1, 2)
+        beside = (np.abs(points[:, 0] - x[:, None]) <= within) & (np.abs(points[:, 1] - y[:, None]) <= within)
+        out.append(np.argwhere(beside) + np.array([start, 0]))
+    one, other = np.concatenate(out).T
+    return one[one // 2 != other // 2], other[one // 2 != other // 2]

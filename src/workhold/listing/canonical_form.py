@@ -9,8 +9,11 @@ import numpy as np
 from attrs import define, fields
 from numpy.typing import NDArray
 
+from workhold.contact.features import meeting_ends
 from workhold.contact.problem import Problem
-from workhold.conventions import SAME_PLACE, SAME_POSE
+from workhold.conventions import END_SLACK, JOINT, SAME_PLACE, SAME_POSE
+from workhold.geometry.symmetry import rotated
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
 from workhold.kernels.contact import record
 from workhold.kernels.contact.record import WORK_LENGTH
 from workhold.kernels.proof.canonical_form import contacts_of, to_canonical_form
@@ -18,14 +21,17 @@ from workhold.listing.runs import key_of, order_of
 from workhold.proof.deciding import peg_integers
 
 __all__ = [
+    "NEAR_END",
     "Candidates",
     "Rows",
+    "are_lowest",
     "candidates_of",
     "canonical_form",
     "changes",
     "clusters",
     "listed_once",
     "most_holes",
+    "on_each_face",
     "packed",
     "packed_holes",
     "place_number",
@@ -37,6 +43,8 @@ IntArray = NDArray[np.int64]
 # Bits of a packed number.
 WORD = 63
 MOST_PEGS = 4
+# mm. Contacts this near to an end may be at a joint, and be listed on the face beside it.
+NEAR_END = 1e-4
 
 
 @define(frozen=True, eq=False)
@@ -101,6 +109,56 @@ def canonical_form(c: Candidates, swapped: int) -> Candidates:
     point = c.point.reshape(-1, 2).take(place, axis=0)
     feature, null, force = c.feature.take(place), c.null.take(place), c.force.take(place)
     return Candidates(c.standing, feature, column, row, theta, point, c.gap, null, force)
+
+
+def on_each_face(records: Array, problem: Problem, pegs: int) -> tuple[IntArray, Array]:
+    """Which contacts (N, 19) may be listed on which faces: numbers (M,) in order, and contacts (M, 19).
+
+    Of the first ``pegs`` those at a joint may touch either feature.
+    """
+    ends = ends_of(problem.rows)
+    # A feature shorter than that has others beside it that do not begin where it ends.
+    one, other = joints(problem, 4.0 * NEAR_END)
+    points, numbers = candidates_of(records, problem).point, np.arange(len(records))
+    for k in range(pegs):
+        feature = records[:, record.FEATURES + k].astype(np.int64)
+        beside = np.abs(points[numbers, k, None] - ends[feature]).max(axis=2) <= NEAR_END
+        near = np.flatnonzero(beside.any(axis=1) & (records[:, record.STANDING] > 0.0))
+        place, joint = np.nonzero((feature[near, None] == one // 2) & beside[near][:, one % 2])
+        more = records[near[place]]
+        more[:, record.FEATURES + k] = other[joint] // 2
+        records, numbers = np.concatenate([records, more]), np.concatenate([numbers, numbers[near[place]]])
+    order = np.argsort(numbers, kind="stable")
+    return numbers[order], records[order]
+
+
+def are_lowest(feature: IntArray, point: Array, problem: Problem) -> NDArray[np.bool_]:
+    """Whether contacts (N, P) at joints are on the features of the lowest numbers there, where they are listed.
+
+    Up to a limit of the location error the contact on another feature alone may be found, where fewer or more
+    contacts share a face. The one that is listed is beyond the limit then.
+    """
+    one, other = joints(problem, JOINT)
+    is_lowest = np.ones((len(problem.rows), 2), np.bool_)
+    is_lowest.reshape(-1)[one[other // 2 < one // 2]] = False
+    at_end = np.abs(point[:, :, None] - ends_of(problem.rows)[feature]).max(axis=3) <= END_SLACK
+    return np.asarray((is_lowest[feature] | ~at_end).all(axis=(1, 2)))
+
+
+def joints(problem: Problem, within: float) -> tuple[IntArray, IntArray]:
+    """Which ends of features, two for each, meet which of others that the same pegs touch, within so many mm."""
+    one, other = meeting_ends(ends_of(problem.rows).reshape(-1, 2), within)
+    begin, last = problem.moving
+    alike = ((one // 2 >= begin) & (one // 2 < last)) == ((other // 2 >= begin) & (other // 2 < last))
+    return one[alike], other[alike]
+
+
+def ends_of(rows: Array) -> Array:
+    """The low and the high end (F, 2, 2) of features (F, 12)."""
+    half, axis = rows[:, HALF_EXTENT, None] * np.array([-1.0, 1.0]), rows[:, None, AXIS_X : AXIS_Y + 1]
+    turned = np.stack(rotated(axis[..., 0], axis[..., 1], half), axis=-1) * rows[:, None, None, RADIUS]
+    is_arc = rows[:, IS_ARC, None, None] != 0.0
+    return np.asarray(rows[:, None, X : Y + 1] + np.where(is_arc, turned, axis * half[..., None]))
 
 
 def packed(*columns: tuple[NDArray[np.integer[Any]], int]) -> list[IntArray]:

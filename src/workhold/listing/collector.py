@@ -30,6 +30,7 @@ from workhold.kernels.contact import record
 from workhold.listing.asked import are_as_asked
 from workhold.listing.canonical_form import (
     Candidates,
+    are_lowest,
     candidates_of,
     canonical_form,
     listed_once,
@@ -144,12 +145,14 @@ class BestFixtures:
     ----------
     problem : what is searched.
     cancel : when set, only what needs no ball arithmetic and the like is decided, and soon after nothing.
-    needed : what further fixtures must reach.
+    is_limited : whether what comes was found up to a limit of the location error.
+    needed : what further fixtures must reach; may be known beforehand.
     keys : of those kept, once more were decided than are.
     """
 
     problem: Problem
     cancel: Event | None = None
+    is_limited: bool = False
     needed: Needed = field(factory=Needed, init=False)
     keys: OrderKeys | None = field(default=None, init=False)
     has_dropped: bool = field(default=False, init=False)
@@ -181,6 +184,8 @@ class BestFixtures:
         fresh = 0
         for block in blocks_of(waiting):
             part, account = listed_form(block, self.problem, self.course)
+            if self.is_limited or self.needed.error < inf:
+                part = part.take(are_lowest(part.feature, part.point, self.problem))
             self.accounts.append(account)
             parts.append(part)
             fresh += len(part.standing)
@@ -205,7 +210,7 @@ class BestFixtures:
             self.needed = Needed(margin=max(margin, 0.0))
         # What is surely a step behind so many is not among the best.
         if (last := self.keys.last_fine_error(self.most)) is not None:
-            self.needed = Needed(error=A_STEP * last)
+            self.needed = Needed(error=min(A_STEP * last, self.needed.error))
         return everything.take(chosen)
 
     @property

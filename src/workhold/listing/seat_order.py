@@ -45,7 +45,7 @@ from workhold.kernels.contact import record
 from workhold.kernels.contact.quality import LOAD_LENGTH, figures
 from workhold.kernels.contact.seats import numbers_of_seats
 from workhold.listing.bounds import BOUNDED, first_of_clamps, pair_bounds
-from workhold.listing.canonical_form import candidates_of
+from workhold.listing.canonical_form import NEAR_END, candidates_of, on_each_face
 from workhold.listing.contact_groups import PackedContacts, SeatGroups
 from workhold.listing.ranking import OrderKeys, best_possible, keys_of
 from workhold.model.clamps import LOCATORS
@@ -89,8 +89,6 @@ STEPS = ((1 << 24) - 1) / tau
 SHARE, ANGLE = 1e-6, 1e-4
 # Bounds that are off by more than this part of one are none.
 MOST_SHARE = 0.01
-# mm. Contacts this near to an end may be at a joint, and be listed on the face beside it.
-NEAR_END = 1e-4
 # Larger than the number of any contact.
 NO_CONTACT = np.iinfo(np.int64).max
 # How often places of locators are found from what they were before.
@@ -254,9 +252,11 @@ def keys_bounding(
 ) -> OrderKeys:
     """Keys that no fixture has less than whose locators touch as those of records (N, 19) do.
 
-    Places may be ``off`` by so many mm (N,); ``pairs`` (N, 3) are bounds of the pairs of clamps, None where
-    they are not known.
+    A contact at a joint may be listed on either face; what is less counts. Places may be ``off`` by so many mm
+    (N,); ``pairs`` (N, 3) are bounds of the pairs of clamps, None where they are not known.
     """
+    number, records = on_each_face(records, problem, LOCATORS)
+    off, pairs = off[number], None if pairs is None else pairs[number]
     quality = best_figures(records, off, problem, query, pairs)
     theta = seen_angles(records, problem)
     error = (
@@ -265,7 +265,7 @@ def keys_bounding(
         else None
     )
     keys = keys_of(quality, query, error, angle_classes(theta, ANGLE))
-    return keys.unknown_where(np.isnan(quality[:, LOCATION_ERROR]))
+    return keys.unknown_where(np.isnan(quality[:, LOCATION_ERROR])).least_of(number)
 
 
 def seen_angles(records: Array, problem: Problem) -> Array:
@@ -330,12 +330,15 @@ def best_figures(
     rows = problem.rows[c.feature[:, :LOCATORS]]
     curved = (1.0 / np.where(rows[..., IS_ARC] != 0.0, rows[..., RADIUS], inf)).max(axis=1, initial=0.0)
     place = 4.0 * SAME_PLACE + 16.0 * off
+    # Beside a joint it may be off the feature that goes on there by as much as it is from it.
+    nearest = np.abs(ends).min(axis=1, initial=inf)
+    place = place + np.where(nearest <= NEAR_END, nearest, 0.0)
     share = SHARE + 8.0 * norm * place * (1.0 / touched.length + curved)
-    known = (share < MOST_SHARE) & (ends.min(axis=1, initial=inf) > NEAR_END) & (place < NEAR_END)
+    known = (share < MOST_SHARE) & (place < 2.0 * NEAR_END)
     error = out[:, LOCATION_ERROR] * (1.0 - share)
-    nearest, edge = (np.min(values, axis=1, initial=inf) + place for values in (ends, edges))
+    end, edge = (np.min(values, axis=1, initial=inf) + place for values in (ends, edges))
     out = best_possible(len(records), query)
-    out[:, END_DISTANCE], out[:, EDGE_DISTANCE] = nearest, np.minimum(edge, touched.length)
+    out[:, END_DISTANCE], out[:, EDGE_DISTANCE] = end, np.minimum(edge, touched.length)
     tilt = tilts(seen_angles(records, problem), main_direction(problem.workpiece))
     out[:, TILT] = np.where(tilt < SQUARE_TILT + ANGLE, 0.0, tilt - ANGLE)
     out[:, SMALLEST_FACE] = face_sizes(problem.workpiece).take(faces).min(axis=1, initial=inf)

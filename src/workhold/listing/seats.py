@@ -39,7 +39,7 @@ from workhold.kernels.contact.clamp_pairs import (
     pairs_of,
 )
 from workhold.listing.asked import are_precise
-from workhold.listing.canonical_form import changes, clusters, packed
+from workhold.listing.canonical_form import are_lowest, changes, clusters, packed
 from workhold.listing.clamp_contacts import ClampContacts, box_beside
 from workhold.listing.clamp_placement import DIRECTION_NAMES, FAR, OPENING, is_bolted, is_upright, last_holes
 from workhold.listing.identity import half_turns
@@ -97,7 +97,10 @@ class Seats:
 
 
 def seats_of(
-    parts: Sequence[ClampContacts], problem: Problem, within: Sequence[tuple[float, float]] = ((-inf, inf),)
+    parts: Sequence[ClampContacts],
+    problem: Problem,
+    within: Sequence[tuple[float, float]] = ((-inf, inf),),
+    is_limited: bool = False,
 ) -> Seats:
     """The seats of the contacts of some directions.
 
@@ -107,6 +110,7 @@ def seats_of(
     problem : the search of one of them.
     within : ranges of orientation in radians, from and up to but without the second, of the seats that are
         wanted; others are left out, whole.
+    is_limited : whether contacts were found up to a limit of the location error.
     """
     found = ClampContacts.joined(parts)
     words = packed((found.column, found.column.max(initial=0)), (found.row, found.row.max(initial=0)))
@@ -124,6 +128,12 @@ def seats_of(
     theta = np.full(count, inf)
     np.minimum.at(theta, seat, found.theta)
     wanted = np.any([(theta >= low) & (theta < high) for low, high in within], axis=0)
+    if is_limited:
+        holes = np.stack([found.column[first], found.row[first]], axis=2) * problem.toolkit.carriers[0].pitch
+        x, y = np.moveaxis(holes - holes[:, :1], 2, 0)
+        away = np.stack(rotated(x, y, -theta[:, None]), axis=2)
+        point = found.point[first][:, None] - problem.workpiece.center + away
+        wanted &= are_lowest(found.feature[first], point, problem)
     number, first = np.where(wanted, np.cumsum(wanted) - 1, -1), first[wanted]
     return Seats(
         feature=found.feature[first],

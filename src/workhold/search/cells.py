@@ -26,6 +26,7 @@ Records = NDArray[np.float64]
 FIRST_ORIENTATION = -0.7320508075688772
 # A block is given what is needed as known so many blocks before it; as many may run at the same time.
 LAG = 8
+ANYTHING = Needed()
 # Seconds in which threads are left alone: waking for every small block takes the interpreter from them, and
 # time to wake up.
 NAP = 5e-4
@@ -33,6 +34,8 @@ NAP = 5e-4
 AHEAD = 32
 # Curves are of a cell that they end so near to.
 SLACK = 1e-9
+# Radians, of which there are whole numbers in a turn: curves of neighbouring cells are sought together.
+SECTOR = tau / 64
 
 
 @define(frozen=True)
@@ -67,9 +70,24 @@ def cell_edges(half_turns: int, cells: int) -> NDArray[np.float64]:
 
 def members_of_cell(table: CurveTable, low: float, high: float) -> NDArray[np.int64]:
     """Indices of the curves that exist somewhere in a cell of orientations (or within 1e-9 of it)."""
-    first, last = table.spans
     begin = (low - SLACK) % tau
     end = begin + (high - low) + 2 * SLACK
+    sector = int(begin / SECTOR)
+    if not (sector * SECTOR <= begin and end <= (sector + 1) * SECTOR):
+        return members_between(table.spans, begin, end)
+    # Those of a sector are sought once for all of its cells.
+    if sector not in table.sectors:
+        table.sectors[sector] = members_between(table.spans, sector * SECTOR, (sector + 1) * SECTOR)
+    some = table.sectors[sector]
+    first, last = table.spans
+    return some[members_between((first[some], last[some]), begin, end)]
+
+
+def members_between(
+    spans: tuple[NDArray[np.float64], NDArray[np.float64]], begin: float, end: float
+) -> NDArray[np.int64]:
+    """Which curves, given their spans (N,), exist somewhere from one orientation in [0, 2 pi) to another."""
+    first, last = spans
     # Where the cell runs over a whole turn, or a curve does, the other may be met a turn later.
     there = (first <= end) & (last >= begin)
     return np.flatnonzero(there | (first <= end - tau) | (last >= begin + tau))
@@ -94,6 +112,7 @@ def run_blocks(
     look: Callable[[Records], None] | None = None,
     stop: Callable[[], None] | None = None,
     pool: Executor | None = None,
+    needed: Needed = ANYTHING,
 ) -> tuple[list[Records], list[Block]]:
     """Does all blocks on some threads.
 
@@ -106,6 +125,7 @@ def run_blocks(
     stop : called once when the work is cancelled or given up: blocks that run then end soon, with what they
         have found.
     pool : of so many threads, where there is one already.
+    needed : what fixtures must reach as is known before any is received.
 
     Returns
     -------
@@ -114,7 +134,7 @@ def run_blocks(
     total = sum(block.cost for block in blocks) or 1.0
     results: dict[int, Records] = {}
     # What is needed once so many blocks have been received.
-    margins = [Needed()]
+    margins = [needed]
     done_cost, found = 0.0, 0
     done: list[Block] = []
     known = margins if receive is not None else None
@@ -177,7 +197,7 @@ def finished_blocks(
                     known = max(first - LAG, 0)
                     if margins is not None and known >= len(margins):
                         break
-                    needed = Needed() if margins is None else margins[known]
+                    needed = ANYTHING if margins is None else margins[known]
                     future = workers.submit(blocks[first].work, needed)
                     running[future] = first
                     future.add_done_callback(ended.put)

@@ -46,6 +46,7 @@ from workhold.search.error_limits import (
     ErrorLimit,
     LocatorSpots,
     can_limit_errors,
+    first_limit,
     is_enough,
     next_limit,
     precision_of,
@@ -261,7 +262,7 @@ def best_answer(
         else [Problem.of(evolve(query, toolkit=way)) for way in query.toolkit.ways]
     )
     spots = [LocatorSpots.of(problem) for problem in problems[: 1 if is_paired else None]]
-    most, number = min(one.first for one in spots), 0
+    most, number = first_limit(spots, query), 0
     search_up_to = paired_up_to if is_paired else ways_up_to
     while most < inf:
         share, number = stage(progress, 1.0 - 0.5**number, 1.0 - 0.5 ** (number + 1)), number + 1
@@ -289,7 +290,7 @@ def ways_up_to(
     """What one carrier that moves holds up to limits, one for each way of the toolkit."""
     kepts, works = list[BestFixtures](), list[Work]()
     for place, (problem, limit) in enumerate(zip(problems, limits, strict=True)):
-        kept = BestFixtures(problem, cancel)
+        kept = BestFixtures(problem, cancel, is_limited=True)
         part = stage(progress, place / len(problems), (place + 1) / len(problems))
         look = None if preview is None else Previews(problem, preview).add
         works.append(limited_work(limit, problem, kept, threads, part, cancel, look))

@@ -38,6 +38,7 @@ from workhold.kernels.contact.location_bounds import (
     join_near_spots,
     least_middle_error,
 )
+from workhold.kernels.curves.near_spots import NEARLY_WHOLE
 from workhold.listing.ranking import A_STEP, OrderKeys, best_possible, keys_of
 from workhold.model.first_choice import FACTORS
 from workhold.model.quality import LOCATION_ERROR, PENALTY, SMALLEST_FACE, TILT
@@ -51,6 +52,7 @@ __all__ = [
     "ErrorLimit",
     "LocatorSpots",
     "can_limit_errors",
+    "first_limit",
     "is_enough",
     "keys_beyond",
     "next_limit",
@@ -65,14 +67,15 @@ SPOTS_ACROSS, MOST_TURN = 32, pi / 8
 # Spots are cut in two so many times at most.
 MOST_CUTS = 3
 # Of more spots no triples are kept, which would take too much memory.
-MOST_TRIPLED = 320
+MOST_TRIPLED = 360
 # Points nearer than this part of L are side by side.
 BESIDE = 0.1
 # Directions over half a turn, and points of the silhouette, in which movements are looked at.
 DIRECTIONS, OUTERMOST = 8, 8
 # The first limit is so many times the least error of any three contacts, and the next so many times the last
-# one as long as too few fixtures are found. After so many there is none.
-FIRST_TIMES, NEXT_TIMES, MOST_LIMITS = 1.1, 1.3, 9
+# one as long as too few fixtures are found. After so many there is none. The contacts of two clamps wait
+# together in memory, and grow with the tenth power of the limit. So their limits grow slowly.
+OF_ONE, OF_TWO = (1.1, 1.3, 9), (0.9, 1.1, 25)
 IN_BORE = next(one.times for one in FACTORS if one.key == "dowel_in_bore")
 # Limits between two among which the next is chosen.
 NEARER = 40
@@ -136,7 +139,10 @@ class LocatorSpots:
                 zip(rows[first:end], precision.gives[first:end].tolist(), strict=True)
             )
         ]
-        starts = np.cumsum([0, *(len(levels[-1]) for levels in cut)])
+        # Nobody asks where on a whole circle a contact is, so all its spots count as one.
+        whole = (rows[first:end, IS_ARC] != 0.0) & (rows[first:end, HALF_EXTENT] > NEARLY_WHOLE)
+        sizes = [1 if is_one else len(levels[-1]) for is_one, levels in zip(whole, cut, strict=True)]
+        starts = np.cumsum([0, *sizes])
         roots = sum(len(levels[0]) for levels in cut)
         return cls(joined_spots(cut, starts), roots, starts, precision)
 
@@ -156,10 +162,9 @@ class LocatorSpots:
         return near, counts
 
     @property
-    def first(self) -> float:
-        """The limit to begin with, in mm."""
-        least = least_middle_error(self.spots, self.roots, self.precision, np.empty((4, 3)))
-        return FIRST_TIMES * least
+    def least(self) -> float:
+        """The least effective error in mm of three contacts in the middles of the coarsest spots."""
+        return float(least_middle_error(self.spots, self.roots, self.precision, np.empty((4, 3))))
 
 
 def precision_of(problem: Problem) -> Precision:
@@ -288,10 +293,13 @@ def joined_spots(cut: Sequence[Sequence[Array]], starts: IntArray) -> Array:
     offsets = (np.cumsum(sizes.ravel()) - sizes.ravel()).reshape(sizes.shape)
     for number, levels in enumerate(cut):
         for k, spots in enumerate(levels):
-            is_last = k == len(levels) - 1
-            first = starts[number] if is_last else offsets[k + 1, number]
-            spots[:, SPOT_COUNT] = 0.0 if is_last else 2.0
-            spots[:, SPOT_FIRST] = first + (1 if is_last else 2) * np.arange(len(spots))
+            if k < len(levels) - 1:
+                spots[:, SPOT_COUNT] = 2.0
+                spots[:, SPOT_FIRST] = offsets[k + 1, number] + 2 * np.arange(len(spots))
+            else:
+                # The spots of a whole circle have one number.
+                last = starts[number + 1] - 1
+                spots[:, SPOT_FIRST] = np.minimum(starts[number] + np.arange(len(spots)), last)
     return np.concatenate([levels[k] for k in range(MOST_CUTS + 1) for levels in cut if k < len(levels)])
 
 
@@ -313,6 +321,16 @@ def keys_beyond(most: float, query: Query) -> OrderKeys:
     return keys_of(quality, query, np.full(len(rows), most), np.array([place for place, _ in rows]))
 
 
+def first_limit(spots: Sequence[LocatorSpots], query: Query) -> float:
+    """The limit in mm to begin with, given the spots of each way of the toolkit."""
+    return growth_of(query)[0] * min(one.least for one in spots)
+
+
+def growth_of(query: Query) -> tuple[float, float, int]:
+    """The first limit and each next one, relative to the one before, and how many there are."""
+    return OF_ONE if query.toolkit.travels == 1 else OF_TWO
+
+
 def is_enough(most: float, kept: OrderKeys, query: Query) -> bool:
     """Whether nothing beyond a limit in mm is among the best, given the keys of what was found up to it."""
     if most == inf:
@@ -325,13 +343,14 @@ def next_limit(most: float, kept: OrderKeys, query: Query, number: int) -> float
     """The limit in mm after one that was not enough, the so-manieth, given the keys of what it found."""
     known = kept.last_fine_error(query.best or 0)
     if known is None:
-        return inf if number >= MOST_LIMITS else NEXT_TIMES * most
+        _, times, limits = growth_of(query)
+        return inf if number >= limits else times * most
     # Of the limits up to where all others surely have a step more, the least that will be enough.
     last = A_STEP * known
     if last <= most:
         return inf
-    limits = np.linspace(most, last, NEARER + 1)[1:].tolist()
-    return next((limit for limit in limits if is_enough(limit, kept, query)), last)
+    nearer = np.linspace(most, last, NEARER + 1)[1:].tolist()
+    return next((limit for limit in nearer if is_enough(limit, kept, query)), last)
 
 
 def factor(key: str | None) -> float:

@@ -14,18 +14,23 @@ from math import degrees, pi, sqrt, tau
 from threading import Event
 
 import numpy as np
-from attrs import evolve
+from attrs import evolve, frozen
 from numpy.typing import NDArray
 
+from workhold.contact.curves import EVERYWHERE
 from workhold.contact.problem import Problem
 from workhold.conventions import ANGLE_HAIR, SAME_POSE
 from workhold.fixels.contacts import WALL_END
-from workhold.listing.collector import finish
-from workhold.listing.contact_groups import PackedContacts
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
+from workhold.kernels.base.tables import NearSpots
+from workhold.listing.canonical_form import candidates_of
+from workhold.listing.collector import blocks_of, finish
 from workhold.listing.seat_order import seat_numbers
 from workhold.listing.seats import ClampedSeats
+from workhold.model.clamps import LOCATORS
 from workhold.model.query import Query
 from workhold.search.cells import Block, cost_of, run_blocks
+from workhold.search.error_limits import precision_of
 from workhold.search.lattice_shares import LatticeShares, searches_of
 from workhold.search.toolkit_search import MOST_CELLS, ToolkitSearch, one_in
 
@@ -33,6 +38,7 @@ __all__ = ["LISTED", "MANY", "best_where_many", "estimated_fixtures"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
 
 # Of more fixtures than this only so many are listed, the best, unless all are asked for.
 MANY, LISTED = 200_000, 1_000
@@ -44,6 +50,11 @@ WORK, WORK_OF_TWO, MOST_WORK = 6e6, 2e6, 3e7
 FEWEST_DRAWN, FEWEST_OF_TWO, MOST_OF_TWO = 48, 8, 32
 # Records that are decided for an estimate, and contacts of two clamps in one cell.
 DECIDED, CONTACTS_DECIDED = 4000, 3000
+# Of more work for two clamps in one cell one triple of stretches in some is looked at. There are about so many
+# stretches.
+MOST_IN_CELL, STRETCHES = 3e5, 96
+# Parts of a stretch by which a contact at its end is moved, so that rounding does not say on which side it is.
+ASIDE = 1e-6
 # Where in the first interval a systematic draw begins.
 BEGIN = 0.618
 
@@ -115,14 +126,70 @@ def estimated_pairs(query: Query, threads: int, cancel: Event | None) -> int | N
     starts, costs, finds = cells_of(blocks)
     width, total = float(np.diff(starts, append=starts[0] + tau).min()), 0.0
     count = min(max(number_for(WORK_OF_TWO, costs, finds), FEWEST_OF_TWO), MOST_OF_TWO)
+    problems = [search.problem for search in searches]
     for cell, chance in zip(*drawn_by(finds, count), strict=True):
-        # The part's angle is -psi, a quarter turn more for each that the frame of the search is turned.
+        # The part's angle is -psi, and a quarter turn more for each that the frame of the search is turned.
         high = (one.frame.quarters * pi / 2 - starts[cell]) % tau
         ranges = [(low, low + width) for low in (high - width, high - width + tau, high - width - tau)]
-        total += listed_in(searches, query, ranges, threads, cancel) / chance
+        stretches = Stretches.of(problems, max(int(finds[cell] / MOST_IN_CELL), 1))
+        total += listed_in(searches, stretches, query, ranges, threads, cancel) / chance
         if cancel is not None and cancel.is_set():
             return None
     return round(total)
+
+
+@frozen(eq=False)
+class Stretches:
+    """Of three locators, which stretches of features they touch; of triples of stretches one in some is chosen.
+
+    The locators of a seat touch the same ones whatever the directions of its clamps are.
+
+    Parameters
+    ----------
+    every : one in so many triples is chosen.
+    near : the stretches, and which triples are chosen.
+    numbers : (M,) of each stretch one as if drawn.
+    """
+
+    every: int
+    near: NearSpots
+    numbers: IntArray
+
+    @classmethod
+    def of(cls, problems: Sequence[Problem], every: int) -> Stretches:
+        """Stretches of the features of the problems of each direction, about equally long."""
+        rows = problems[0].rows[slice(*problems[0].standing)]
+        lengths = rows[:, HALF_EXTENT] * np.where(rows[:, IS_ARC] != 0.0, rows[:, RADIUS], 1.0)
+        counts = np.maximum(np.rint(STRETCHES * lengths / lengths.sum()), 1).astype(np.int64)
+        starts = np.cumsum([0, *counts.tolist()])
+        numbers = np.random.default_rng(0).integers(1 << 60, size=int(starts[-1]))
+        if every == 1:
+            return cls(every, EVERYWHERE, numbers)
+        # A sum does not tell in which order locators are.
+        sums = numbers[:, None] + numbers
+        triples = np.stack([one_in(sums + number, every) for number in numbers.tolist()])
+        joined = np.ones(sums.shape, np.int8)
+        return cls(every, NearSpots(starts, joined, triples.astype(np.int8)), numbers)
+
+    def chosen(self, records: list[Array], problem: Problem) -> Array:
+        """The contacts (M, 19) of blocks whose locators touch three stretches that are chosen."""
+        blocks = blocks_of(records)
+        if self.every > 1:
+            blocks = (block[self.are_chosen(block, problem)] for block in blocks)
+        return np.concatenate(list(blocks))
+
+    def are_chosen(self, records: Array, problem: Problem) -> BoolArray:
+        """Whether the locators of contacts (N, 19) touch three stretches that are chosen."""
+        c = candidates_of(records, problem)
+        feature, rows = c.feature[:, :LOCATORS], problem.rows[c.feature[:, :LOCATORS]]
+        axis, ray = rows[..., AXIS_X : AXIS_Y + 1], c.point[:, :LOCATORS] - rows[..., X : Y + 1]
+        along = (axis * ray).sum(axis=2)
+        turned = np.arctan2(axis[..., 0] * ray[..., 1] - axis[..., 1] * ray[..., 0], along)
+        at = np.where(rows[..., IS_ARC] != 0.0, turned, along) / rows[..., HALF_EXTENT]
+        starts = self.near.starts
+        count = starts[feature + 1] - starts[feature]
+        place = np.floor((at + 1.0) / 2.0 * count + ASIDE).astype(np.int64)
+        return one_in(self.numbers[starts[feature] + np.clip(place, 0, count - 1)].sum(axis=1), self.every)
 
 
 def cells_of(blocks: Sequence[Block]) -> tuple[Array, Array, Array]:
@@ -137,6 +204,7 @@ def cells_of(blocks: Sequence[Block]) -> tuple[Array, Array, Array]:
 
 def listed_in(
     searches: Sequence[ToolkitSearch],
+    stretches: Stretches,
     query: Query,
     ranges: Sequence[tuple[float, float]],
     threads: int,
@@ -151,8 +219,10 @@ def listed_in(
     inside = [(low + 2.0 * ANGLE_HAIR, high - 2.0 * ANGLE_HAIR)]
     found = []
     for search in searches:
-        blocks = search.blocks(search.problem.toolkit.types, MOST_CELLS, within=inside)
-        found.append(PackedContacts.of(run_blocks(blocks, threads, None, cancel, stop=search.stop)[0]))
+        chosen = evolve(search, near=stretches.near, precision=precision_of(search.problem))
+        blocks = chosen.blocks(search.problem.toolkit.types, MOST_CELLS, within=inside)
+        records = run_blocks(blocks, threads, None, cancel, stop=chosen.stop)[0]
+        found.append(stretches.chosen(records, search.problem))
     every = sum(map(len, found)) // CONTACTS_DECIDED + 1
     collector = ClampedSeats(query, searches[0].problem)
     some = [thinned(part, search.problem, every) for part, search in zip(found, searches, strict=True)]
@@ -160,18 +230,15 @@ def listed_in(
     hurry = Event()
     hurry.set()
     with LatticeShares.made(searches, collector, threads, hurry) as shares:
-        return float(every * collector.count(shares.seats_among(some, ranges)))
+        return float(stretches.every * every * collector.count(shares.seats_among(some, ranges)))
 
 
-def thinned(contacts: PackedContacts, problem: Problem, every: int) -> Array:
-    """The contacts (N, 19) of one seat in so many."""
-    parts = []
-    for records in contacts.parts():
-        holes, theta, *_ = seat_numbers(records, problem)
-        # Seats with the same holes and nearly the same orientation are taken together.
-        seats = holes * 0x85EBCA6B + np.round(theta / (100.0 * SAME_POSE)).astype(np.int64)
-        parts.append(records[one_in(seats, every)])
-    return np.concatenate(parts)
+def thinned(records: Array, problem: Problem, every: int) -> Array:
+    """Of contacts (N, 19) those (M, 19) of one seat in so many."""
+    holes, theta, *_ = seat_numbers(records, problem)
+    # Seats with the same holes and nearly the same orientation are taken together.
+    seats = holes * 0x85EBCA6B + np.round(theta / (100.0 * SAME_POSE)).astype(np.int64)
+    return np.asarray(records[one_in(seats, every)])
 
 
 def drawn_by(sizes: Array, count: float) -> tuple[IntArray, Array]:

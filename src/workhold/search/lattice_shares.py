@@ -26,7 +26,7 @@ from workhold.fixels.fields import PITCH
 from workhold.kernels.base.tables import NearSpots
 from workhold.kernels.curves.block_work import CANDIDATES
 from workhold.limits import refuse_much_work
-from workhold.listing.bounds import preferred_angles
+from workhold.listing.bounds import preferred_angles, tilted_keys
 from workhold.listing.canonical_form import Candidates, candidates_of, canonical_form, listed_once
 from workhold.listing.clamp_contacts import contacts_of_candidates
 from workhold.listing.collector import blocks_of
@@ -108,9 +108,10 @@ class LatticeShares:
             blocks = [blocks_of_search(search) for search in aslant]
             ranges = square_first(ranges_of(blocks), first)
             seats = ClampedSeats(query, square[0].problem, is_limited=True)
+            bound = tilted_keys(query, square[0].problem)
             seats.ranked.has_dropped = True
             with ThreadPoolExecutor(max_workers=threads) as pool:
-                yield cls(aslant, seats, blocks, ranges, None, pool, threads, cancel, square)
+                yield cls(aslant, seats, blocks, ranges, bound, pool, threads, cancel, square)
             return
         searches = searches_of(query, threads, cancel)
         blocks = [blocks_of_search(search) for search in searches]
@@ -213,7 +214,7 @@ class LatticeShares:
             contacts_of_candidates(self.proven(some, problem), problem)
             for some, problem in zip(records, problems, strict=True)
         ]
-        return seats_of(parts, problems[0], within)
+        return seats_of(parts, problems[0], within, self.collector.is_limited)
 
     def proven(self, records: Array, problem: Problem) -> Candidates:
         """Contacts of three locators and a clamp that are proven, each once."""

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
+from math import inf
 from threading import Event
 from time import perf_counter
 from typing import Any, Protocol
@@ -190,6 +191,8 @@ Array = NDArray[np.float64]
 
 # Searches that cost more begin with what lies square, see ``cells.Block``: those of a tenth of a second.
 SQUARE_FIRST = 1e6
+# Searches that cost more look at one chord curve in so many beforehand, to know which error is to be reached.
+SCOUTED_FROM, SCOUTED = 1.5e7, 8
 # Searches that cost more limit errors; those of two clamps, where seats are paired besides, from this part
 # of it.
 LIMITED_FROM, OF_TWO = 1.5e7, 0.5
@@ -206,19 +209,25 @@ def best_first(
     """Hands what may be among the best to those kept, see ``search.design.answer``."""
     query, problem = search.problem.query, search.problem
     # Smaller blocks learn earlier what margin is to be reached.
-    blocks_in = partial(search.blocks, query.types, 4 * LEAST_BLOCKS)
-    parts = [blocks_in()]
-    total = cost_of(parts[0])
+    blocks_in = partial(ToolkitSearch.blocks, types=query.types, least=4 * LEAST_BLOCKS)
+    total = cost_of(blocks_in(search))
     bound = tilted_bound(query, problem, total)
-    if bound is not None:
-        parts = [blocks_in(first=preferred_angles(query), rest=rest) for rest in (False, True)]
+    first = () if bound is None else preferred_angles(query)
+    if total > SCOUTED_FROM and len(search.precision.probes):
+        scout, known = evolve(search, every=SCOUTED), BestFixtures(problem, cancel)
+        run_blocks(blocks_in(scout, first=first), threads, None, cancel, known.add, stop=scout.stop)
+        known.decide()
+        if known.needed.error < inf:
+            # So many are known that nothing beyond this error is among the best.
+            kept.needed, kept.has_dropped = known.needed, True
+    parts = [blocks_in(search, first=first, rest=rest) for rest in ((False, True) if first else (False,))]
     begun, done = list[Block](), list[Block]()
     for part in parts:
         if begun and bound is not None and kept.rules_out(bound):
             break
         before, begun = cost_of(begun) / total if begun else 0.0, begun + part
         share = stage(progress, before, 1.0 if part is parts[-1] else cost_of(begun) / total)
-        done += run_blocks(part, threads, share, cancel, kept.add, look, search.stop)[1]
+        done += run_blocks(part, threads, share, cancel, kept.add, look, search.stop, needed=kept.needed)[1]
     return work_of(search, begun, done)
 
 

@@ -47,6 +47,7 @@ from workhold.model.notes import (
     FittedOutline,
     KeptBest,
     LeftUndecided,
+    Many,
     MoreSystems,
     NoFixture,
     NoPair,
@@ -290,6 +291,8 @@ def may_be_said(note: Note, listing: Listing) -> bool:
     match note:
         case BestOnly(best):
             return best == query.best and found >= best
+        case Many(count, kept):
+            return kept == listed and count > listed
         case Seated():
             return query.has_seating_rules and is_as_seated(note, listing)
         case AskedFor(rules):
