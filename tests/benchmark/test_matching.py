@@ -163,7 +163,7 @@ def test_csv_and_json_say_the_same(tmp_path: Path, content: Content) -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("{", "no JSON"),
+        ("{", "not valid JSON"),
         ("[]", "no list of fixtures"),
         ('{"fixtures": [{"pegs": []}]}', "fixture 1: 'pose' is missing"),
         ('{"fixtures": [{"pegs": [], "pose": {"theta_deg": 0, "x": 0, "y": 0}}]}', "no pegs"),

@@ -34,7 +34,7 @@ def test_a_batch_has_plain_vises_beside_others(run: Any, tmp_path: Any) -> None:
     [
         ("family", "a plain vise has no holes to keep pegs in"),
         ("copies", "a plain vise holds one part"),
-        ("seat", "what a part does while it is clamped is stated of round pegs"),
+        ("seat", "the seating is worked out only for round pegs"),
     ],
 )
 def test_what_is_of_pegs_is_refused_in_a_sentence(

@@ -144,8 +144,8 @@ def test_flutes_that_are_none_hold_nothing_up(tmp_path: Path, flutes: str) -> No
     [
         (b"tool,diameter\n1,10\n2,\xd810\n", "not UTF-8 text .*line 3.*Excel"),
         ("tool,diameter\n1,10\n".encode("utf-16"), "not UTF-8 text .*Excel"),
-        (b"tool,part\n1,\0\n", "NUL byte|names no columns|columns are not"),
-        (b"tool,part\n1," + b"x" * (CSV_LIMIT + 1) + b"\n", "letters|names no columns|columns are not"),
+        (b"tool,part\n1,\0\n", "NUL byte|names no columns|columns must be named"),
+        (b"tool,part\n1," + b"x" * (CSV_LIMIT + 1) + b"\n", "letters|names no columns|columns must be named"),
     ],
 )
 def test_every_reader_of_tables_refuses_in_a_sentence(
@@ -171,11 +171,11 @@ def test_every_reader_of_tables_refuses_in_a_sentence(
         ("theta_deg,x,y,peg1,peg1_x,peg1_y", "0,1,1e999,left,3,4", "column y: '1e999' is not a finite"),
         ("theta_deg,x,y,peg1,peg1_x,peg1_y", "0,1,1e308,left,3,4", "beyond 1e\\+06 mm"),
         ("theta_deg,x,y,peg1,peg1_x,peg1_y", "0,1,2,,3,4", "the role '' is not known"),
-        ("theta_deg,x,y", "0,1,2", "columns are not"),
+        ("theta_deg,x,y", "0,1,2", "columns must be named"),
     ],
 )
 def test_a_list_of_fixtures_lacks_no_column(tmp_path: Path, head: str, row: str, words: str) -> None:
-    """Nor a number; also of a peg whose columns are not all there."""
+    """Nor a number; also of a peg whose columns must be named all there."""
     path = tmp_path / "bar-plate.csv"
     path.write_text(f"{head}\n{row}\n")
     if words:

@@ -251,7 +251,7 @@ def test_any_segment_of_a_face_names_it() -> None:
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"body_radius": 2.0}, "body radius 2 is not one"),
+        ({"body_radius": 2.0}, "body radius 2 is less than the peg radius 3"),
         ({"blocked": ["L-C1"]}, "L-C1 is blocked, but each jaw has only 2 columns"),
         ({"rows": 3, "blocked": ["R-A4"]}, "R-A4 is blocked, but each jaw has only 3 rows"),
         ({"blocked": ["L-A", "L-B"]}, "every column of the left jaw is blocked"),
