@@ -244,8 +244,10 @@ def order_words(fixture: Fixture) -> str:
 def freedom_words(degrees: float) -> str:
     """What a clamp freedom means.
 
-    >>> freedom_words(90.0), freedom_words(71.5), freedom_words(4.0)
-    ('the part is held whatever the two forces are', 'no torque wrench is needed', 'both forces have to be right: use a torque wrench')
+    >>> freedom_words(90.0)
+    'the part is held whatever the two forces are'
+    >>> freedom_words(71.5), freedom_words(4.0)
+    ('no torque wrench is needed', 'both forces have to be right: use a torque wrench')
     """
     if degrees >= 90.0 - 1e-9:
         return "the part is held whatever the two forces are"

@@ -1,7 +1,7 @@
 """Compile the kernels of a room into one library: ``python -m workhold.kernels.base.building ROOM FOLDER``.
 
-Numba compiles each kernel together with an entry that reads its arguments from words. LLVM makes one object
-of all entries of the room, in which nothing else can be called, and a linker makes a shared library of it.
+Numba compiles each kernel together with an entry that reads its arguments from words. LLVM makes an object
+of each, in which nothing but the entry can be called, and a linker makes a shared library of them.
 Arrays in kernels look at memory of the caller and own none, so that no references are counted; the library
 calls functions of the C library's mathematics alone, and has neither Python nor numba in it.
 """
@@ -15,7 +15,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Iterator, Sequence
 from importlib import import_module
 from pathlib import Path
 from threading import Event, Thread
@@ -94,8 +94,17 @@ class EntrySource:
         return numba.cfunc(types.void(types.int64), error_model="numpy")(self.names["entry"])
 
 
-def make_object(room: str) -> bytes:
-    """Return an object file of all kernels of a room.
+def compile_kernels(room: str) -> Iterator[tuple[str, Any]]:
+    """Yield the name and LLVM's module of each kernel of a room, with the entry under that name."""
+    for kernel in kernels_of(room):
+        entry = EntrySource(kernel).compile()
+        module = llvm.parse_assembly(entry.inspect_llvm())
+        module.get_function(entry.native_name).name = kernel.name
+        yield kernel.name, module
+
+
+def make_object(module: Any, entries: Collection[str]) -> bytes:
+    """Return the object file of a module, in which nothing but the entries can be called.
 
     Raises
     ------
@@ -105,34 +114,19 @@ def make_object(room: str) -> bytes:
     machine = llvm.Target.from_default_triple().create_target_machine(
         cpu=os.environ["NUMBA_CPU_NAME"], features="", opt=3, reloc="pic", codemodel="default"
     )
-    whole = None
-    entries = []
-    for kernel in kernels_of(room):
-        entry = EntrySource(kernel).compile()
-        module = llvm.parse_assembly(entry.inspect_llvm())
-        module.get_function(entry.native_name).name = kernel.name
-        entries.append(kernel.name)
-        if whole is None:
-            whole = module
-        else:
-            whole.link_in(module)
-    assert whole is not None
-    for thing in (*whole.functions, *whole.global_variables):
+    for thing in (*module.functions, *module.global_variables):
         if not thing.is_declaration and thing.name not in entries:
             thing.linkage = "internal"
     builder = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=3))
-    builder.getModulePassManager().run(whole, builder)
-    for function in whole.functions:
+    builder.getModulePassManager().run(module, builder)
+    for function in module.functions:
         if function.is_declaration and not function.name.startswith("llvm.") and function.name not in OUTSIDE:
-            sys.exit(f"The kernels of {room} call {function.name}, which no library has.")
-    return bytes(machine.emit_object(whole))
+            sys.exit(f"One of the kernels {', '.join(entries)} calls {function.name}, which no library has.")
+    return bytes(machine.emit_object(module))
 
 
-def link(source: Path, target: Path) -> bool:
-    """Make a shared library of an object file, and return whether there was a linker for it."""
-    linker = shutil.which("cc") or shutil.which("ld")
-    if linker is None:
-        return False
+def link(linker: str, sources: Sequence[Path], target: Path) -> None:
+    """Make a shared library of object files."""
     if sys.platform == "darwin":
         options = ["-dynamiclib", "-undefined", "dynamic_lookup"]
     elif sys.platform == "win32":
@@ -141,25 +135,37 @@ def link(source: Path, target: Path) -> bool:
     else:
         # What is left open, the functions of libm, is found in the process that loads the library.
         options = ["-shared", "-s"] + (["-nostdlib"] if linker.endswith("cc") else [])
-    subprocess.run([linker, *options, "-o", target, source], check=True)
-    return True
+    subprocess.run([linker, *options, "-o", target, *sources], check=True)
 
 
 def build(room: str, folder: Path) -> Path:
-    """Build the library of a room into a folder, an object file where there is no linker; return its path."""
-    package = (
-        f"{__name__.split('.')[0]}.kernels.{room}" if __name__ != "__main__" else f"workhold.kernels.{room}"
-    )
+    """Build the library of a room into a folder, and return its path.
+
+    Each kernel is optimized with its own copies of what it calls, which makes it faster. Where there is no
+    linker all kernels are one object file.
+    """
+    package = f"workhold.kernels.{room}"
     for module in pkgutil.iter_modules([str(KERNELS / room)]):
         if module.name not in ("building", "libraries", "views"):
             import_module(f"{package}.{module.name}")
+    linker = shutil.which("cc") or shutil.which("ld")
     with tempfile.TemporaryDirectory(dir=folder) as name:
-        made = Path(name) / "kernels.o"
-        made.write_bytes(make_object(room))
-        linked = made.with_suffix(".so")
-        if link(made, linked):
-            made = linked
-        path = folder / library_name(room, ENDINGS[made.suffix != ".so"])
+        made, whole = Path(name) / "kernels", None
+        entries, objects = list[str](), list[Path]()
+        for entry, module in compile_kernels(room):
+            entries.append(entry)
+            if linker is not None:
+                objects.append(made.with_name(f"{entry}.o"))
+                objects[-1].write_bytes(make_object(module, (entry,)))
+            elif whole is None:
+                whole = module
+            else:
+                whole.link_in(module)
+        if linker is not None:
+            link(linker, objects, made)
+        else:
+            made.write_bytes(make_object(whole, entries))
+        path = folder / library_name(room, ENDINGS[linker is None])
         made.replace(path)
     return path
 
