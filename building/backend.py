@@ -34,7 +34,7 @@ from workhold.kernels.base.libraries import (  # noqa: E402
     KERNELS,
     ROOMS,
     build_libraries,
-    is_in,
+    find_in,
     source_hash,
 )
 
@@ -64,7 +64,7 @@ def needed() -> list[str]:
 
 def are_built() -> bool:
     """Return whether the package has the libraries of these sources."""
-    return all(is_in(KERNELS, room) for room in ROOMS)
+    return all(find_in(KERNELS, room) for room in ROOMS)
 
 
 def compile_kernels() -> None:

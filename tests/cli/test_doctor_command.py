@@ -57,7 +57,7 @@ def findings() -> dict[str, tuple[str, str | None]]:
 
 def test_every_extra_is_looked_at(installation: None, monkeypatch: pytest.MonkeyPatch) -> None:
     """A version that is too old, a library that does not load, and one that is missing each have a remedy."""
-    monkeypatch.setattr(libraries, "is_in", lambda folder, room: False)
+    monkeypatch.setattr(libraries, "find_in", lambda folder, room: None)
     found = findings()
     assert found["numba"] == ("numba 0.68.1", None)
     assert found["batch"] == ("scipy 1.2, older than 1.13", "pip install 'scipy>=1.13'")
@@ -90,7 +90,7 @@ def test_what_is_missing_is_red_on_a_terminal(installation: None) -> None:
 
 def test_kernels_that_are_missing_have_a_remedy(installation: None, monkeypatch: pytest.MonkeyPatch) -> None:
     """Where there are neither libraries nor numba to make them with."""
-    monkeypatch.setattr(libraries, "is_in", lambda folder, room: False)
+    monkeypatch.setattr(libraries, "find_in", lambda folder, room: None)
     monkeypatch.setattr(installed_commands, "find_spec", lambda name: None)
     assert findings()["kernels"] == ("missing", "pip install numba")
 
@@ -104,17 +104,17 @@ def test_the_python_that_is_looked_at_is_named() -> None:
 
 def test_nothing_is_to_add_where_all_is_there(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(installed_commands, "extras", lambda is_built: iter(()))
-    monkeypatch.setattr(libraries, "is_in", lambda folder, room: True)
+    monkeypatch.setattr(libraries, "find_in", lambda folder, room: folder)
     assert "To add" not in CliRunner().invoke(app, ["doctor"]).stdout
 
 
 def test_kernels_say_where_they_come_from(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, installation: None
 ) -> None:
-    monkeypatch.setattr(libraries, "is_in", lambda folder, room: True)
+    monkeypatch.setattr(libraries, "find_in", lambda folder, room: folder)
     assert findings()["kernels"] == ("compiled in the package", None)
     assert findings()["numba"] == ("not needed here", None)
-    monkeypatch.setattr(libraries, "is_in", lambda folder, room: False)
+    monkeypatch.setattr(libraries, "find_in", lambda folder, room: None)
     monkeypatch.setattr(libraries, "cache_folder", lambda: tmp_path)
     monkeypatch.setattr(libraries, "is_built", lambda: False)
     assert findings()["kernels"] == (f"to be compiled on the first run, kept in {tmp_path}", None)

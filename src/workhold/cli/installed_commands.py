@@ -99,9 +99,9 @@ def table(findings: list[InstallationRow]) -> Table:
 def kernels() -> InstallationRow:
     """Where the compiled arithmetic comes from: the package, or numba and its cache on disk."""
     use = "The arithmetic of every search."
-    from workhold.kernels.base.libraries import KERNELS, ROOMS, cache_folder, is_built, is_in
+    from workhold.kernels.base.libraries import KERNELS, ROOMS, cache_folder, find_in, is_built
 
-    if all(is_in(KERNELS, room) for room in ROOMS):
+    if all(find_in(KERNELS, room) for room in ROOMS):
         return InstallationRow("kernels", BUILT, use)
     if find_spec("numba") is None:
         return InstallationRow("kernels", "missing", use, "pip install numba")

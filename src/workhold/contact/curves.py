@@ -33,8 +33,8 @@ from workhold.kernels.curves.table import make_curve_space, write_tail_curves
 
 __all__ = ["ANY_TURN", "CurveTable", "LatticeSteps", "center_numbers", "curve_table", "joined", "loosened"]
 
-# Rules nothing out.
 CURVE_CAPACITY = Capacity(256)
+# Rules nothing out.
 EVERYWHERE = NearSpots(np.zeros(1, np.int64), np.zeros((0, 0), np.int8), np.zeros((0, 0, 0), np.int8))
 ANY_TURN = np.zeros((0, 2))
 

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from workhold.conventions import STRAIGHT
 from workhold.fixels.carrier import Carrier
+from workhold.geometry.segment import ends_of_rows
 from workhold.geometry.symmetry import rotated
 from workhold.kernels.base.distance import DEPTH, LEAF, SweptTree, nearest_swept
 from workhold.kernels.base.feature import (
@@ -159,12 +160,8 @@ class Swept:
     def starts(self) -> Array:
         """A point (N, 2) of each span: where an arc or a line begins."""
         rows = self.tree.rows
-        middle, axis = rows[:, [X, Y]], rows[:, [AXIS_X, AXIS_Y]]
-        is_arc = (rows[:, IS_ARC] != 0.0)[:, None]
-        angle = np.where(is_arc[:, 0], -rows[:, SIGN] * rows[:, HALF_EXTENT], 0.0)
-        c, s = np.cos(angle), np.sin(angle)
-        ray = np.column_stack([c * axis[:, 0] - s * axis[:, 1], s * axis[:, 0] + c * axis[:, 1]])
-        return np.where(is_arc, middle + rows[:, [RADIUS]] * ray, middle - rows[:, [HALF_EXTENT]] * axis)
+        is_clockwise = (rows[:, IS_ARC] != 0.0) & (rows[:, SIGN] < 0.0)
+        return np.asarray(ends_of_rows(rows)[np.arange(len(rows)), is_clockwise.astype(np.int64)])
 
     def reach_of_box(self, corners: Array) -> tuple[float, int]:
         """Least reach to a box with corners (4, 2) counterclockwise, inside and out, and the line of the program.

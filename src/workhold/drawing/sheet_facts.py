@@ -324,6 +324,15 @@ def pressed_height(
     return max(min(known), 0.0) if known else None
 
 
+def zero_to_set(
+    program: Program | None, workpiece: Workpiece, question: SheetQuestion, unit: Unit
+) -> PartZero:
+    """Return the part zero that the machinist sets: that of the program where there is one and none is asked for."""
+    if program is not None and question.zero is None:
+        return PartZero(program.zero, "place given" if any(program.zero) else "origin of the drawing")
+    return part_zero(workpiece, question.zero, unit)
+
+
 def hold_details(
     result: Result,
     rank: int,
@@ -336,11 +345,6 @@ def hold_details(
 ) -> tuple[Fixture, SheetDetails]:
     """The same of a fixture that flat jaws hold, which has no pegs to say anything of."""
     query = result.query
-    zero = part_zero(result.workpiece, question.zero, unit)
-    if query.program is not None and question.zero is None:
-        zero = PartZero(
-            query.program.zero, "place given" if any(query.program.zero) else "origin of the drawing"
-        )
     details = SheetDetails(
         number=rank if number is None else number,
         count=len(result) if count is None else count,
@@ -348,7 +352,7 @@ def hold_details(
         result_hash=result_hash,
         version=__version__,
         unit=unit,
-        zero=zero,
+        zero=zero_to_set(query.program, result.workpiece, question, unit),
         program=query.program,
         thickness=query.part_height,
         listed_as=listed_as,
@@ -451,11 +455,6 @@ def result_details(
         jaw_force=jaw_force,
         lift=lift,
     )
-    if program is not None and question.zero is None:
-        # Where the program counts from is what the machinist sets.
-        place = PartZero(program.zero, "place given" if any(program.zero) else "origin of the drawing")
-    else:
-        place = part_zero(workpiece, question.zero, unit)
     details = SheetDetails(
         number=rank if number is None else number,
         count=len(result) if count is None else count,
@@ -467,7 +466,7 @@ def result_details(
         jaw_force=jaw_force,
         friction=friction,
         loads=cases,
-        zero=place,
+        zero=zero_to_set(program, workpiece, question, unit),
         peg_height=peg_height,
         others=result.table.same_holes(rank - 1) if others is None else others,
         why_first=why_first(result, unit) if rank == (number or 1) == 1 else "",

@@ -17,7 +17,7 @@ from attrs import evolve, fields, frozen
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
-from workhold.conventions import ANGLE_SLACK, FIGURE_DECIMALS
+from workhold.conventions import FIGURE_DECIMALS
 from workhold.errors import InputError
 from workhold.family.patterns import half_turn, pattern_words, turned, zero_words
 from workhold.listing.canonical_form import changes
@@ -32,7 +32,7 @@ from workhold.model.quality import (
     figure_number,
 )
 from workhold.model.query import Query
-from workhold.model.requirements import ANY_DIRECTION, Load, Restrictions, Tolerance, zone_of
+from workhold.model.requirements import ANY_DIRECTION, Load, Restrictions, Tolerance, are_within, zone_of
 from workhold.model.result import Result
 from workhold.model.setup import PartZero, part_zero
 from workhold.model.workpiece import Workpiece
@@ -351,10 +351,7 @@ def with_half_turns(table: FixtureTable, query: Query) -> tuple[FixtureTable, In
 
 def at_angle(degrees: NDArray[np.float64], query: Query) -> NDArray[np.bool_]:
     """Whether orientations (N,) in degrees lie in a range allowed; without ranges all do."""
-    inside = np.full(len(degrees), not query.restrictions.angles)
-    for low, high in query.restrictions.angles:
-        inside |= (degrees - low + ANGLE_SLACK) % 360.0 <= high - low + 2 * ANGLE_SLACK
-    return inside
+    return np.asarray(are_within(degrees, query.restrictions.angles))
 
 
 def spilled(table: FixtureTable) -> FixtureTable:

@@ -23,7 +23,17 @@ from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import PARALLEL, STRAIGHT
-from workhold.kernels.base.feature import SEGMENT_LENGTH, SHALLOW
+from workhold.kernels.base.feature import (
+    AXIS_X,
+    AXIS_Y,
+    HALF_EXTENT,
+    IS_ARC,
+    RADIUS,
+    SEGMENT_LENGTH,
+    SHALLOW,
+    X,
+    Y,
+)
 
 __all__ = [
     "Arc",
@@ -36,6 +46,7 @@ __all__ = [
     "common_points",
     "holds",
     "segment_from_bulge",
+    "ends_of_rows",
     "segment_rows",
 ]
 
@@ -236,6 +247,16 @@ def segment_rows(segments: Sequence[Segment]) -> NDArray[np.float64]:
     rows = np.array([segment.row() for segment in segments], dtype=np.float64).reshape(-1, SEGMENT_LENGTH)
     rows.setflags(write=False)
     return rows
+
+
+def ends_of_rows(rows: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the low and the high end (N, 2, 2) of segments, given their rows (N, 10), to which more may be added."""
+    half, axis = rows[:, HALF_EXTENT, None] * np.array([-1.0, 1.0]), rows[:, None, AXIS_X : AXIS_Y + 1]
+    cosine, sine = np.cos(half), np.sin(half)
+    turned = (cosine * axis[..., 0] - sine * axis[..., 1], sine * axis[..., 0] + cosine * axis[..., 1])
+    on_arc = np.stack(turned, axis=-1) * rows[:, None, None, RADIUS]
+    is_arc = rows[:, IS_ARC, None, None] != 0.0
+    return np.asarray(rows[:, None, X : Y + 1] + np.where(is_arc, on_arc, axis * half[..., None]))
 
 
 def line_line(a: Line, b: Line) -> list[Point]:

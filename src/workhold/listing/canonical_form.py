@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from workhold.contact.features import meeting_ends
 from workhold.contact.problem import Problem
 from workhold.conventions import END_SLACK, JOINT, SAME_PLACE, SAME_POSE
-from workhold.geometry.symmetry import rotated
-from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
+from workhold.geometry.segment import ends_of_rows
 from workhold.kernels.contact import record
 from workhold.kernels.contact.record import WORK_LENGTH
 from workhold.kernels.proof.canonical_form import contacts_of, to_canonical_form
@@ -116,7 +115,7 @@ def on_each_face(records: Array, problem: Problem, pegs: int) -> tuple[IntArray,
 
     Of the first ``pegs`` those at a joint may touch either feature.
     """
-    ends = ends_of(problem.rows)
+    ends = ends_of_rows(problem.rows)
     # A feature shorter than that has others beside it that do not begin where it ends.
     one, other = joints(problem, 4.0 * NEAR_END)
     points, numbers = candidates_of(records, problem).point, np.arange(len(records))
@@ -141,24 +140,16 @@ def are_lowest(feature: IntArray, point: Array, problem: Problem) -> NDArray[np.
     one, other = joints(problem, JOINT)
     is_lowest = np.ones((len(problem.rows), 2), np.bool_)
     is_lowest.reshape(-1)[one[other // 2 < one // 2]] = False
-    at_end = np.abs(point[:, :, None] - ends_of(problem.rows)[feature]).max(axis=3) <= END_SLACK
+    at_end = np.abs(point[:, :, None] - ends_of_rows(problem.rows)[feature]).max(axis=3) <= END_SLACK
     return np.asarray((is_lowest[feature] | ~at_end).all(axis=(1, 2)))
 
 
 def joints(problem: Problem, within: float) -> tuple[IntArray, IntArray]:
     """Which ends of features, two for each, meet which of others that the same pegs touch, within so many mm."""
-    one, other = meeting_ends(ends_of(problem.rows).reshape(-1, 2), within)
+    one, other = meeting_ends(ends_of_rows(problem.rows).reshape(-1, 2), within)
     begin, last = problem.moving
     alike = ((one // 2 >= begin) & (one // 2 < last)) == ((other // 2 >= begin) & (other // 2 < last))
     return one[alike], other[alike]
-
-
-def ends_of(rows: Array) -> Array:
-    """The low and the high end (F, 2, 2) of features (F, 12)."""
-    half, axis = rows[:, HALF_EXTENT, None] * np.array([-1.0, 1.0]), rows[:, None, AXIS_X : AXIS_Y + 1]
-    turned = np.stack(rotated(axis[..., 0], axis[..., 1], half), axis=-1) * rows[:, None, None, RADIUS]
-    is_arc = rows[:, IS_ARC, None, None] != 0.0
-    return np.asarray(rows[:, None, X : Y + 1] + np.where(is_arc, turned, axis * half[..., None]))
 
 
 def packed(*columns: tuple[NDArray[np.integer[Any]], int]) -> list[IntArray]:

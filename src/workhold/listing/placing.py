@@ -16,11 +16,12 @@ from attrs import define, evolve, fields
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Frame, Problem
-from workhold.conventions import ANGLE_SLACK, GAP_SLACK
+from workhold.conventions import GAP_SLACK
 from workhold.geometry.symmetry import rotated
 from workhold.listing.canonical_form import Candidates
 from workhold.listing.clamp_placement import ClampPlacement, axis_of, is_bolted, last_holes
 from workhold.model.fixture_table import FixtureTable, unknown_quality
+from workhold.model.requirements import are_within
 from workhold.proof.deciding import is_standing
 from workhold.rowwise import largest, smallest
 
@@ -115,13 +116,7 @@ def bodies_clear(c: Candidates, frame: Frame) -> BoolArray:
 def at_angle(theta: Array, angles: Sequence[Sequence[float]], frame: Frame) -> BoolArray:
     """Which orientations (N,) in radians lie, seen from the toolkit, in one of some ranges in degrees; in any
     when there are none."""
-    if not angles:
-        return np.ones(len(theta), np.bool_)
-    degrees = np.degrees(theta) + 90.0 * frame.quarters
-    inside = np.zeros(len(theta), np.bool_)
-    for low, high in angles:
-        inside |= (degrees - low + ANGLE_SLACK) % 360.0 <= high - low + 2 * ANGLE_SLACK
-    return inside
+    return np.asarray(are_within(np.degrees(theta) + 90.0 * frame.quarters, angles))
 
 
 def free_columns(c: Candidates, frame: Frame) -> tuple[IntArray, IntArray]:

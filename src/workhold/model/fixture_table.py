@@ -15,7 +15,7 @@ from workhold.geometry.segment import Line
 from workhold.model.clamps import ratios, working_forces
 from workhold.model.fixture import Fixture, Listed, Pair, Peg
 from workhold.model.pose import ENDS, Pose
-from workhold.model.quality import BEFORE_PINS, CLOSURE_MARGIN, known_figures_of
+from workhold.model.quality import BEFORE_PINS, CLOSURE_MARGIN, TILT, WARNINGS, known_figures_of
 from workhold.model.wall_ends import wall_ends
 from workhold.model.workpiece import Workpiece
 
@@ -26,6 +26,7 @@ __all__ = [
     "fixtures_of",
     "flat_angles",
     "peg_places",
+    "table_of_flat_jaws",
     "unknown_quality",
 ]
 
@@ -164,6 +165,32 @@ def unknown_quality(closure_margin: NDArray[np.float64]) -> NDArray[np.float64]:
     quality = np.full((len(closure_margin), BEFORE_PINS), np.nan)
     quality[:, CLOSURE_MARGIN] = closure_margin
     return quality
+
+
+def table_of_flat_jaws(
+    theta: Sequence[float],
+    position: Sequence[tuple[float, float]],
+    opening: Sequence[float],
+    warnings: Sequence[int],
+) -> FixtureTable:
+    """Return the table of fixtures of two flat jaws: their poses, in radians and mm, their openings in mm and how
+    many warnings they have. They have no pegs."""
+    count = len(theta)
+    nothing = np.zeros((count, 0), np.int32)
+    quality = unknown_quality(np.full(count, np.nan))
+    quality[:, TILT] = 0.0
+    quality[:, WARNINGS] = warnings
+    return FixtureTable(
+        arrangement=np.zeros(count, np.int8),
+        column=nothing,
+        row=nothing.copy(),
+        face=nothing.copy(),
+        theta=np.array(theta, np.float64),
+        position=np.array(position, np.float64).reshape(-1, 2),
+        jaw_separation=np.array(opening, np.float64),
+        force=np.zeros((count, 0)),
+        quality=quality,
+    )
 
 
 def whole_turn_degrees(theta: float) -> float:

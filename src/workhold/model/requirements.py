@@ -17,6 +17,7 @@ from attrs.converters import optional
 from numpy.typing import ArrayLike, NDArray
 
 from workhold.asking.search import RuledOut
+from workhold.conventions import ANGLE_SLACK
 from workhold.errors import InputError, quoted
 from workhold.geometry.loop import (
     LoopShape,
@@ -36,6 +37,7 @@ __all__ = [
     "Restrictions",
     "Tolerance",
     "Zone",
+    "are_within",
     "circle_zone",
     "far_loads",
     "polygon_zone",
@@ -311,6 +313,16 @@ def face_numbers(numbers: Any) -> tuple[int, ...]:
         if not number.is_integer():
             raise InputError(f"the number of a face cannot be {quoted(one)}: give a whole number.")
     return tuple(sorted({int(one) for one in given}))
+
+
+def are_within(degrees: Any, ranges: Sequence[Sequence[float]]) -> Any:
+    """Return whether angles in degrees, an array (N,) or one, lie in one of some ranges (from, to), ends included;
+    in any where there are none."""
+    if not ranges:
+        return np.ones(np.shape(degrees), np.bool_)
+    # A limit that is met exactly is kept, however a machine rounds.
+    inside = [(degrees - low + ANGLE_SLACK) % 360.0 <= high - low + 2 * ANGLE_SLACK for low, high in ranges]
+    return np.any(inside, axis=0)
 
 
 @frozen

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from workhold.contact.features import avoided_faces
 from workhold.contact.problem import Problem
-from workhold.conventions import ANGLE_SLACK, CLEARANCE, GAP_SLACK, LEAST_SPAN, PARALLEL
+from workhold.conventions import CLEARANCE, GAP_SLACK, LEAST_SPAN, PARALLEL
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import bounding_box
@@ -25,6 +25,7 @@ from workhold.geometry.symmetry import rotated
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.pose import Pose
+from workhold.model.requirements import are_within
 from workhold.model.search_report import Undecided
 
 __all__ = ["FlushSearch", "PartOnWall", "part_on_wall"]
@@ -86,10 +87,7 @@ def allowed_edges(problem: Problem) -> list[int]:
         if any(map(avoided.issuperset, touching)):
             continue
         turned = float(np.degrees(theta))
-        off = [
-            ((turned - low + ANGLE_SLACK) % 360.0, high - low + 2 * ANGLE_SLACK) for low, high in asked.angles
-        ]
-        if off and not any(ahead <= width for ahead, width in off):
+        if not are_within(turned, asked.angles):
             continue
         x, y = part.flush.ends[number, 0].tolist()
         pose = Pose(turned, 0.0, -float(rotated(x, y, theta)[1]))

@@ -30,14 +30,13 @@ from workhold.fixels.jaw_pair import JawPair
 from workhold.geometry.hull import HullEdge, HullTouch, hull_edges, touches_along
 from workhold.geometry.segment import Arc, Segment
 from workhold.geometry.symmetry import rotations_onto_itself
-from workhold.model.fixture_table import FixtureTable, unknown_quality
+from workhold.model.fixture_table import FixtureTable, table_of_flat_jaws
 from workhold.model.friction import friction_of
 from workhold.model.jaw_hold import JawHold, Patch
 from workhold.model.notes import NoFixture, Note, Remark, Stage
 from workhold.model.program import Program
-from workhold.model.quality import CLOSURE_MARGIN, TILT, WARNINGS
 from workhold.model.query import Query
-from workhold.model.requirements import Load
+from workhold.model.requirements import Load, are_within
 from workhold.model.result import Result
 from workhold.model.solid import Band
 from workhold.model.workpiece import Workpiece
@@ -354,7 +353,7 @@ class JawSearch:
         query, jaws = self.query, self.jaws
         top = jaws.top(parallels)
         nothing = Examined(lying.theta, (0.0, 0.0), None, "grip")
-        if not is_at_angle(degrees(lying.theta), query.restrictions.angles):
+        if not are_within(degrees(lying.theta), query.restrictions.angles):
             return evolve(nothing, rule="angles")
         least = jaws.least_grip if query.part_height is not None else 0.0
         if top < jaws.least_grip:
@@ -517,11 +516,6 @@ def worst_of(needs: Sequence[float | None]) -> float | None:
     return max(known) if len(known) == len(needs) else None
 
 
-def is_at_angle(theta_deg: float, ranges: Sequence[tuple[float, float]]) -> bool:
-    """Whether an angle in degrees is in one of some ranges; in any where there are none."""
-    return not ranges or any((theta_deg - low + 1e-7) % 360.0 <= high - low + 2e-7 for low, high in ranges)
-
-
 def is_square(theta: float) -> bool:
     """Whether an angle in radians is a quarter turn, or none."""
     return abs((degrees(theta) + 45.0) % 90.0 - 45.0) < SQUARE_TILT
@@ -585,7 +579,7 @@ def answer_between_jaws(
     count = {query.toolkit.arrangements[0].name: len(found)}
     return Result(
         query=query,
-        table=table_of(listed, query),
+        table=table_of(listed),
         found=count,
         distinct=dict.fromkeys(count, distinct(found, query.workpiece)),
         complete=whole,
@@ -595,24 +589,14 @@ def answer_between_jaws(
     )
 
 
-def table_of(listed: Sequence[Examined], query: Query) -> FixtureTable:
-    """The table of some fixtures; it has their poses and openings, and no pegs."""
-    count = len(listed)
-    nothing = np.zeros((count, 0), np.int32)
-    quality = unknown_quality(np.zeros(count))
-    quality[:, CLOSURE_MARGIN] = np.nan
-    quality[:, TILT] = 0.0
-    quality[:, WARNINGS] = [0 if one.hold is None else len(one.hold.warnings) for one in listed]
-    return FixtureTable(
-        arrangement=np.zeros(count, np.int8),
-        column=nothing,
-        row=nothing.copy(),
-        face=nothing.copy(),
-        theta=np.array([one.theta for one in listed]),
-        position=np.array([one.position for one in listed]).reshape(-1, 2),
-        jaw_separation=np.array([0.0 if one.hold is None else one.hold.opening for one in listed]),
-        force=np.zeros((count, 0)),
-        quality=quality,
+def table_of(listed: Sequence[Examined]) -> FixtureTable:
+    """The table of some fixtures."""
+    holds = [one.hold for one in listed if one.hold is not None]
+    return table_of_flat_jaws(
+        [one.theta for one in listed],
+        [one.position for one in listed],
+        [hold.opening for hold in holds],
+        [len(hold.warnings) for hold in holds],
     )
 
 

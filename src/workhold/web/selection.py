@@ -6,12 +6,12 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
-from workhold.conventions import ANGLE_SLACK
 from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.listing.identity import Entries, first_of_each, near_duplicates
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import FIGURES, figure_column, figure_number
+from workhold.model.requirements import are_within
 from workhold.model.result import Result
 from workhold.statics.judging import unfit
 
@@ -80,10 +80,7 @@ class Selection:
         if self.face is not None:
             chosen &= (table.face == self.face).any(axis=1)
         if self.angle is not None:
-            low, high = self.angle
-            # A limit that is met exactly is kept, however a machine rounds.
-            turned = (np.degrees(table.theta) - low + ANGLE_SLACK) % 360.0
-            chosen &= turned <= high - low + 2.0 * ANGLE_SLACK
+            chosen &= are_within(np.degrees(table.theta), (self.angle,))
         found = np.flatnonzero(chosen)
         if column is None:
             return found[::-1] if self.descending else found

@@ -12,16 +12,15 @@ from math import radians
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import Field, ValidationError
 
 from workhold.errors import InputError
+from workhold.files.result.forms import FormPart, first_fault
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
-from workhold.model.fixture_table import FixtureTable, unknown_quality
+from workhold.model.fixture_table import FixtureTable, table_of_flat_jaws
 from workhold.model.jaw_hold import HOLD_FIGURES, JawHold, Patch
 from workhold.model.pose import Pose
-from workhold.model.quality import CLOSURE_MARGIN, TILT, WARNINGS
 from workhold.model.query import Query
 from workhold.model.result import Result
 
@@ -87,13 +86,7 @@ def hold_lines(result: Result) -> Iterator[str]:
     return (json.dumps(hold_entry(fixture)) for fixture in result)
 
 
-class HoldKeys(BaseModel):
-    """Keys that must look like this; further keys are allowed."""
-
-    model_config = ConfigDict(strict=True, allow_inf_nan=False)
-
-
-class PatchPart(HoldKeys):
+class PatchPart(FormPart):
     """What a jaw touches: the faces, and rectangles [x0, x1, z0, z1] in mm; a line has no width."""
 
     segments: list[Whole] = Field(description="numbers of the faces; none where corners touch")
@@ -104,7 +97,7 @@ class PatchPart(HoldKeys):
         return Patch(rows, tuple(self.segments), not self.segments)
 
 
-class HoldPosePart(HoldKeys):
+class HoldPosePart(FormPart):
     """Where the workpiece lies."""
 
     theta_deg: Number
@@ -112,7 +105,7 @@ class HoldPosePart(HoldKeys):
     y: Number
 
 
-class HoldQualityPart(HoldKeys):
+class HoldQualityPart(FormPart):
     """Figures, in mm, mm², N and MPa."""
 
     full_contact: bool
@@ -129,7 +122,7 @@ class HoldQualityPart(HoldKeys):
     tilt: Number = 0.0
 
 
-class HoldPart(HoldKeys):
+class HoldPart(FormPart):
     """A fixture of two flat jaws; best first."""
 
     type: str
@@ -139,7 +132,7 @@ class HoldPart(HoldKeys):
     moving: PatchPart
     pose: HoldPosePart
     jaw_separation: Number
-    warnings: list[str] = []
+    warnings: list[str] = Field(default=[])
     quality: HoldQualityPart
 
     def fixture(self, toolkit: Toolkit, unit_force: float | None = None) -> Fixture:
@@ -187,9 +180,7 @@ def read_holds(fixtures: Iterable[Any], path: Path) -> list[HoldPart]:
         try:
             out.append(HoldPart.model_validate(fixture))
         except ValidationError as error:
-            first = error.errors()[0]
-            key, message = ".".join(map(str, first["loc"])), first["msg"]
-            reason = "it is missing" if first["type"] == "missing" else message[:1].lower() + message[1:]
+            key, reason = first_fault(error)
             raise InputError(f"{path}: fixture {number} cannot be used: {key}: {reason}.") from error
     return out
 
@@ -211,22 +202,12 @@ def holds_of(parts: Sequence[HoldPart], query: Query, path: Path) -> tuple[JawHo
 
 
 def table_of_holds(parts: Sequence[HoldPart]) -> FixtureTable:
-    """The table of the fixtures of a file, which has poses and openings, and no pegs."""
-    count, nothing = len(parts), np.zeros((len(parts), 0), np.int32)
-    quality = unknown_quality(np.full(count, np.nan))
-    quality[:, CLOSURE_MARGIN] = np.nan
-    quality[:, TILT] = 0.0
-    quality[:, WARNINGS] = [len(part.warnings) for part in parts]
-    return FixtureTable(
-        arrangement=np.zeros(count, np.int8),
-        column=nothing,
-        row=nothing.copy(),
-        face=nothing.copy(),
-        theta=np.array([radians(part.pose.theta_deg) for part in parts]),
-        position=np.array([(part.pose.x, part.pose.y) for part in parts]).reshape(-1, 2),
-        jaw_separation=np.array([part.jaw_separation for part in parts]),
-        force=np.zeros((count, 0)),
-        quality=quality,
+    """The table of the fixtures of a file."""
+    return table_of_flat_jaws(
+        [radians(part.pose.theta_deg) for part in parts],
+        [(part.pose.x, part.pose.y) for part in parts],
+        [part.jaw_separation for part in parts],
+        [len(part.warnings) for part in parts],
     )
 
 

@@ -15,7 +15,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from importlib import import_module
 from pathlib import Path
 from threading import Event, Thread
@@ -34,7 +34,6 @@ from workhold.kernels.base.compiling import (
     dimensions,
     element,
     fields,
-    kernels_of,
 )
 from workhold.kernels.base.libraries import ENDINGS, KERNELS, library_name
 from workhold.kernels.base.views import view_at
@@ -96,7 +95,7 @@ class EntrySource:
 
 def compile_kernels(room: str) -> Iterator[tuple[str, Any]]:
     """Yield the name and LLVM's module of each kernel of a room, with the entry under that name."""
-    for kernel in kernels_of(room):
+    for _, kernel in sorted(Kernel.all[room].items()):
         entry = EntrySource(kernel).compile()
         module = llvm.parse_assembly(entry.inspect_llvm())
         module.get_function(entry.native_name).name = kernel.name
@@ -189,11 +188,14 @@ def main(room: str, folder: str) -> None:
     # The collector would look through all that is compiled again and again.
     gc.disable()
     stop = Event()
-    watching: list[Callable[[], None]] = [end_with_starter, lambda: report_progress(stop)]
-    for watch in watching:
-        Thread(target=watch, daemon=True).start()
-    build(room, Path(folder))
-    stop.set()
+    Thread(target=end_with_starter, daemon=True).start()
+    reporting = Thread(target=report_progress, args=(stop,))
+    reporting.start()
+    try:
+        build(room, Path(folder))
+    finally:
+        stop.set()
+        reporting.join()
     sys.stdout.write("1.0\n")
 
 

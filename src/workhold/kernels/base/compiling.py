@@ -17,7 +17,7 @@ entry : the function of a library that reads the arguments of a kernel from word
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from ctypes import addressof, c_char
 from functools import cached_property, update_wrapper
 from inspect import signature
@@ -195,24 +195,17 @@ def array_taker(kind: Any, name: str) -> Taker:
     wanted, count = element(kind), dimensions(kind)
 
     def take(value: Any, words: list[Any]) -> None:
-        if not isinstance(value, np.ndarray) or value.ndim != count or value.dtype != wanted:
+        is_array = isinstance(value, np.ndarray) and value.ndim == count and value.dtype == wanted
+        if not (is_array and value.flags.c_contiguous and value.flags.aligned):
             raise TypeError(f"{name} must be a C-contiguous array of {wanted} with {count} dimensions.")
-        words.append(find_address(value, name))
+        words.append(find_address(value))
         words += value.shape
 
     return take
 
 
-def find_address(array: np.ndarray[Any, Any], name: str = "an array") -> int:
-    """Return where the elements of an array begin.
-
-    Raises
-    ------
-    TypeError
-        When they do not lie one after the other.
-    """
-    if not (array.flags.c_contiguous and array.flags.aligned):
-        raise TypeError(f"{name} must be a C-contiguous array of {array.dtype} with {array.ndim} dimensions.")
+def find_address(array: np.ndarray[Any, Any]) -> int:
+    """Return where the elements of an array begin."""
     try:
         return addressof(c_char.from_buffer(array.data))
     except (TypeError, ValueError):
@@ -241,10 +234,9 @@ def remembering(take: Taker) -> Taker:
 
 def record_taker(kinds: list[tuple[str, Any]], name: str) -> Taker:
     """Return the taker of a named tuple or a tuple, see :func:`taker`."""
-    takers = [taker(kind, f"{name}.{field}") for field, kind in kinds]
     takers = [
-        remembering(take) if fields(kind) is None and kind not in LETTERS else take
-        for take, (_, kind) in zip(takers, kinds, strict=True)
+        remembering(take) if get_origin(kind) is Annotated else take
+        for kind, take in ((kind, taker(kind, f"{name}.{field}")) for field, kind in kinds)
     ]
 
     def take(value: Any, words: list[Any]) -> None:
@@ -254,9 +246,3 @@ def record_taker(kinds: list[tuple[str, Any]], name: str) -> Taker:
             take_part(part, words)
 
     return take
-
-
-def kernels_of(room: str) -> Iterator[Kernel]:
-    """Yield the kernels of a room, in the order of their names."""
-    for _, kernel in sorted(Kernel.all.get(room, {}).items()):
-        yield kernel

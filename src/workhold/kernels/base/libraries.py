@@ -61,11 +61,6 @@ def library_name(room: str, ending: str) -> str:
     return f"kernels-{room}-{source_hash()}.{get_platform().replace('.', '_')}.{ending}"
 
 
-def names_of(room: str) -> list[str]:
-    """Return the names that the file of a room's library may have."""
-    return [library_name(room, ending) for ending in ENDINGS]
-
-
 def user_cache() -> Path:
     """Return the folder for compiled code: ``$WORKHOLD_CACHE_DIR``, or ``workhold`` in the user's cache."""
     named = os.environ.get("WORKHOLD_CACHE_DIR")
@@ -116,12 +111,14 @@ def library_folder() -> Path:
 def find_library(room: str) -> Path | None:
     """Return the file of a room's library, or None where it is still to be built."""
     # Benchmarks and tests ask for what is compiled on first use, though the package has libraries.
-    in_package = () if os.environ.get("WORKHOLD_KERNELS") == "cache" else (KERNELS,)
-    for folder in (*in_package, library_folder()):
-        for name in names_of(room):
-            if (path := folder / name).exists():
-                return path
-    return None
+    in_package = None if os.environ.get("WORKHOLD_KERNELS") == "cache" else find_in(KERNELS, room)
+    return in_package or find_in(library_folder(), room)
+
+
+def find_in(folder: Path, room: str) -> Path | None:
+    """Return the file of a room's library in a folder, or None where there is none."""
+    paths = (folder / library_name(room, ending) for ending in ENDINGS)
+    return next((path for path in paths if path.exists()), None)
 
 
 def is_built(rooms: Sequence[str] = SEARCH_ROOMS) -> bool:
@@ -202,6 +199,10 @@ def build_libraries(
     InputError
         When there is no numba to compile with, no memory for it, or a kernel cannot be compiled.
     """
+    folder = folder or library_folder()
+    wanted = [room for room in ROOMS if room in rooms and find_in(folder, room) is None]
+    if not wanted:
+        return
     if find_spec("numba") is None:
         raise InputError(
             "This installation has no compiled kernels for this kind of machine, and no numba to compile "
@@ -210,8 +211,6 @@ def build_libraries(
     refuse_little_space(
         COMPILER_SPACE, "compiling the kernels", "raise the limit, or install a wheel with compiled kernels"
     )
-    folder = folder or library_folder()
-    wanted = [room for room in ROOMS if room in rooms and not is_in(folder, room)]
     done = dict.fromkeys(wanted, 0.0)
     faults: list[str] = []
 
@@ -224,27 +223,20 @@ def build_libraries(
                     return
                 done[room] = float(line)
                 report(sum(done.values()) / len(done))
-            if process.wait() == 0:
-                # Whole after a loss of power, too.
-                with (folder / next(name for name in names_of(room) if (folder / name).exists())).open(
-                    "rb"
-                ) as file:
-                    os.fsync(file.fileno())
-            else:
+            if process.wait():
                 said.seek(0)
                 faults.extend(
                     said.read().strip().splitlines()[-1:] or [f"it ended with {process.returncode}"]
                 )
+            elif (made := find_in(folder, room)) is not None:
+                # Whole after a loss of power, too.
+                with made.open("rb") as file:
+                    os.fsync(file.fileno())
 
     with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
         list(pool.map(build, wanted))
     if faults:
         raise InputError(f"The kernels could not be compiled: {faults[0]}")
-
-
-def is_in(folder: Path, room: str) -> bool:
-    """Return whether a folder has the library of a room."""
-    return any((folder / name).exists() for name in names_of(room))
 
 
 def compiling_process(room: str, folder: Path, said: IO[str]) -> subprocess.Popen[str]:
