@@ -40,8 +40,11 @@ def forces(result: Result) -> list[float]:
 def assert_sound(part: Workpiece, preset: str) -> None:
     """A part on a preset: everything is decided, no force is absurd, and the result stands before its verification."""
     result = design(part, load_toolkit(preset).toolkit, best=BEST)
-    assert result.complete and result.proof is not None
-    assert result.proof.undecided == (), (part.name, preset)
+    assert result.complete
+    # Set-ups between flat jaws are finitely many, and each is tried: there is nothing to prove about the others.
+    assert (result.proof is None) == (result.toolkit.flat_jaws is not None)
+    if result.proof is not None:
+        assert result.proof.undecided == (), (part.name, preset)
     assert all(abs(force) <= MOST_FORCE for force in forces(result)), (part.name, preset)
     outcome = verify(result)
     assert (outcome.proven, outcome.undecided, outcome.refuted) == (len(result), 0, 0), (part.name, preset)

@@ -133,7 +133,7 @@ class SheetQuestion:
     )
     seating: bool | None = declare(
         "flag",
-        "Show whether the part ends up in its place: how far to open the jaws, and what a wrong "
+        "Show whether the part ends up in its place: how far to open what clamps it, and what a wrong "
         "place looks like.",
         PageLabel("Does the part end up there?"),
         section=ON_PAPER,

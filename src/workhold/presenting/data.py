@@ -19,7 +19,7 @@ from attrs.filters import exclude
 
 from workhold.errors import InputError
 from workhold.files.result.fixture_text import column_names, fixture_rows, seating_values
-from workhold.files.result.holds import hold_entry
+from workhold.files.result.hold_text import hold_entry
 from workhold.files.result.writer import load_entry, proof_entry, toolkit_fields, written
 from workhold.fixels.carrier import Carrier
 from workhold.fixels.contacts import FLAT_PIN

@@ -24,7 +24,8 @@ from workhold.asking.search import SearchQuestion
 from workhold.errors import InputError
 from workhold.files.result.fixture_forms import checked_seating, seatings_of
 from workhold.files.result.forms import Head
-from workhold.files.result.holds import HoldPart, is_hold, read_holds
+from workhold.files.result.hold_text import is_hold
+from workhold.files.result.holds import HoldPart, read_holds
 from workhold.files.result.notes import note_faults, read_notes
 from workhold.files.result.parts import HEAD, checked_head, columns_said, head_value, read_parts
 from workhold.fixels.fields import OPTIONS

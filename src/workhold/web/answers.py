@@ -11,7 +11,7 @@ from attrs import asdict, evolve
 
 from workhold.drawing.bench import bench_of
 from workhold.drawing.panel import arrangement_words
-from workhold.files.result.holds import hold_entry
+from workhold.files.result.hold_text import hold_entry
 from workhold.files.result.writer import outlines_entry, proof_entry
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Segment

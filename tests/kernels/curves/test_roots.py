@@ -30,7 +30,14 @@ from workhold.kernels.base.tables import (
 )
 from workhold.kernels.chord.coincidences import NONE, coincidence
 from workhold.kernels.curves.piece_bounds import value_disc
-from workhold.kernels.curves.roots import MULTIPLE, ROOT_PSI, ROOT_RADIUS, crossings, value_turned
+from workhold.kernels.curves.roots import (
+    MULTIPLE,
+    ROOT_PSI,
+    ROOT_RADIUS,
+    crossings,
+    value_turned,
+    write_monotone_roots,
+)
 
 
 def sample_places(low: float, high: float, count: int) -> np.ndarray:
@@ -403,7 +410,7 @@ def test_a_root_s_radius_holds_wherever_newtons_method_stops():
         )
         return psi, abs(value_two - value_one - target)
 
-    early = changed(crossings, solve=first_guess)
+    early = changed(crossings, write_monotone_roots=changed(write_monotone_roots, solve=first_guess))
     for _ in range(60):
         features, table = random_table(random)
         low = random.uniform(-4, 4)

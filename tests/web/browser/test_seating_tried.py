@@ -75,7 +75,7 @@ def test_a_part_that_is_dragged_and_let_go_is_closed_upon(walk: Walk) -> None:
     assert ", beyond the" in walk.seen("#try-words").inner_text()
     page.fill("#try-opening", str(max(0.5 * told["capture_opening"], 0.5)))
     dragged(walk, 0.4, 0.0)
-    assert right in verdict(walk, "It comes home", "good")
+    assert right in verdict(walk, "in its place", "good")
     pressed = page.locator('#seats .seat[aria-pressed="true"]')
     assert pressed.get_attribute("data-seat") == str(told["own"])
     dragged(walk, 0.0, -16.0)

@@ -320,7 +320,7 @@ def test_heights_that_help_are_offered_where_nothing_holds(walk: Walk, tmp_path:
     walk.until("state.sides?.shown === 1 && state.job?.state === 'done' && state.job.found === 0")
     helping = walk.seen("#height-help button")
     assert helping.inner_text() == "Pegs of 22.00 mm hold the part"
-    walk.seen("#height-words:has-text('there are fixtures')")
+    walk.seen("#height-words:has-text('hold the part')")
     helping.click()
     walk.searched()
     second = state(walk)

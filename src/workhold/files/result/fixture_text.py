@@ -300,7 +300,7 @@ def seating_values(result: Result) -> list[list[float]]:
 
 def hold_csv_text(result: Result) -> Iterator[str]:
     """The same of what flat jaws hold."""
-    from workhold.files.result.holds import hold_columns, hold_rows
+    from workhold.files.result.hold_text import hold_columns, hold_rows
 
     lines = io.StringIO()
     table = csv.writer(lines, lineterminator="\n")

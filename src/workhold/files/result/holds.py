@@ -1,13 +1,11 @@
-"""What flat jaws hold, in a result file: a line of JSON or a row for a spreadsheet for each, written and read back.
+"""Fixtures of flat jaws in a result file, checked and read.
 
-A fixture without pegs gives what each jaw touches as rectangles in the jaw's plane, the height of the parallels and
-the side of the work stop. Figures that follow from these are written, too.
+:mod:`workhold.files.result.hold_text` writes them.
 """
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from math import radians
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -19,71 +17,16 @@ from workhold.files.result.forms import FormPart, first_fault
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.fixture_table import FixtureTable, table_of_flat_jaws
-from workhold.model.jaw_hold import HOLD_FIGURES, JawHold, Patch
+from workhold.model.jaw_hold import JawHold, Patch
 from workhold.model.pose import Pose
 from workhold.model.query import Query
-from workhold.model.result import Result
 
-__all__ = [
-    "HoldPart",
-    "hold_columns",
-    "hold_entry",
-    "hold_lines",
-    "hold_rows",
-    "holds_of",
-    "is_hold",
-    "read_holds",
-    "table_of_holds",
-]
+__all__ = ["HoldPart", "holds_of", "read_holds", "table_of_holds"]
 
-DIGITS = 12
 LARGEST = 1e9
 Whole = Annotated[int, Field(ge=0)]
 Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
 RectanglePart = Annotated[list[Number], Field(min_length=4, max_length=4)]
-
-
-def length(value: float) -> float:
-    """A length as it is written, to 1e-9 mm."""
-    return round(value, 9) + 0.0
-
-
-def figure(value: Any) -> Any:
-    """A figure as it is written, to twelve digits; a truth and nothing as they are."""
-    if isinstance(value, list):
-        return [figure(one) for one in value]
-    return value if value is None or isinstance(value, bool) else float(f"{value:.{DIGITS}g}") + 0.0
-
-
-def hold_entry(fixture: Fixture) -> dict[str, Any]:
-    """A fixture that flat jaws hold, as it is written."""
-    hold, pose = fixture.hold, fixture.pose
-    assert hold is not None
-
-    def patch_entry(patch: Patch) -> dict[str, Any]:
-        rectangles = [[length(end) for end in one] for one in patch.rectangles]
-        return {"segments": list(patch.segments), "rectangles": rectangles}
-
-    return {
-        "type": fixture.type,
-        "parallels": length(hold.parallels),
-        "stop": hold.stop,
-        "fixed": patch_entry(hold.fixed),
-        "moving": patch_entry(hold.moving),
-        "pose": {
-            "theta_deg": round(pose.theta_deg, 10) % 360.0 + 0.0,
-            "x": length(pose.x),
-            "y": length(pose.y),
-        },
-        "jaw_separation": length(hold.opening),
-        "warnings": list(hold.warnings),
-        "quality": {key: figure(value) for key, value in hold.as_quality().items()},
-    }
-
-
-def hold_lines(result: Result) -> Iterator[str]:
-    """The lines of a result's fixtures."""
-    return (json.dumps(hold_entry(fixture)) for fixture in result)
 
 
 class PatchPart(FormPart):
@@ -162,11 +105,6 @@ class HoldPart(FormPart):
         )
 
 
-def is_hold(fixture: Any) -> bool:
-    """Whether a fixture in a file is one of flat jaws."""
-    return isinstance(fixture, dict) and "moving" in fixture and "pegs" not in fixture
-
-
 def read_holds(fixtures: Iterable[Any], path: Path) -> list[HoldPart]:
     """The fixtures of a file.
 
@@ -209,24 +147,3 @@ def table_of_holds(parts: Sequence[HoldPart]) -> FixtureTable:
         [part.jaw_separation for part in parts],
         [len(part.warnings) for part in parts],
     )
-
-
-BEFORE_FIGURES = ("number", "type", "theta_deg", "x", "y", "jaw_separation", "parallels", "stop")
-AFTER_FIGURES = ("full_contact", "faces_fixed", "faces_moving", "warnings")
-
-
-def hold_columns() -> list[str]:
-    """The names of the columns of :func:`hold_rows`."""
-    return [*BEFORE_FIGURES, *(figure.key for figure in HOLD_FIGURES), *AFTER_FIGURES]
-
-
-def hold_rows(result: Result) -> Iterator[list[Any]]:
-    """A row for each fixture, best first: lengths in mm, angles in degrees, forces in N; empty where not known."""
-    for number, fixture in enumerate(result, 1):
-        entry = hold_entry(fixture)
-        pose, quality = entry["pose"], entry["quality"]
-        faces = (" ".join(map(str, entry[jaw]["segments"])) for jaw in ("fixed", "moving"))
-        figures = [quality.get(figure.key) for figure in HOLD_FIGURES]
-        before = [number, entry["type"], pose["theta_deg"], pose["x"], pose["y"], entry["jaw_separation"]]
-        after = [quality["full_contact"], *faces, "; ".join(entry["warnings"])]
-        yield [*before, entry["parallels"], entry["stop"], *figures, *after]

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from workhold.archive import is_archive
 from workhold.errors import InputError
 from workhold.files.result.fixture_forms import with_seating
-from workhold.files.result.holds import is_hold
+from workhold.files.result.hold_text import is_hold
 from workhold.files.result.parts import (
     OtherLayoutError,
     checked_head,

@@ -22,7 +22,8 @@ from workhold.conventions import AGREEMENT
 from workhold.errors import InputError
 from workhold.files.result.columns import read_columns
 from workhold.files.result.fixture_forms import checked_seating, with_seating
-from workhold.files.result.holds import HoldPart, holds_of, is_hold, read_holds, table_of_holds
+from workhold.files.result.hold_text import is_hold
+from workhold.files.result.holds import HoldPart, holds_of, read_holds, table_of_holds
 from workhold.files.result.parts import (
     LARGEST_LENGTH,
     LARGEST_NUMBER,

@@ -22,7 +22,7 @@ from workhold.asking.declaring import declarations_of
 from workhold.asking.search import SearchQuestion
 from workhold.files.atomic import text_file
 from workhold.files.result.fixture_text import as_written, fixture_lines, rounded_degrees
-from workhold.files.result.holds import hold_lines
+from workhold.files.result.hold_text import hold_lines
 from workhold.fixels.carrier import Holes
 from workhold.fixels.kinds import USUAL
 from workhold.fixels.pegs import Flat

@@ -1,0 +1,89 @@
+"""The text of what flat jaws hold: a line of JSON of a result file, or a row of a spreadsheet, for each fixture.
+
+A fixture without pegs gives what each jaw touches as rectangles in the jaw's plane, the height of the parallels and
+the side of the work stop. Figures that follow from these are written, too. :mod:`workhold.files.result.holds` reads
+the lines; it is a module of its own because pydantic takes long to import.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from typing import Any
+
+from workhold.model.fixture import Fixture
+from workhold.model.jaw_hold import HOLD_FIGURES, Patch
+from workhold.model.result import Result
+
+__all__ = ["hold_columns", "hold_entry", "hold_lines", "hold_rows", "is_hold"]
+
+DIGITS = 12
+
+
+def length(value: float) -> float:
+    """A length as it is written, to 1e-9 mm."""
+    return round(value, 9) + 0.0
+
+
+def figure(value: Any) -> Any:
+    """A figure as it is written, to twelve digits; a truth and nothing as they are."""
+    if isinstance(value, list):
+        return [figure(one) for one in value]
+    return value if value is None or isinstance(value, bool) else float(f"{value:.{DIGITS}g}") + 0.0
+
+
+def hold_entry(fixture: Fixture) -> dict[str, Any]:
+    """A fixture that flat jaws hold, as it is written."""
+    hold, pose = fixture.hold, fixture.pose
+    assert hold is not None
+
+    def patch_entry(patch: Patch) -> dict[str, Any]:
+        rectangles = [[length(end) for end in one] for one in patch.rectangles]
+        return {"segments": list(patch.segments), "rectangles": rectangles}
+
+    return {
+        "type": fixture.type,
+        "parallels": length(hold.parallels),
+        "stop": hold.stop,
+        "fixed": patch_entry(hold.fixed),
+        "moving": patch_entry(hold.moving),
+        "pose": {
+            "theta_deg": round(pose.theta_deg, 10) % 360.0 + 0.0,
+            "x": length(pose.x),
+            "y": length(pose.y),
+        },
+        "jaw_separation": length(hold.opening),
+        "warnings": list(hold.warnings),
+        "quality": {key: figure(value) for key, value in hold.as_quality().items()},
+    }
+
+
+def hold_lines(result: Result) -> Iterator[str]:
+    """The lines of a result's fixtures."""
+    return (json.dumps(hold_entry(fixture)) for fixture in result)
+
+
+def is_hold(fixture: Any) -> bool:
+    """Whether a fixture in a file is one of flat jaws."""
+    return isinstance(fixture, dict) and "moving" in fixture and "pegs" not in fixture
+
+
+BEFORE_FIGURES = ("number", "type", "theta_deg", "x", "y", "jaw_separation", "parallels", "stop")
+AFTER_FIGURES = ("full_contact", "faces_fixed", "faces_moving", "warnings")
+
+
+def hold_columns() -> list[str]:
+    """The names of the columns of :func:`hold_rows`."""
+    return [*BEFORE_FIGURES, *(figure.key for figure in HOLD_FIGURES), *AFTER_FIGURES]
+
+
+def hold_rows(result: Result) -> Iterator[list[Any]]:
+    """A row for each fixture, best first: lengths in mm, angles in degrees, forces in N; empty where not known."""
+    for number, fixture in enumerate(result, 1):
+        entry = hold_entry(fixture)
+        pose, quality = entry["pose"], entry["quality"]
+        faces = (" ".join(map(str, entry[jaw]["segments"])) for jaw in ("fixed", "moving"))
+        figures = [quality.get(figure.key) for figure in HOLD_FIGURES]
+        before = [number, entry["type"], pose["theta_deg"], pose["x"], pose["y"], entry["jaw_separation"]]
+        after = [quality["full_contact"], *faces, "; ".join(entry["warnings"])]
+        yield [*before, entry["parallels"], entry["stop"], *figures, *after]
