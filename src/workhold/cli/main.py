@@ -60,6 +60,9 @@ COMMANDS = {
     "supports": (
         "Report where three supports hold the part up under fixture N, and where a clamp presses it down."
     ),
+    "straps": (
+        "Report where strap clamps hold the part of fixture N down against its three locators, with the least force."
+    ),
     "sheet": (
         "Write the setup sheet of fixture N of a result: plan to scale, pegs, opening, part zero, quality, "
         "loads, cautions."

@@ -16,6 +16,7 @@ from workhold.errors import InputError
 from workhold.fixels.carrier import JAWS, WALL, hole_name
 from workhold.model.jaw_hold import JawHold
 from workhold.model.pose import Pose
+from workhold.model.straps import StrapHardware
 
 if TYPE_CHECKING:
     import build123d
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from workhold.fixels.toolkit import Toolkit
     from workhold.model.requirements import Load, Zone
     from workhold.model.result import Result
+    from workhold.model.straps import StrappedHold
     from workhold.model.support_request import Faces, SpatialLoad
     from workhold.model.support_triples import Supports
     from workhold.model.workpiece import Workpiece
@@ -670,6 +672,68 @@ class Fixture:
             top_zones=top_zones,
             reach=reach,
             point=point,
+        )
+
+    def straps(
+        self,
+        thickness: float | None = None,
+        *,
+        count: int = 2,
+        tip_radius: float = 6.0,
+        reach: tuple[float, float] = (20.0, 60.0),
+        max_force: float | None = None,
+        loads: Sequence[Load | SpatialLoad] | None = None,
+        friction: Mapping[str, float] | None = None,
+        safety: float | None = None,
+        weight: float = 0.0,
+        top_zones: Sequence[Zone] = (),
+    ) -> StrappedHold:
+        """Where straps hold the part down against the three locators with the least force, without side clamps.
+
+        The part lies on the plate, and a hand pushes it against the locators until the straps are tight. The straps
+        are the best of a finite set: points of the ring about each hole, every 30 degrees at three radii.
+
+        Parameters
+        ----------
+        thickness : of the part in mm; that of its solid if None.
+        count : of straps, 1 to 4.
+        tip_radius : of their round tips, in mm.
+        reach : least and greatest distance in mm of a tip from the middle of its bolt's hole.
+        max_force : that a strap is rated for, in N.
+        loads : planar ones, which act at the top of the part, or ``SpatialLoad``; those of the query if None.
+        friction : coefficients by name, of "tip" and "plate"; usual ones for those not given.
+        safety : the factor on the loads; 2 if None.
+        weight : of the part in N, without that factor.
+        top_zones : where no tip may stand, as of ``Restrictions``.
+
+        Raises
+        ------
+        InputError
+            For a fixture that has other than three locators on one plate, a part of which nobody says how thick it
+            is, and values that cannot be.
+
+        Examples
+        --------
+        >>> import workhold
+        >>> block = workhold.Workpiece.from_points("block", [(0, 0), (100, 0), (100, 60), (0, 60)])
+        >>> plate = workhold.Plate(pitch=20, peg_radius=3, columns=8, rows=6, clamps=2)
+        >>> first = workhold.design(block, plate, best=1)[0]
+        >>> load = workhold.Load(points=(50, 30), force=300, directions=0)
+        >>> held = first.straps(25, count=2, loads=[load])
+        >>> len(held.straps), round(held.clamp_needed, -1)
+        (2, 1500.0)
+        """
+        from workhold.supports.straps import ask_for_straps
+
+        return ask_for_straps(
+            self,
+            thickness,
+            StrapHardware(count, tip_radius, reach, max_force),
+            loads=loads,
+            friction=friction,
+            safety=safety,
+            weight=weight,
+            zones=top_zones,
         )
 
 

@@ -16,7 +16,15 @@ from attrs import frozen
 from workhold.errors import InputError
 from workhold.limits import MOST_FRICTION, real
 
-__all__ = ["COEFFICIENTS", "SAFETY", "Coefficient", "Coefficients", "coefficients_of", "friction_of"]
+__all__ = [
+    "COEFFICIENTS",
+    "COUNTED_BY_STRAPS",
+    "SAFETY",
+    "Coefficient",
+    "Coefficients",
+    "coefficients_of",
+    "friction_of",
+]
 
 # By name, in the order of their names.
 Coefficients = tuple[tuple[str, float], ...]
@@ -46,6 +54,8 @@ COEFFICIENTS: Mapping[str, Coefficient] = {
     "support": Coefficient(0.10, "support and milled steel", "as of a smooth jaw"),
     "tip": Coefficient(0.10, "clamp tip and milled steel", "as of a smooth jaw"),
 }
+# Those that count where straps press a part down.
+COUNTED_BY_STRAPS = "tip", "plate"
 
 
 def coefficients_of(value: Any) -> Coefficients | None:

@@ -16,7 +16,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 from itertools import product
-from math import atan2, cos, degrees, hypot, inf, pi, radians, sin
+from math import atan2, cos, degrees, hypot, inf, pi, sin
 from threading import Event
 
 import numpy as np
@@ -40,7 +40,7 @@ from workhold.model.requirements import Load, are_within
 from workhold.model.result import Result
 from workhold.model.solid import Band
 from workhold.model.workpiece import Workpiece
-from workhold.statics.friction import Grip, directed, is_pressed_all_over, least_largest_pressure
+from workhold.statics.friction import Grip, corners_of_load, is_pressed_all_over, least_largest_pressure
 from workhold.statics.patches import PressedPatch, hulls_meet
 
 __all__ = ["RULES", "Examined", "JawSearch", "answer_between_jaws"]
@@ -450,19 +450,10 @@ class JawSearch:
 
     def wrenches(self, load: Load, one: Examined, grip: Grip) -> Array:
         """The wrenches (N, 6) of a load's corners, with the safety factor."""
-        turn = one.theta
-        low, high = (radians(angle) + turn for angle in load.directions)
-        ways = directed(low, high) if load.force else np.zeros((1, 2))
         height = load.height if load.height is not None else self.height
         if self.query.part_height is None:
             height = self.height / 2
-        points = np.array(load.points or ((0.0, 0.0),))
-        c, s = cos(turn), sin(turn)
-        x, y = c * points[:, 0] - s * points[:, 1], s * points[:, 0] + c * points[:, 1]
-        places = np.column_stack([x + one.position[0], y + one.position[1], np.full(len(points), height)])
-        forces = np.column_stack([load.force * ways, np.full(len(ways), load.upward)])
-        several = np.repeat(places, len(ways), axis=0), np.tile(forces, (len(places), 1))
-        rows = grip.wrenches(*several)
+        rows = grip.wrenches(*corners_of_load(load, one.theta, one.position, height))
         rows[:, 5] += load.moment / grip.length
         return np.asarray(rows * self.query.safety_factor)
 

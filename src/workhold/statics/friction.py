@@ -16,22 +16,32 @@ Applied Mathematics 9 (1952).
 from __future__ import annotations
 
 from functools import cached_property
-from math import cos, pi, sin
-from typing import TYPE_CHECKING
+from math import cos, pi, radians, sin
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from attrs import define, field, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import WorkholdError
+from workhold.geometry.segment import Point
 from workhold.model.jaw_hold import Patch
+from workhold.model.requirements import Load
 from workhold.statics.linear_program import LinearProgram
 from workhold.statics.patches import PressedPatch, hulls_meet
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["Grip", "directed", "is_pressed_all_over", "least_largest_pressure"]
+__all__ = [
+    "DIRECTIONS",
+    "Grip",
+    "MotionProgram",
+    "corners_of_load",
+    "directed",
+    "is_pressed_all_over",
+    "least_largest_pressure",
+]
 
 Array = NDArray[np.float64]
 # Directions of friction in a cell; one of them is upward.
@@ -142,6 +152,11 @@ class Grip:
         out[: count[0], : count[2]], out[count[0] :, count[2] :] = own, other
         return out
 
+    @cached_property
+    def most_work(self) -> Array:
+        """(R,) The jaw force that a unit of each pressure stands for: 1 of the jaw that moves."""
+        return np.repeat([0.0, 1.0], [len(self.fixed.edges), len(self.moving.edges)])
+
     def forces_needed(self, loads: Array) -> list[float | None]:
         """The least jaw force in N for each of some loads (N, 6) as :meth:`wrenches` has them.
 
@@ -151,36 +166,65 @@ class Grip:
         return [motions.least_force(load) for load in loads]
 
 
+class HeldByFriction(Protocol):
+    """A part that is held by pressures with friction, and by forces without.
+
+    Parameters
+    ----------
+    pushing : wrenches (K, 6) of unit forces without friction.
+    pressing : wrenches (R, 6) of pressures.
+    rubbing : wrenches (C, D, 6) of unit forces of friction in each cell, in each direction.
+    bearing : the friction (C, R) that each cell bears per unit of each pressure.
+    most_work : (R,) the clamp force that a unit of each pressure stands for: 1 of what clamps, else 0.
+    """
+
+    @property
+    def pushing(self) -> Array: ...
+    @property
+    def pressing(self) -> Array: ...
+    @property
+    def rubbing(self) -> Array: ...
+    @property
+    def bearing(self) -> Array: ...
+    @property
+    def most_work(self) -> Array: ...
+
+
 @define(eq=False)
 class MotionProgram:
-    """The motions of the part that both jaws resist, and which of them a load drives hardest.
+    """The motions of the part that what holds it resists, and which of them a load drives hardest.
 
-    By duality the least jaw force is the largest power of the load on a motion (6,) against which each pressure of the
-    fixed jaw, with the friction that goes with it, does no work, those of the moving jaw no more than 1 for a unit of
-    force, and parallels and stop none. Friction takes in each cell the direction that works most, so that each pressure
-    stands for very many linear conditions. Those are added that the last motion breaks, until it breaks none; loads of
-    one grip share them.
+    By duality the least clamp force is the largest power of the load on a motion (6,) against which each pressure that
+    does not clamp, with the friction that goes with it, does no work, those that clamp no more than 1 for a unit of
+    force, and forces without friction none. Friction takes in each cell the direction that works most, so that each
+    pressure stands for very many linear conditions. Those are added that the last motion breaks, until it breaks none;
+    loads of one grip share them.
 
     Parameters
     ----------
     grip : of the part.
     """
 
-    grip: Grip
+    grip: HeldByFriction
     program: LinearProgram = field(init=False)
-    most_work: Array = field(init=False)
 
     def __attrs_post_init__(self) -> None:
         free = self.grip.pushing
         below = np.full(len(free), -np.inf)
         self.program = LinearProgram.of(free, np.zeros(6), below, np.zeros(len(free)), most=FARTHEST)
-        self.most_work = np.repeat([0.0, 1.0], [len(self.grip.fixed.edges), len(self.grip.moving.edges)])
 
     def least_force(self, load: Array) -> float | None:
-        """The least jaw force in N that balances a load (6,); None where none does."""
+        """The least clamp force in N that balances a load (6,); None where none does."""
+        return self.driven_by(load)[0]
+
+    def driven_by(self, load: Array) -> tuple[float | None, Array]:
+        """The least clamp force in N that balances a load (6,), and the motion (6,) whose power it is.
+
+        The force is None where none does; then the motion is one that no clamp force resists, but for a little.
+        """
         size = float(np.abs(load).max())
         if size == 0.0:
-            return 0.0
+            return 0.0, np.zeros(6)
         # Forces balance the load, so that it drives the part against the way they work.
         driven = -load / size
         driven[np.abs(driven) < NEGLIGIBLE] = 0.0
@@ -189,11 +233,10 @@ class MotionProgram:
             if motion is None:
                 break
             if not self.cut_off(motion):
-                return (
-                    None if np.abs(motion).max() > 0.5 * FARTHEST else max(float(driven @ motion), 0.0) * size
-                )
+                is_free = np.abs(motion).max() > 0.5 * FARTHEST
+                return None if is_free else max(float(driven @ motion), 0.0) * size, motion
         raise WorkholdError(
-            "the jaw force of a load was not found: report it with the part, the vise and the load."
+            "the clamp force of a load was not found: report it with the part, the hardware and the load."
         )
 
     def cut_off(self, motion: Array) -> bool:
@@ -206,10 +249,10 @@ class MotionProgram:
         chosen = along.argmax(axis=1)
         rubbed = grip.rubbing[np.arange(len(chosen)), chosen]
         forces = grip.pressing + grip.bearing.T @ rubbed
-        work = forces @ motion - self.most_work
+        work = forces @ motion - grip.most_work
         broken = work > BROKEN * (1.0 + np.abs(forces * motion).sum(axis=1))
         if broken.any():
-            self.program.add_rows(forces[broken], self.most_work[broken])
+            self.program.add_rows(forces[broken], grip.most_work[broken])
         return bool(broken.any())
 
 
@@ -269,3 +312,22 @@ def directed(low: float, high: float, steps: int = 32) -> Array:
         return corners
     ends = np.array([[cos(low), sin(low)], [cos(high), sin(high)]])
     return np.vstack([ends, corners])
+
+
+def corners_of_load(load: Load, theta: float, position: Point, height: float) -> tuple[Array, Array]:
+    """Points (N, 3) in mm and forces (N, 3) in N, the worst of a load among them, of a part in a pose.
+
+    Parameters
+    ----------
+    theta : the part's orientation in radians.
+    position : of the part's origin, in mm.
+    height : at which the load acts, in mm.
+    """
+    low, high = (radians(angle) + theta for angle in load.directions)
+    ways = directed(low, high) if load.force else np.zeros((1, 2))
+    points = np.array(load.points or ((0.0, 0.0),))
+    c, s = cos(theta), sin(theta)
+    x, y = c * points[:, 0] - s * points[:, 1], s * points[:, 0] + c * points[:, 1]
+    places = np.column_stack([x + position[0], y + position[1], np.full(len(points), height)])
+    forces = np.column_stack([load.force * ways, np.full(len(ways), load.upward)])
+    return np.repeat(places, len(ways), axis=0), np.tile(forces, (len(places), 1))

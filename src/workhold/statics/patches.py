@@ -8,8 +8,10 @@ of pressures can act is the kern, the hull of where those of the edges do (the m
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 from itertools import pairwise
+from math import sqrt
 
 import numpy as np
 from attrs import frozen
@@ -19,11 +21,13 @@ from workhold.geometry.hull import convex_hull
 from workhold.geometry.segment import Point
 from workhold.model.jaw_hold import Patch, Rectangle
 
-__all__ = ["Cells", "PressedPatch", "hulls_meet"]
+__all__ = ["Cells", "PressedPatch", "PressedPolygon", "hulls_meet"]
 
 Array = NDArray[np.float64]
 # Cells of a rectangle along the jaw and upward; of a line, upward.
 CELLS_ALONG, CELLS_UP, CELLS_OF_LINE = 6, 4, 6
+# Cells of a foot, about so many, and the part of a whole one below which a piece is rounding.
+CELLS_OF_FOOT, LEAST_CELL = 50, 1e-9
 
 
 @frozen(eq=False)
@@ -69,17 +73,7 @@ class PressedPatch:
     @cached_property
     def edges(self) -> Array:
         """The pressures (R, 3), a, b and c of each, that are the edges of the cone, each with unit force."""
-        corners = self.corners
-        if len(corners) == 2:
-            (_, low), (_, high) = sorted(corners, key=lambda one: one[1])
-            rows = [(-low, 0.0, 1.0), (high, 0.0, -1.0)]
-        else:
-            rows = []
-            for (x, z), (other_x, other_z) in pairwise([*corners, corners[0]]):
-                along, up = other_x - x, other_z - z
-                rows.append((up * x - along * z, -up, along))
-        pressures = np.array(rows)
-        return np.asarray(pressures / (pressures @ self.integrals[0])[:, None])
+        return pressure_edges(self.corners, self.integrals[0])
 
     @cached_property
     def centres(self) -> Array:
@@ -106,6 +100,121 @@ class PressedPatch:
     def largest_pressure(self) -> Array:
         """The pressures (R, K) of the edges at the corners of the hull."""
         return self.pressure(np.array(self.corners))
+
+
+@frozen(eq=False)
+class PressedPolygon:
+    """A flat face of any outline with the pressures that it can bear, such as the foot of a part on a plate.
+
+    Parameters
+    ----------
+    loops : corners (N, 2) in mm of each loop, with the face on its left.
+    """
+
+    loops: tuple[Array, ...]
+
+    @cached_property
+    def corners(self) -> list[Point]:
+        """The corners of its convex hull, counter-clockwise."""
+        return convex_hull((float(x), float(y)) for loop in self.loops for x, y in loop)
+
+    @cached_property
+    def integrals(self) -> Array:
+        """The integrals (3, 3) over the face of the products of 1, u and v."""
+        return sum((polygon_integrals(loop) for loop in self.loops), np.zeros((3, 3)))
+
+    @cached_property
+    def edges(self) -> Array:
+        """The pressures (R, 3) that are the edges of the cone, as of :class:`PressedPatch`."""
+        return pressure_edges(self.corners, self.integrals[0])
+
+    @cached_property
+    def centres(self) -> Array:
+        """Where the resultants (R, 2) of these pressures act; their hull is the kern."""
+        return np.asarray((self.edges @ self.integrals)[:, 1:])
+
+    @cached_property
+    def cells(self) -> Cells:
+        """What squares of a grid have of the face, some 50 of them; their centres are those of area."""
+        points = np.vstack(self.loops)
+        low, high = points.min(axis=0), points.max(axis=0)
+        side = sqrt(float(self.integrals[0, 0]) / CELLS_OF_FOOT)
+        counts = np.ceil((high - low) / side).astype(int)
+        size = (high - low) / counts
+        centres, areas = list[Array](), list[float]()
+        for place in np.ndindex(*counts.tolist()):
+            corner = low + size * place
+            total = np.zeros((3, 3))
+            for loop in self.loops:
+                total += polygon_integrals(cut_to_box(loop, corner, corner + size))
+            if total[0, 0] > LEAST_CELL * size.prod():
+                centres.append(total[0, 1:] / total[0, 0])
+                areas.append(float(total[0, 0]))
+        return Cells(np.array(centres), np.array(areas))
+
+    def pressure(self, points: Array) -> Array:
+        """The pressures (R, N) of the edges at points (N, 2), none below 0."""
+        return np.maximum(self.edges @ np.column_stack([np.ones(len(points)), points]).T, 0.0)
+
+
+def pressure_edges(corners: Sequence[Point], integral: Array) -> Array:
+    """The edges (R, 3) of the cone of pressures that are not negative at the corners of a hull, each with unit force.
+
+    Parameters
+    ----------
+    corners : of the convex hull, counter-clockwise; two of a line that runs upward.
+    integral : (3,) of 1, u and v over the face.
+    """
+    if len(corners) == 2:
+        (_, low), (_, high) = sorted(corners, key=lambda one: one[1])
+        rows = [(-low, 0.0, 1.0), (high, 0.0, -1.0)]
+    else:
+        rows = []
+        for (u, v), (other_u, other_v) in pairwise([*corners, corners[0]]):
+            along, up = other_u - u, other_v - v
+            rows.append((up * u - along * v, -up, along))
+    pressures = np.array(rows)
+    return np.asarray(pressures / (pressures @ integral)[:, None])
+
+
+def polygon_integrals(loop: Array) -> Array:
+    """The integrals (3, 3) of the products of 1, u and v over a polygon (N, 2), negative where it runs clockwise.
+
+    Each side makes a triangle with the first corner, over which squares have their exact mean at the middles of sides.
+    """
+    total = np.zeros((3, 3))
+    if len(loop) < 3:
+        return total
+    first = loop[0]
+    one, other = loop[1:-1], loop[2:]
+    area = (
+        (one[:, 0] - first[0]) * (other[:, 1] - first[1]) - (one[:, 1] - first[1]) * (other[:, 0] - first[0])
+    ) / 2
+    for middle in ((first + one) / 2, (one + other) / 2, (other + first) / 2):
+        rows = np.column_stack([np.ones(len(middle)), middle])
+        total += np.einsum("n,ni,nj->ij", area / 3, rows, rows)
+    return total
+
+
+def cut_to_box(loop: Array, low: Array, high: Array) -> Array:
+    """What of a polygon (N, 2) lies within a box, by one side of it after the other (Sutherland & Hodgman).
+
+    Pieces that fall apart stay joined along the border, where they have no area.
+    """
+    for axis in (0, 1):
+        for level, way in ((low[axis], 1.0), (high[axis], -1.0)):
+            if not len(loop):
+                return loop
+            depth = way * (loop[:, axis] - level)
+            after, next_depth = np.roll(loop, -1, axis=0), np.roll(depth, -1)
+            out = list[Array]()
+            for point, other, here, there in zip(loop, after, depth, next_depth, strict=True):
+                if here >= 0:
+                    out.append(point)
+                if (here < 0) != (there < 0):
+                    out.append(point + here / (here - there) * (other - point))
+            loop = np.array(out).reshape(-1, 2)
+    return loop
 
 
 def hulls_meet(one: Array, other: Array, slack: float) -> bool:

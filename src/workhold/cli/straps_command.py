@@ -1,0 +1,185 @@
+"""The command ``straps``: where strap clamps hold the part of a fixture down with the least force."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import typer
+from attrs import frozen
+
+from workhold.cli.commands import option, print_remark, spread
+from workhold.cli.declared import lengths_between, read_coefficients, read_zone
+from workhold.cli.ending import INTERRUPTED, ask_to_stop
+from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
+from workhold.cli.outputs import JSON, print_json
+from workhold.cli.support_words import spatial_load
+from workhold.cli.supports_command import asked_thickness
+from workhold.cli.table import Table, print_tables
+from workhold.cli.values import (
+    length_unit,
+    optional_count,
+    optional_force,
+    optional_length,
+    positive_number,
+    printed_unit,
+)
+from workhold.errors import InputError
+
+if TYPE_CHECKING:
+    from workhold.model.fixture import Fixture
+    from workhold.model.straps import StrappedHold
+    from workhold.supports.straps import StrapQuestion
+    from workhold.units import Unit
+
+__all__ = ["straps"]
+
+STRAPS, PART, LOADS = "Straps", "Heights of the part", "Loads"
+
+
+@frozen
+class StrapWords:
+    """The options of straps and of what acts on the part, as typed; None for those not given."""
+
+    count: str = option(STRAPS, "K", "Number of straps, 1 to 4.", default="2")
+    tip_radius: str = option(STRAPS, "LENGTH", "Radius of a strap's round tip.", default="6mm")
+    reach: str = option(
+        STRAPS, "LEAST:MOST", "Distance of the tip from the middle of the bolt's hole.", default="20mm:60mm"
+    )
+    strap_force: str | None = option(STRAPS, "FORCE", "What each strap is rated for, to warn of more.")
+    keep_out_above: list[str] | None = option(
+        STRAPS, "ZONE", "A place on which no tip may stand, circle=X,Y,RADIUS or polygon=X,Y;X,Y;X,Y."
+    )
+    thickness: str | None = option(PART, "LENGTH", "Thickness of the part; that of its solid if not given.")
+    load: list[str] | None = option(
+        LOADS,
+        "LOAD",
+        "A load in space, as of supports; those of the result, at the part's upper side, if not given.",
+    )
+    friction: str | None = option(
+        LOADS,
+        "NAME=NUMBER",
+        "Coefficients of friction of tip and plate, such as tip=0.15,plate=0.15; else usual ones.",
+    )
+    safety: str | None = option(LOADS, "NUMBER", "Safety factor on the loads; 2 if not given.")
+    weight: str | None = option(LOADS, "FORCE", "Weight of the part; it helps where it is given.")
+
+
+@spread
+def straps(
+    result_file: ResultArgument,
+    number: RankArgument,
+    *,
+    words: StrapWords,
+    unit: str | None = SHOWN_UNIT,
+    json_: bool = JSON,
+) -> None:
+    """Report where strap clamps hold the part of fixture N down against its three locators, with the least force.
+
+    The side clamps of the fixture are left out. A hand pushes the part against the locators until the straps are
+    tight. Friction under the tips and on the plate holds it: the report has the force of each strap that the loads
+    ask for, with the coefficients and the safety factor. The straps are the best of a finite set of places.
+
+    Example: workhold straps part.json 1 --thickness 25 --count 2 --load "force=300 at=50,30"
+    """
+    from workhold.supports.straps import find_straps
+
+    rank, shown = asked_rank(number), length_unit(unit)
+    result = result_with(result_file, rank)
+    fixture, asked = result[rank - 1], read_question(words, result, shown)
+    with ask_to_stop("the best straps so far are kept") as cancel:
+        found = find_straps(fixture, result.query, asked, cancel)
+    printed = printed_unit(unit, result.toolkit)
+    if json_:
+        print_json(rank=rank, **describe(found, fixture, asked))
+    else:
+        print_tables(*tabulate(found, fixture, rank, asked, printed))
+    for said in warn(found, asked, printed):
+        print_remark(said)
+    if cancel.is_set():
+        raise typer.Exit(INTERRUPTED)
+
+
+def read_question(words: StrapWords, result: Any, unit: Unit) -> StrapQuestion:
+    """Read what was typed."""
+    from workhold.model.friction import SAFETY, coefficients_of
+    from workhold.model.straps import StrapHardware
+    from workhold.supports.straps import NO_LOADS, StrapQuestion, usual_request
+
+    count, tip = (
+        optional_count("--count", words.count),
+        optional_length("--tip-radius", words.tip_radius, unit),
+    )
+    assert count is not None
+    assert tip is not None
+    least, most = lengths_between("--reach", words.reach, ":", 2, unit)
+    hardware = StrapHardware(count, tip, (least, most), optional_force("--strap-force", words.strap_force))
+    high = asked_thickness(True, words.thickness, result.workpiece, unit)
+    assert high is not None
+    zones = [read_zone("--keep-out-above", text, unit) for text in words.keep_out_above or ()]
+    from workhold.model.support_request import SpatialLoad
+
+    loads = (
+        [spatial_load(text, high, unit) for text in words.load]
+        if words.load
+        else [SpatialLoad.of(load) for load in result.query.loads]
+    )
+    if not loads:
+        raise InputError(NO_LOADS)
+    return StrapQuestion(
+        hardware,
+        usual_request(result.query, high, tip, zones),
+        tuple(loads),
+        coefficients_of(None if words.friction is None else read_coefficients("--friction", words.friction)),
+        SAFETY if words.safety is None else positive_number("--safety", words.safety),
+        optional_force("--weight", words.weight) or 0.0,
+    )
+
+
+def describe(found: StrappedHold, fixture: Fixture, asked: StrapQuestion) -> dict[str, Any]:
+    """Data for other programs."""
+    from workhold.model.friction import COUNTED_BY_STRAPS, friction_of
+
+    return {
+        "type": "strapped",
+        "pegs": [
+            {"column": peg.column, "row": peg.row, "x": peg.x, "y": peg.y, "segment": peg.face}
+            for peg in asked.locators(fixture)
+        ],
+        "pose": {"theta_deg": fixture.pose.theta_deg, "x": fixture.pose.x, "y": fixture.pose.y},
+        **found.as_data(),
+        "friction": {name: friction_of(asked.friction, name) for name in COUNTED_BY_STRAPS},
+        "safety": asked.safety,
+        "weight": asked.weight,
+    }
+
+
+def tabulate(
+    found: StrappedHold, fixture: Fixture, rank: int, asked: StrapQuestion, unit: Unit
+) -> list[Table | str]:
+    """Say how to set the straps up, and what each load asks for."""
+    from workhold.presenting.figure_words import rounded
+    from workhold.supports.words_of_straps import list_steps, reckoned_with
+
+    short = unit.abbreviation
+    out: list[Table | str] = [f"Straps over the locators of fixture {rank}", ""]
+    out += [f"{step}." for step in list_steps(found, fixture, asked, unit)]
+    if found.straps:
+        table = Table(("strap", "bolt in", f">tip at x {short}", f">tip at y {short}"))
+        plate = asked.plate(fixture)
+        for number, one in enumerate(found.straps, 1):
+            table.add_row(str(number), plate.place_name(*one.hole), *(unit.number(value) for value in one.at))
+        out += ["", table]
+    if found.clamp_needed_each:
+        needs = Table((">load", "name", f">force of each strap {unit.force}"))
+        for number, (load, need) in enumerate(zip(asked.loads, found.clamp_needed_each, strict=True), 1):
+            text = "no force holds it" if need is None else rounded(need / unit.newtons, 1)
+            needs.add_row(str(number), load.name, text)
+        out += ["", reckoned_with(asked), needs]
+    return out
+
+
+def warn(found: StrappedHold, asked: StrapQuestion, unit: Unit) -> list[str]:
+    """Sentences about what does not fit."""
+    from workhold.supports.words_of_straps import list_warnings
+
+    return list_warnings(found, asked, unit)

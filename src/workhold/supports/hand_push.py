@@ -1,0 +1,122 @@
+"""A push by hand that presses a part against all of its locators.
+
+A force along a line presses three locators without friction with forces that are linear in it. In a direction d at a
+point q + t e of a straight side each is linear in t, so that for a direction the places on the side that press all
+three are an interval. Directions are looked at every half degree, within 60 degrees of the inward normal; on arcs, and
+at corners, so are points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from math import atan2, ceil, cos, degrees, pi, radians, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.conventions import PARALLEL
+from workhold.geometry.segment import Arc, Point, Segment
+from workhold.model.straps import HandPush
+
+__all__ = ["find_hand_push"]
+
+Array = NDArray[np.float64]
+# How far in degrees from the inward normal a hand pushes, and how fine directions and points of arcs are.
+MOST_ASLANT, STEP, ARC_STEP = 60.0, 0.5, 2.0
+# The least share of the push by which each locator must be pressed.
+LEAST_SHARE = 1e-6
+# A square push is told rather than one that presses the weakest locator by less than this part harder.
+HARDER = 0.02
+
+
+def find_hand_push(segments: Sequence[Segment], touched: Array, inward: Array) -> HandPush | None:
+    """The push that presses hardest on the locator it presses least; None where none presses all of them.
+
+    Parameters
+    ----------
+    segments : of the part's outer outline, on the plate.
+    touched, inward : (3, 2) where locators touch the part in mm, and the unit directions in which they push.
+    """
+    matrix = np.vstack([inward.T, touched[:, 0] * inward[:, 1] - touched[:, 1] * inward[:, 0]])
+    size = np.array([1.0, 1.0, max(float(np.ptp(touched, axis=0).max()), 1.0)])
+    if abs(np.linalg.det(matrix / size[:, None])) < PARALLEL:
+        return None
+    answers = -np.linalg.inv(matrix)
+    best: HandPush | None = None
+    least = LEAST_SHARE
+    for start, along, turns in list_pushed_places(segments):
+        for turn, how_far, shares in list_best_places(np.asarray(answers), start, along, turns):
+            share = float(shares.min())
+            if share > least * (1.0 + HARDER) or (best is None and share > least):
+                least = share
+                at = float(start[0] + how_far * along[0]), float(start[1] + how_far * along[1])
+                best = HandPush(at, round(degrees(turn), 9) % 360.0, tuple(shares.tolist()))
+    return best
+
+
+def list_pushed_places(segments: Sequence[Segment]) -> Iterator[tuple[Point, Point, Array]]:
+    """Stretches from a point to it plus a vector, the latter zero for a point, with directions (D,) of a push.
+
+    Directions are in radians, the least aslant first.
+    """
+    steps = np.arange(0.0, MOST_ASLANT + STEP / 2, STEP)
+    fan = np.radians(np.unique(np.concatenate([-steps, steps])))
+    fan = fan[np.argsort(np.abs(fan), kind="stable")]
+    for one in segments:
+        if isinstance(one, Arc):
+            count = max(ceil(degrees(2 * one.half_sweep) / ARC_STEP), 1)
+            parameters = np.linspace(-one.half_sweep, one.half_sweep, count + 1)
+            for angle in parameters + one.mid_angle:
+                x, y = cos(angle), sin(angle)
+                inside = atan2(-one.sign * y, -one.sign * x)
+                point = one.center[0] + one.radius * x, one.center[1] + one.radius * y
+                yield point, (0.0, 0.0), inside + fan
+        else:
+            nx, ny = one.normal()
+            (x0, y0), (x1, y1) = one.start, one.end
+            yield (x0, y0), (x1 - x0, y1 - y0), atan2(-ny, -nx) + fan
+    yield from list_corners(segments)
+
+
+def list_corners(segments: Sequence[Segment]) -> Iterator[tuple[Point, Point, Array]]:
+    """Corners that stand out, with the directions between the inward normals of both sides."""
+    ends = {one.end: one for one in segments}
+    for one in segments:
+        before = ends.get(one.start)
+        if before is None or before is one:
+            continue
+        half, other_half = before.half_extent, one.half_extent
+        (ax, ay), (bx, by) = before.normal(half), one.normal(-other_half)
+        turn = atan2(ax * by - ay * bx, ax * bx + ay * by)
+        if turn > radians(STEP):
+            first = atan2(-ay, -ax)
+            yield one.start, (0.0, 0.0), np.arange(first, first + turn, radians(STEP))
+
+
+def list_best_places(
+    answers: Array, start: Point, along: Point, turns: Array
+) -> Iterator[tuple[float, float, Array]]:
+    """For directions that press all locators: the direction, how far along (0 to 1), and the shares (3,) there.
+
+    Parameters
+    ----------
+    answers : (3, 3) the locators' forces for a unit force along x, along y, and moment.
+    """
+    ways = np.column_stack([np.cos(turns), np.sin(turns)])
+    moment, grows = (point[0] * ways[:, 1] - point[1] * ways[:, 0] for point in (start, along))
+    fixed = np.column_stack([ways, moment]) @ answers.T
+    slope = grows[:, None] * answers[:, 2]
+    # The least of three lines is greatest at an end, or where two of them cross.
+    places = [np.zeros(len(turns)), np.ones(len(turns)), np.full(len(turns), 0.5)]
+    for k, m in ((0, 1), (0, 2), (1, 2)):
+        off = slope[:, k] - slope[:, m]
+        places.append(
+            np.clip((fixed[:, m] - fixed[:, k]) / np.where(np.abs(off) < 1e-12, np.inf, off), 0.0, 1.0)
+        )
+    shares = fixed[:, None, :] + np.column_stack(places)[:, :, None] * slope[:, None, :]
+    least = shares.min(axis=2)
+    # Where places are alike the middle is told.
+    chosen = np.where(least[:, 2] >= least.max(axis=1) - 1e-9, 2, least.argmax(axis=1))
+    for number in np.flatnonzero(least.max(axis=1) > LEAST_SHARE):
+        place = int(chosen[number])
+        yield float(turns[number] % (2 * pi)), float(places[place][number]), shares[number, place]

@@ -1,0 +1,101 @@
+"""The places for straps: for each hole that can take a bolt, the points of its ring on which the tip may press.
+
+The tip stands wholly on the part's upper face and off its zones, and the part's foot lies wholly under it, so that the
+strap bends nothing. Of a ring the points at its least, middle and greatest radius are looked at, every 30 degrees from
+the plate's x axis. A bolt is as thick as the holes are
+wide; it stands beside the part or in an opening of it, and in no locator's hole.
+"""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.conventions import GAP_SLACK
+from workhold.fixels.toolkit import Toolkit
+from workhold.geometry.loop import loop_segments
+from workhold.model.fixture import Fixture
+from workhold.model.straps import StrapHardware
+from workhold.model.support_request import SupportRequest
+from workhold.model.workpiece import Workpiece
+from workhold.supports.faces import FaceBorders, TouchableFace
+
+__all__ = ["StrapPlaces", "find_strap_places"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+# Points of a ring about a hole: so many radii from its least to its greatest, and directions.
+RADII, WAYS = 3, 12
+
+
+@frozen(eq=False)
+class StrapPlaces:
+    """The places for straps of a fixture, in order of columns, rows, radii and directions.
+
+    Parameters
+    ----------
+    hole : (P, 2) column and row of each bolt.
+    at : (P, 2) of each tip, in mm in the plate's frame.
+    """
+
+    hole: IntArray
+    at: Array
+
+    def __len__(self) -> int:
+        return len(self.hole)
+
+
+def find_strap_places(
+    fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, request: SupportRequest, straps: StrapHardware
+) -> StrapPlaces:
+    """The places for straps on the plate of a fixture, which the part lies on."""
+    outline = [np.asarray(loop) for loop in workpiece.loops]
+    top = (
+        TouchableFace.of(
+            request.top or outline, (zone.loop for zone in request.top_zones), request.top_heights
+        )
+        if request.top is None or request.top
+        else None
+    )
+    bottom = TouchableFace.of(request.bottom or outline) if request.bottom is None or request.bottom else None
+    plate = next(carrier for carrier in toolkit.carriers if carrier.has_lattice and carrier.travel is None)
+    if top is None or bottom is None:
+        return StrapPlaces(np.zeros((0, 2), np.int64), np.zeros((0, 2)))
+    part = FaceBorders(tuple(loop_segments(loop) for loop in outline))
+    x0, y0, x1, y1 = workpiece.bounds
+    corners = np.array(fixture.pose.apply(np.array([x0, x1, x0, x1]), np.array([y0, y0, y1, y1])))
+    reach = straps.reach[1]
+    first, pitch = np.array(plate.place(0, 0)), np.array(plate.pitch)
+    low = np.floor((corners.min(axis=1) - reach - first) / pitch).astype(np.int64)
+    high = np.ceil((corners.max(axis=1) + reach - first) / pitch).astype(np.int64)
+    if plate.columns is not None:
+        low[0], high[0] = max(low[0], 0), min(high[0], plate.columns - 1)
+    if plate.rows is not None:
+        low[1], high[1] = max(low[1], 0), min(high[1], plate.rows - 1)
+    taken = {(peg.column, peg.row) for peg in fixture.pegs if peg.carrier == plate.name}
+    holes = [
+        (column, row)
+        for column in range(low[0], high[0] + 1)
+        for row in range(low[1], high[1] + 1)
+        if (column, row) not in taken and not plate.is_blocked(column, row)
+    ]
+    hole = np.array(holes, np.int64).reshape(-1, 2)
+    points = np.column_stack(plate.place(hole[:, 0], hole[:, 1])).reshape(-1, 2)
+    back = fixture.pose.inverse
+    beside = np.column_stack(back.apply(*points.T))
+    # In the outline, and in no opening of it, a point is within an odd number of loops.
+    is_under = part.contains(beside).sum(axis=1) % 2 == 1
+    free = ~is_under & (part.distance(beside).min(axis=1) >= plate.peg_radius - GAP_SLACK)
+    hole, points = hole[free], points[free]
+    turns = 2 * pi / WAYS * np.arange(WAYS)
+    radii = np.unique(np.linspace(*straps.reach, RADII))
+    ring = np.array([(r * np.cos(turn), r * np.sin(turn)) for r in radii for turn in turns])
+    at = (points[:, None] + ring).reshape(-1, 2)
+    hole = np.repeat(hole, len(ring), axis=0)
+    on_part = np.column_stack(back.apply(*at.T))
+    room = np.minimum(top.room(on_part), bottom.room(on_part))
+    kept = room >= straps.tip_radius - GAP_SLACK
+    return StrapPlaces(hole[kept], at[kept])
