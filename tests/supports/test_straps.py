@@ -257,3 +257,10 @@ def test_what_straps_cannot_do_is_said(block):
     with pytest.raises(InputError, match="safety factor"):
         block.straps(THICK, safety=0, loads=[LOAD])
     assert block.straps(THICK, reach=(1, 2), loads=[LOAD]).straps == ()
+
+
+def test_no_bolt_stands_behind_a_fence():
+    fence = workhold.Fence(pitch=20, peg_radius=3, wall_offset=10, clamps=2)
+    search = search_of(first_of(BLOCK, fence), [SpatialLoad.of(LOAD)])
+    assert search.places.hole[:, 1].min() >= 0
+    assert 500 <= search.best().clamp_needed < 600

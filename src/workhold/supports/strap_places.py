@@ -75,6 +75,9 @@ def find_strap_places(
         low[0], high[0] = max(low[0], 0), min(high[0], plate.columns - 1)
     if plate.rows is not None:
         low[1], high[1] = max(low[1], 0), min(high[1], plate.rows - 1)
+    if any(not one.has_lattice and one.travel is None for one in toolkit.carriers):
+        # Rows count from a fence, and there are none behind it.
+        low[1] = max(low[1], 0)
     taken = {(peg.column, peg.row) for peg in fixture.pegs if peg.carrier == plate.name}
     holes = [
         (column, row)
