@@ -14,6 +14,7 @@ from workhold import Load, Plate, Workpiece
 from workhold.errors import InputError
 from workhold.model.straps import StrapHardware
 from workhold.model.support_request import SpatialLoad
+from workhold.statics.patches import PressedPolygon
 from workhold.supports.straps import StrapQuestion, StrapSearch, usual_request
 
 THICK, TIP = 25.0, 6.0
@@ -264,3 +265,21 @@ def test_no_bolt_stands_behind_a_fence():
     search = search_of(first_of(BLOCK, fence), [SpatialLoad.of(LOAD)])
     assert search.places.hole[:, 1].min() >= 0
     assert 500 <= search.best().clamp_needed < 600
+
+
+def test_integrals_of_a_foot_are_exact():
+    found = PressedPolygon((np.array([(0, 0), (4, 0), (4, 2), (0, 2)], float),)).integrals
+    assert found == pytest.approx(np.array([[8, 16, 8], [16, 128 / 3, 16], [8, 16, 32 / 3]]))
+
+
+def test_a_bolt_keeps_its_radius_from_the_part():
+    narrow = first_of(Workpiece.from_points("narrow", [(0, 0), (95, 0), (95, 55), (0, 55)]))
+    bolts = narrow.pose.inverse.apply(search_of(narrow).places.hole * 20.0)
+    beside = np.hypot(*np.maximum(np.maximum(-bolts, bolts - [95, 55]), 0.0).T)
+    assert beside.min() >= 3 - 1e-9
+
+
+def test_the_safety_factor_is_not_on_the_weight(block):
+    lifted = SpatialLoad(points=[block.pose.inverse.apply(53, 33)], axial=-10)
+    search = search_of(block, [lifted], safety=2.0, weight=15.0)
+    assert search.loads[0][0, 2] == pytest.approx(2 * 10 - 15)
