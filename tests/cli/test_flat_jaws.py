@@ -50,3 +50,18 @@ def test_what_is_of_pegs_is_refused_in_a_sentence(
         outcome = run(command, str(path), "1", *more)
     assert outcome.exit_code == 2
     assert message in outcome.stderr
+
+
+def test_a_program_s_forces_are_told_with_their_line(run: Any, tmp_path: Path) -> None:
+    """The table has the force, and the fixture says which line asks for it."""
+    program, tools, path = (tmp_path / name for name in ("slot.nc", "tools.toml", "r.json"))
+    program.write_text("G21 G90\nT1 M6\nG0 X20. Y20. Z5.\nG1 Z-3. F200\nX60. F600\nG0 Z20.\nM30\n")
+    tools.write_text("tool.1 = {diameter = 10, flute_length = 30, stickout = 40, holder_diameter = 40}\n")
+    words = ("--thickness", "25", "--program", program, "--tools", tools, "--cutting-force", "400")
+    made = run("design", RECTANGLE, "--toolkit", "plain-vise-6-inch", *words, "--out", path)
+    assert made.exit_code == 0, made.stderr
+    assert "clamp needed N" in made.stdout and "Friction of the jaws" in made.stdout
+    shown = run("show", path, "1")
+    assert "The program asks for a jaw force of" in shown.stdout
+    assert "in line 5, T1 (milling from" in shown.stdout
+    assert run("sheet", path, "1", "-o", tmp_path / "sheet.pdf").exit_code == 0

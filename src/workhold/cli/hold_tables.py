@@ -65,21 +65,26 @@ def first_hold_sentence(result: Result, unit: Unit) -> str:
 
     first = result[0]
     said = f"First: {'; '.join(hold_reasons(first, unit))}."
-    return f"{said} {coefficient_words(result.query)}" if result.query.loads else said
+    return f"{said} {coefficient_words(result.query)}" if result.query.is_loaded else said
 
 
 def hold_fixture_tables(fixture: Fixture, rank: int, total: int, unit: Unit) -> tuple[Table | str, ...]:
     """Says how to set up one hold, with lengths in a unit, and what each load asks for."""
     from workhold.model.hold_words import coefficient_words, setup_sentences, warning_sentences
+    from workhold.statics.jaw_program import asked_words
 
     assert fixture.hold is not None
     hold, query = fixture.hold, fixture.listing.result.query
     steps = (f"{step}." for step in setup_sentences(fixture, query, unit))
     tables: list[Table | str] = [f"Fixture {rank} of {total}", *steps]
+    if query.is_loaded:
+        tables.append(coefficient_words(query))
+    if hold.program_need is not None and query.program is not None:
+        tables.append(asked_words(hold.program_need, query.program, unit))
     if hold.clamp_needed_each:
         needs = Table((">load", "name", f">jaw force needed {unit.force}"))
         for number, (load, need) in enumerate(zip(query.loads, hold.clamp_needed_each, strict=True), 1):
             text = "no force holds it" if need is None else rounded(need / unit.newtons, 1)
             needs.add_row(str(number), load.name, text)
-        tables += [coefficient_words(query), needs]
+        tables.append(needs)
     return (*tables, *warning_sentences(hold))

@@ -22,6 +22,7 @@ from workhold.model.hold_words import (
 )
 from workhold.model.query import Query
 from workhold.model.workpiece import Workpiece
+from workhold.statics.jaw_program import asked_words
 
 __all__ = ["draw_hold_panel", "hold_writers"]
 
@@ -139,8 +140,8 @@ def write_force(column: TextColumn, sheet: Sheet) -> None:
     heading(column, "Jaw force")
     needed = hold.clamp_needed
     if needed is None:
-        if hold.clamp_needed_each:
-            column.paragraph("No jaw force holds all loads in this set-up.", BODY, bold=True)
+        if hold.forces_needed:
+            column.paragraph("No jaw force holds all that acts in this set-up.", BODY, bold=True)
         fact_or_field(column, "close with", None)
         return
     column.words(f"{force_words(needed, unit)} or more", 22, bold=True, gap=0.4)
@@ -155,7 +156,10 @@ def write_force(column: TextColumn, sheet: Sheet) -> None:
         column.fact(f"closed with {given}", f"{hold.safety_reached:.2f} times the loads")
     if hold.max_pressure is not None:
         column.fact("largest pressure, at least", pressure_words(hold.max_pressure, sheet.lengths))
-    column.paragraph(coefficient_words(query_of(sheet)), NOTE)
+    query = query_of(sheet)
+    if hold.program_need is not None and query.program is not None:
+        column.paragraph(asked_words(hold.program_need, query.program, unit), NOTE)
+    column.paragraph(coefficient_words(query), NOTE)
 
 
 def write_hold_steps(column: TextColumn, sheet: Sheet) -> None:

@@ -200,6 +200,9 @@ def tools_above(path: PlannedPath) -> list[str]:
 
 def passing_sentence(path: PlannedPath, lengths: LengthUnit) -> str:
     near = path.passing
+    if path.peg_height is None:
+        # Flat jaws: that all tools keep clear of them is asked of each set-up.
+        return f"All tools keep {lengths.words(path.program.clearance)} or more from both jaws."
     if near is None or near.distance == inf:
         return "No tool comes down to where anything holds the part."
     where = f"T{near.tool} in line {near.line}, {lengths.words(near.distance)} from the {near.element}"

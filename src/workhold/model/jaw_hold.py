@@ -22,14 +22,18 @@ from workhold.errors import InputError
 from workhold.model.first_choice import has_house_order
 from workhold.model.quality import Figure
 
-__all__ = ["HOLD_FIGURES", "HOLD_RANKING", "JawHold", "Patch", "Rectangle", "hold_ranking"]
+__all__ = ["HOLD_FIGURES", "HOLD_RANKING", "JawHold", "Patch", "ProgramNeed", "Rectangle", "hold_ranking"]
 
 # Least and greatest x, then least and greatest z, in mm.
 Rectangle = tuple[float, float, float, float]
 # The figures of a grip, in the order in which they are shown.
 HOLD_FIGURES = (
     Figure(
-        "clamp_needed", "N", False, "The jaw force that the worst load asks for, with the safety factor.", 0
+        "clamp_needed",
+        "N",
+        False,
+        "The jaw force that the worst load or tool asks for, with the safety factor.",
+        0,
     ),
     Figure("slip_reserve", "", True, "What the vise is rated for, over the jaw force needed.", 2),
     Figure("safety_reached", "", True, "How many times the loads the jaw force that is given holds.", 2),
@@ -103,6 +107,23 @@ class Patch:
 
 
 @frozen
+class ProgramNeed:
+    """The jaw force that the tools of a program ask for.
+
+    Parameters
+    ----------
+    force : in N, with the safety factor; None where no jaw force is enough.
+    line, tool : of the program, where it asks for it.
+    move : number of the program's move, from 0.
+    """
+
+    force: float | None
+    line: int
+    tool: int
+    move: int
+
+
+@frozen
 class JawHold:
     """How two flat jaws hold a part.
 
@@ -115,6 +136,7 @@ class JawHold:
     above : how far the part stands out above the jaws, in mm; None where nobody knows how thick it is.
     full_contact : whether both jaws can press all over what they touch, so that loads are held at all.
     clamp_needed_each : the jaw force in N that each load asks for, in their order; None where none is enough.
+    program_need : what the tools of the program ask for; None without their forces.
     max_pressure : in MPa, at the jaw force needed; None where it is not known.
     max_force : what the vise is rated for, in N; None where nobody says.
     unit_force : the jaw force that is given times the safety factor that loads have, in N; None where none is given.
@@ -129,6 +151,7 @@ class JawHold:
     above: float | None
     full_contact: bool
     clamp_needed_each: tuple[float | None, ...] = ()
+    program_need: ProgramNeed | None = None
     max_pressure: float | None = None
     max_force: float | None = None
     unit_force: float | None = None
@@ -157,9 +180,16 @@ class JawHold:
 
     @property
     def clamp_needed(self) -> float | None:
-        """The jaw force in N that the worst load asks for; None without loads, and where none is enough."""
-        each = [one for one in self.clamp_needed_each if one is not None]
-        return max(each) if each and len(each) == len(self.clamp_needed_each) else None
+        """The jaw force in N that the worst load or tool asks for; None without any, and where none is enough."""
+        each = self.forces_needed
+        known = [one for one in each if one is not None]
+        return max(known) if known and len(known) == len(each) else None
+
+    @property
+    def forces_needed(self) -> tuple[float | None, ...]:
+        """The jaw force in N that each load and then the program asks for; None where none is enough."""
+        of_program = () if self.program_need is None else (self.program_need.force,)
+        return (*self.clamp_needed_each, *of_program)
 
     @property
     def slip_reserve(self) -> float | None:
@@ -178,7 +208,7 @@ class JawHold:
     @property
     def is_beyond_rating(self) -> bool:
         """Whether a load asks for more than the vise is rated for, or for more than any force."""
-        if None in self.clamp_needed_each:
+        if None in self.forces_needed:
             return True
         return self.slip_reserve is not None and self.slip_reserve < 1
 
@@ -191,6 +221,8 @@ class JawHold:
     def as_quality(self) -> dict[str, Any]:
         """The figures as files have them."""
         known: dict[str, Any] = {"tilt": 0.0, "full_contact": self.full_contact, **self.figures}
+        if self.forces_needed:
+            known["clamp_needed"] = self.clamp_needed
         if self.clamp_needed_each:
-            known |= {"clamp_needed": self.clamp_needed, "clamp_needed_each": list(self.clamp_needed_each)}
+            known["clamp_needed_each"] = list(self.clamp_needed_each)
         return known

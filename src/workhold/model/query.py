@@ -209,10 +209,10 @@ class Query(SearchQuestion):
             "seating": self.seating is not None,
             "a keep-out zone": bool(self.restrictions.zones),
         }
-        if self.program is not None and self.program.forces is not None:
+        if self.program is not None and self.program.forces is not None and self.part_height is None:
             raise InputError(
-                "what the tools of a program push with is not reckoned between flat jaws: leave the forces out, and "
-                "give the worst of them as loads."
+                "the tools of the program press on the part, and how high it is decides what holds it: give its "
+                "thickness."
             )
         for asked, is_given in only_of_pegs.items():
             if is_given:

@@ -142,8 +142,8 @@ def fixture_data(fixture: Fixture, toolkit: Toolkit, rank: int | None = None) ->
 def hold_data(fixture: Fixture) -> dict[str, Any]:
     """Describes how flat jaws hold a part, as a result file does."""
     entry = hold_entry(fixture)
-    names = ("parallels", "stop", "fixed", "moving", "jaw_separation", "warnings")
-    return {"pegs": [], **{name: entry[name] for name in names}, "quality": entry["quality"]}
+    names = ("parallels", "stop", "fixed", "moving", "jaw_separation", "warnings", "program_force")
+    return {"pegs": [], **{name: entry[name] for name in names if name in entry}, "quality": entry["quality"]}
 
 
 def pair_data(fixture: Fixture) -> dict[str, Any]:

@@ -32,7 +32,7 @@ from workhold.geometry.segment import Arc, Segment
 from workhold.geometry.symmetry import rotations_onto_itself
 from workhold.model.fixture_table import FixtureTable, table_of_flat_jaws
 from workhold.model.friction import friction_of
-from workhold.model.jaw_hold import JawHold, Patch
+from workhold.model.jaw_hold import JawHold, Patch, ProgramNeed
 from workhold.model.notes import NoFixture, Note, Remark, Stage
 from workhold.model.program import Program
 from workhold.model.query import Query
@@ -40,7 +40,13 @@ from workhold.model.requirements import Load, are_within
 from workhold.model.result import Result
 from workhold.model.solid import Band
 from workhold.model.workpiece import Workpiece
-from workhold.statics.friction import Grip, corners_of_load, is_pressed_all_over, least_largest_pressure
+from workhold.statics.friction import (
+    Grip,
+    corners_of_load,
+    is_pressed_all_over,
+    least_largest_pressure,
+)
+from workhold.statics.jaw_program import CuttingPieces, worst_of_program
 from workhold.statics.patches import PressedPatch, hulls_meet
 
 __all__ = ["RULES", "Examined", "JawSearch", "answer_between_jaws"]
@@ -457,19 +463,51 @@ class JawSearch:
         rows[:, 5] += load.moment / grip.length
         return np.asarray(rows * self.query.safety_factor)
 
+    @cached_property
+    def pieces(self) -> CuttingPieces | None:
+        """Where the tools of the program press on the part; None without their forces."""
+        program = self.query.program
+        if program is None or program.forces is None:
+            return None
+        return CuttingPieces.from_program(program, self.height)
+
+    @property
+    def first_cut(self) -> ProgramNeed | None:
+        """What the program asks for where no jaw force holds anything: more than any force, where it first cuts."""
+        pieces, program = self.pieces, self.query.program
+        if pieces is None or program is None or not len(pieces):
+            return None
+        move = int(pieces.move.min())
+        return ProgramNeed(None, int(program.moves.line[move]), int(program.moves.tool[move]), move)
+
+    def asked_by_program(self, one: Examined, grip: Grip) -> ProgramNeed | None:
+        """What the tools of the program ask for; None without their forces."""
+        pieces, query = self.pieces, self.query
+        if pieces is None or query.program is None:
+            return None
+        return worst_of_program(grip, pieces, query.program, one.theta, one.position, query.safety_factor)
+
     def loaded(self, one: Examined) -> Examined:
         """A fixture with what its loads ask for, and with its warnings."""
         hold, loads = one.hold, self.query.loads
         assert hold is not None
         each: list[float | None] = [None] * len(loads)
-        if loads and hold.full_contact:
+        of_program = self.first_cut
+        if self.query.is_loaded and hold.full_contact:
             grip = self.grip(one, hold)
             each = [worst_of(grip.forces_needed(self.wrenches(load, one, grip))) for load in loads]
-        hold = evolve(hold, clamp_needed_each=tuple(each))
+            of_program = self.asked_by_program(one, grip)
+        hold = evolve(hold, clamp_needed_each=tuple(each), program_need=of_program)
         needed = hold.clamp_needed
         pressure = None if not needed else least_largest_pressure(hold.fixed, hold.moving, needed)
         hold = evolve(hold, max_pressure=None if self.query.part_height is None else pressure)
         return evolve(one, hold=evolve(hold, warnings=tuple(self.warnings(hold))))
+
+    @property
+    def acting(self) -> str:
+        """What acts on the part, in words."""
+        names = ("the loads", bool(self.query.loads)), ("the tools", self.pieces is not None)
+        return " and ".join(name for name, is_there in names if is_there)
 
     def warnings(self, hold: JawHold) -> Iterator[str]:
         """What to beware of, sentences."""
@@ -486,13 +524,16 @@ class JawSearch:
                 if need is None:
                     named = self.query.loads[number - 1].name
                     yield f"no jaw force holds load {number}{f', {named}' if named else ''}"
+            asked = hold.program_need
+            if asked is not None and asked.force is None:
+                yield f"no jaw force holds the part against T{asked.tool} in line {asked.line} of the program"
         if hold.slip_reserve is not None and hold.slip_reserve < 1:
-            yield f"the loads ask for {hold.clamp_needed:.0f} N, and the vise is rated for {hold.max_force:g} N"
+            yield f"{self.acting} ask for {hold.clamp_needed:.0f} N, and the vise is rated for {hold.max_force:g} N"
         reached, safety = hold.safety_reached, self.query.safety_factor
         if reached is not None and reached < safety:
             yield (
-                f"closed with {self.query.jaw_force:g} N the jaws hold the loads {reached:.2f} times, and {safety:g} times "
-                "are asked for"
+                f"closed with {self.query.jaw_force:g} N the jaws hold {self.acting} {reached:.2f} times, and {safety:g} "
+                "times are asked for"
             )
         if hold.above == 0.0:
             yield "nothing of the part stands above the jaws"
@@ -529,7 +570,7 @@ def order_of(one: Examined, query: Query) -> tuple[float, ...]:
             case "clamp_needed":
                 key.append(
                     0.0
-                    if not query.loads
+                    if not query.is_loaded
                     else inf
                     if hold.clamp_needed is None
                     else coarse(hold.clamp_needed)

@@ -52,8 +52,13 @@ KERN_SLACK = 1e-7
 FARTHEST = 1e7
 # How much more work, of all that is done, breaks a condition, and how often conditions are added for a load.
 BROKEN, MOST_TURNS = 1e-9, 1000
-# Parts of the largest force and moment of a load below which they are rounding.
-NEGLIGIBLE = 1e-12
+# Parts of the largest force and moment of a load below which they are rounding, and below which a share of a
+# condition is.
+NEGLIGIBLE, NEGLIGIBLE_SHARE = 1e-12, 1e-9
+# Digits in N after the point by which loads are told apart.
+SAME_DIGITS = 6
+# Six conditions that are nearly one less determine no motion.
+MOST_CONDITION = 1e9
 
 
 @frozen(eq=False)
@@ -203,24 +208,37 @@ class MotionProgram:
     Parameters
     ----------
     grip : of the part.
+    conditions : (K, 6) forces of the program's rows.
+    answered : jaw forces that suffice for loads, by their bytes.
+    motions : (L, 6) that answered loads.
+    inverses : (L, 6, 6) of the forces of the six conditions that each of them meets.
     """
 
     grip: HeldByFriction
     program: LinearProgram = field(init=False)
+    conditions: Array = field(init=False)
+    answered: dict[bytes, float] = field(factory=dict, init=False)
+    motions: Array = field(factory=lambda: np.zeros((0, 6)), init=False)
+    inverses: Array = field(factory=lambda: np.zeros((0, 6, 6)), init=False)
 
     def __attrs_post_init__(self) -> None:
         free = self.grip.pushing
         below = np.full(len(free), -np.inf)
         self.program = LinearProgram.of(free, np.zeros(6), below, np.zeros(len(free)), most=FARTHEST)
+        self.conditions = free
 
-    def least_force(self, load: Array) -> float | None:
-        """The least clamp force in N that balances a load (6,); None where none does."""
-        return self.driven_by(load)[0]
+    def least_force(self, load: Array, enough: float = -np.inf) -> float | None:
+        """Return the least clamp force in N that balances a load (6,); None where none does.
 
-    def driven_by(self, load: Array) -> tuple[float | None, Array]:
-        """The least clamp force in N that balances a load (6,), and the motion (6,) whose power it is.
+        Where no more than ``enough`` is asked for, it may be more than the least, and at most that.
+        """
+        return self.driven_by(load, enough)[0]
 
-        The force is None where none does; then the motion is one that no clamp force resists, but for a little.
+    def driven_by(self, load: Array, enough: float = -np.inf) -> tuple[float | None, Array]:
+        """Return the least clamp force in N that balances a load (6,), and the motion (6,) whose power it is.
+
+        The force is None where none does; then the motion is one that no clamp force resists, but for a little. Where
+        no more than ``enough`` is asked for, the force may be more than the least, and at most that.
         """
         size = float(np.abs(load).max())
         if size == 0.0:
@@ -232,12 +250,68 @@ class MotionProgram:
             motion = self.program.with_costs(-driven)
             if motion is None:
                 break
+            if float(driven @ motion) * size <= enough:
+                return max(float(driven @ motion), 0.0) * size, motion
             if not self.cut_off(motion):
                 is_free = np.abs(motion).max() > 0.5 * FARTHEST
                 return None if is_free else max(float(driven @ motion), 0.0) * size, motion
         raise WorkholdError(
             "the clamp force of a load was not found: report it with the part, the hardware and the load."
         )
+
+    def most_known(self, loads: Array) -> float:
+        """Return a jaw force in N that the hardest of some loads (N, 6) asks for at least."""
+        return max(float((self.motions @ -loads.T).max(initial=0.0)), 0.0)
+
+    def least_forces(self, loads: Array, most: float = np.inf) -> Array:
+        """Return the least jaw force in N for each load (N, 6), infinite where none holds it.
+
+        A motion that meets six conditions is the answer for every load that is a sum of these conditions' forces, so
+        that one linear program answers all loads in that cone. Forces up to ``most`` may be more than the least. Once
+        one is above, all that are not known are NaN.
+        """
+        keys = [load.tobytes() for load in loads.round(SAME_DIGITS)]
+        # What only suffices must not stand for the least.
+        out = np.array([self.answered.get(key, np.nan) if most < np.inf else np.nan for key in keys])
+        driven = -loads
+        left = np.flatnonzero(np.isnan(out))
+        left = self.answer_in_cones(self.inverses, self.motions, driven, left, out)
+        while len(left) and not (out > most).any():
+            first = int(left[(driven[left] @ self.motions.T).max(axis=1, initial=0.0).argmax()])
+            enough = most if most < np.inf else -np.inf
+            need, count = self.least_force(loads[first], enough), len(self.motions)
+            out[first], left = (np.inf if need is None else need), left[left != first]
+            self.answered[keys[first]] = float(out[first])
+            if need is not None and need > enough:
+                self.remember_cone(loads[first])
+                left = self.answer_in_cones(self.inverses[count:], self.motions[count:], driven, left, out)
+        return out
+
+    def remember_cone(self, load: Array) -> None:
+        """Keep the motion that answered a load (6,) last, where the conditions that it meets determine it."""
+        rows = self.program.bounding_rows() if load.any() else None
+        if rows is None or np.linalg.cond(self.conditions[rows]) > MOST_CONDITION:
+            return
+        self.inverses = np.concatenate([self.inverses, np.linalg.inv(self.conditions[rows])[None]])
+        self.motions = np.concatenate([self.motions, self.program.solution()[None]])
+
+    @staticmethod
+    def answer_in_cones(
+        inverses: Array, motions: Array, driven: Array, left: NDArray[np.intp], out: Array
+    ) -> NDArray[np.intp]:
+        """Write the forces of those of some loads (N, 6), against which the part is driven, that lie in cones (K, 6, 6).
+
+        Return the numbers of the others.
+        """
+        if not len(inverses) or not len(left):
+            return left
+        some = driven[left]
+        least = np.matmul(some, inverses).min(axis=2)
+        slack = -NEGLIGIBLE_SHARE * np.abs(some).max(axis=1)
+        cone = least.argmax(axis=0)
+        inside = least[cone, np.arange(len(some))] >= slack
+        out[left[inside]] = np.maximum((some[inside] * motions[cone[inside]]).sum(axis=1), 0.0)
+        return np.asarray(left[~inside])
 
     def cut_off(self, motion: Array) -> bool:
         """Adds the conditions that a motion (6,) breaks; whether there are any.
@@ -253,6 +327,7 @@ class MotionProgram:
         broken = work > BROKEN * (1.0 + np.abs(forces * motion).sum(axis=1))
         if broken.any():
             self.program.add_rows(forces[broken], grip.most_work[broken])
+            self.conditions = np.vstack([self.conditions, forces[broken]])
         return bool(broken.any())
 
 

@@ -86,6 +86,18 @@ class LinearProgram:
             return None
         return float(self.solver.getInfo().objective_function_value)
 
+    def bounding_rows(self) -> NDArray[np.int64] | None:
+        """Return the numbers of the rows that bound the last solution from above, as many as there are columns.
+
+        It is None where a bound of a column does instead of a row.
+        """
+        import highspy
+
+        basis = self.solver.getBasis()
+        at_bound = highspy.HighsBasisStatus.kUpper
+        rows = [number for number, status in enumerate(basis.row_status) if status == at_bound]
+        return np.array(rows) if len(rows) == len(basis.col_status) else None
+
     def add_rows(self, rows: Array, upper: Array) -> None:
         """Adds rows (K, N) that are at most so much (K,)."""
         import highspy
@@ -105,4 +117,8 @@ class LinearProgram:
         self.solver.run()
         if self.solver.getModelStatus() != highspy.HighsModelStatus.kOptimal:
             return None
+        return self.solution()
+
+    def solution(self) -> Array:
+        """Return the x (N,) of the last run."""
         return np.array(self.solver.getSolution().col_value)

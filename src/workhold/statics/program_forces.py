@@ -341,7 +341,7 @@ def done_on(program: Program, move: int) -> CutDone | None:
 def cutting_need_of(
     result: Result, index: int, jaw_force: float | None = None, jaw: str | float = "screw"
 ) -> CuttingNeed | None:
-    """What the tools of a result's program ask of the fixture of an index; None without forces.
+    """What the tools of a result's program ask of the fixture of an index; None without forces, and of flat jaws.
 
     Parameters
     ----------
@@ -349,7 +349,7 @@ def cutting_need_of(
     jaw : what closes the vise, see :func:`workhold.statics.loads.jaw_stiffness`.
     """
     program = result.query.program
-    if program is None or program.forces is None:
+    if program is None or program.forces is None or result.toolkit.flat_jaws is not None:
         return None
     force = result.query.jaw_force if jaw_force is None else jaw_force
     row = result.table.take(slice(index, index + 1))

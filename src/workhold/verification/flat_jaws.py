@@ -30,6 +30,7 @@ from workhold.verification.jaw_forces import (
     pressures_of,
     resultants_of,
 )
+from workhold.verification.jaw_program import program_force_faults
 from workhold.verification.tolerances import AGREEMENT
 from workhold.verification.tool_walk import Element, walk_of
 
@@ -279,7 +280,7 @@ class JawJudge:
             yield f"there are forces for {len(hold.clamp_needed_each)} loads, and {len(loads)} were given"
             return
         if not hold.full_contact:
-            if any(need is not None for need in hold.clamp_needed_each):
+            if any(need is not None for need in hold.forces_needed):
                 yield "loads are held by jaws that cannot press all over"
             return
         points, way = self.stop_points(hold, segments)
@@ -287,10 +288,17 @@ class JawJudge:
         held = HeldBetweenJaws.of(fixed, moving, hold.opening, friction, points, way)
         for number, (load, need) in enumerate(zip(loads, hold.clamp_needed_each, strict=True), 1):
             yield from self.force_faults(number, load, need, fixture, held)
-        stated = fixture.quality.get("clamp_needed")
-        worst = [need for need in hold.clamp_needed_each if need is not None]
-        if len(worst) == len(loads) > 0 and stated is not None and abs(stated - max(worst)) > FORCE_HAIR:
-            yield f"the jaw force needed is {stated:.9g} N in the file, and the worst load asks for {max(worst):.9g} N"
+        program, height = self.query.program, self.query.part_height
+        if program is not None and program.forces is not None and height is not None:
+            yield from program_force_faults(
+                program, hold.program_need, fixture, held, height, self.query.safety_factor
+            )
+        elif hold.program_need is not None:
+            yield "a jaw force of its program is given, and the program has no forces"
+        stated, each = fixture.quality.get("clamp_needed"), hold.forces_needed
+        worst = [need for need in each if need is not None]
+        if len(worst) == len(each) > 0 and stated is not None and abs(stated - max(worst)) > FORCE_HAIR:
+            yield f"the jaw force needed is {stated:.9g} N in the file, and {max(worst):.9g} N are asked for"
 
     def figures(self, hold: JawHold, fixed: Patch, moving: Patch) -> Iterator[tuple[str, float, float]]:
         """Figures by name as written and as derived."""
@@ -309,8 +317,8 @@ class JawJudge:
         """Figures by key that follow from what else is written."""
         yield "grip", hold.grip
         yield "contact_area", hold.contact_area
-        needs = [need for need in hold.clamp_needed_each if need is not None]
-        if not needs or len(needs) < len(hold.clamp_needed_each) or max(needs) <= 0:
+        needs = [need for need in hold.forces_needed if need is not None]
+        if not needs or len(needs) < len(hold.forces_needed) or max(needs) <= 0:
             return
         if self.jaws.max_force is not None:
             yield "slip_reserve", self.jaws.max_force / max(needs)
@@ -381,12 +389,12 @@ SAMPLES = 256
 
 def first_of_order(hold: JawHold) -> tuple[bool, bool, bool]:
     """Whether a jaw touches corners alone, whether one cannot press all over, and whether the vise is too weak."""
-    needs = [need for need in hold.clamp_needed_each if need is not None]
+    needs = [need for need in hold.forces_needed if need is not None]
     strong = hold.max_force is None or not needs or max(needs) <= hold.max_force
     return (
         not (hold.fixed.segments and hold.moving.segments),
         not hold.full_contact,
-        len(needs) < len(hold.clamp_needed_each) or not strong,
+        len(needs) < len(hold.forces_needed) or not strong,
     )
 
 

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from workhold.model.jaw_hold import Patch, Rectangle
 
-__all__ = ["HeldBetweenJaws", "UnsettledError", "pressures_of", "resultants_of"]
+__all__ = ["LENGTH", "HeldBetweenJaws", "UnsettledError", "pressures_of", "resultants_of", "wrench"]
 
 Array = NDArray[np.float64]
 # Cells of a rectangle, and of a line, and directions of friction: part of what is claimed.
@@ -217,16 +217,29 @@ class HeldBetweenJaws:
         """
         load = wrench(np.array([point]), force)[0]
         load[5] += moment / LENGTH
+        found = self.answer(load)
+        return None if found is None else found[0]
+
+    def answer(self, load: Array) -> tuple[float, Array] | None:
+        """Return the least jaw force in N for a load (6,), and its prices (6,); None where no force is enough.
+
+        No load asks for less than -prices . load. Moments are divided by :data:`LENGTH`.
+
+        Raises
+        ------
+        UnsettledError
+            Where the method comes to no end.
+        """
         size = float(np.abs(load).max())
         if size == 0.0:
-            return 0.0
+            return 0.0, np.zeros(6)
         least = self.least(-load / size + self.side)
-        return None if least is None else max(least, 0.0) * size
+        return None if least is None else (max(least[0], 0.0) * size, least[1])
 
-    def least(self, side: Array) -> float | None:
-        """The least cost of forces whose wrenches sum to a side (6,)."""
+    def least(self, side: Array) -> tuple[float, Array] | None:
+        """Return the least cost of forces whose wrenches sum to a side (6,), and the prices (6,) of the side."""
         # The first basis stands for what is not balanced yet.
-        columns = np.diag(np.where(side < 0, -1.0, 1.0))
+        columns, prices = np.diag(np.where(side < 0, -1.0, 1.0)), np.zeros(6)
         missing = np.ones(6, np.bool_)
         costs = np.zeros(6)
         for is_first in (True, False):
@@ -252,7 +265,7 @@ class HeldBetweenJaws:
                 raise UnsettledError
             if is_first and np.where(missing, amount, 0.0).sum() > 10 * MOVED:
                 return None
-        return float(costs @ amount)
+        return float(costs @ amount), prices
 
     def entering(self, prices: Array, is_first: bool) -> tuple[float, Array, float]:
         """What gains most at some prices (6,): the gain, its wrench and its cost."""

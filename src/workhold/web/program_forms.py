@@ -16,6 +16,7 @@ from workhold.asking.declaring import declarations_of
 from workhold.asking.program import CuttingQuestion, ProgramQuestion, StockQuestion
 from workhold.errors import InputError
 from workhold.files.declared_forms import given_in, with_fields
+from workhold.files.result.hold_text import need_entry
 from workhold.model.program import Program
 from workhold.model.solid import SolidOutline
 from workhold.units import MILLIMETRE
@@ -237,8 +238,13 @@ def passing_answer(result: Any, index: int) -> dict[str, Any] | None:
 
 def forces_answer(result: Any, index: int) -> dict[str, Any] | None:
     """What the tools of a result's program ask of a fixture, in N and in sentences; None without forces."""
+    from workhold.statics.jaw_program import asked_words
     from workhold.statics.program_forces import cutting_need_of
 
+    hold, program = (result[index].hold, result.query.program) if result.holds else (None, None)
+    if hold is not None and hold.program_need is not None and program is not None:
+        asked = hold.program_need
+        return {**need_entry(asked), "words": [asked_words(asked, program, MILLIMETRE)]}
     need = cutting_need_of(result, index)
     if need is None:
         return None

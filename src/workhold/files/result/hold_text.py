@@ -12,10 +12,10 @@ from collections.abc import Iterator
 from typing import Any
 
 from workhold.model.fixture import Fixture
-from workhold.model.jaw_hold import HOLD_FIGURES, Patch
+from workhold.model.jaw_hold import HOLD_FIGURES, Patch, ProgramNeed
 from workhold.model.result import Result
 
-__all__ = ["hold_columns", "hold_entry", "hold_lines", "hold_rows", "is_hold"]
+__all__ = ["hold_columns", "hold_entry", "hold_lines", "hold_rows", "is_hold", "need_entry"]
 
 DIGITS = 12
 
@@ -41,6 +41,8 @@ def hold_entry(fixture: Fixture) -> dict[str, Any]:
         rectangles = [[length(end) for end in one] for one in patch.rectangles]
         return {"segments": list(patch.segments), "rectangles": rectangles}
 
+    need = hold.program_need
+    of_program = {} if need is None else {"program_force": need_entry(need)}
     return {
         "type": fixture.type,
         "parallels": length(hold.parallels),
@@ -55,7 +57,13 @@ def hold_entry(fixture: Fixture) -> dict[str, Any]:
         "jaw_separation": length(hold.opening),
         "warnings": list(hold.warnings),
         "quality": {key: figure(value) for key, value in hold.as_quality().items()},
+        **of_program,
     }
+
+
+def need_entry(need: ProgramNeed) -> dict[str, Any]:
+    """What the tools of a program ask for, as it is written."""
+    return {"force": figure(need.force), "line": need.line, "tool": need.tool, "move": need.move}
 
 
 def hold_lines(result: Result) -> Iterator[str]:

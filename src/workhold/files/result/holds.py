@@ -17,7 +17,7 @@ from workhold.files.result.forms import FormPart, first_fault
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.fixture_table import FixtureTable, table_of_flat_jaws
-from workhold.model.jaw_hold import JawHold, Patch
+from workhold.model.jaw_hold import JawHold, Patch, ProgramNeed
 from workhold.model.pose import Pose
 from workhold.model.query import Query
 
@@ -65,6 +65,15 @@ class HoldQualityPart(FormPart):
     tilt: Number = 0.0
 
 
+class ProgramForcePart(FormPart):
+    """The jaw force in N that the tools of the program ask for, and where."""
+
+    force: Number | None = Field(description="null where no jaw force is enough")
+    line: int
+    tool: int
+    move: Whole = Field(description="number of the program's move, from 0")
+
+
 class HoldPart(FormPart):
     """A fixture of two flat jaws; best first."""
 
@@ -77,6 +86,7 @@ class HoldPart(FormPart):
     jaw_separation: Number
     warnings: list[str] = Field(default=[])
     quality: HoldQualityPart
+    program_force: ProgramForcePart | None = None
 
     def fixture(self, toolkit: Toolkit, unit_force: float | None = None) -> Fixture:
         """The fixture with the figures that are written."""
@@ -88,7 +98,7 @@ class HoldPart(FormPart):
         """How the jaws of a toolkit hold the part; refuses a toolkit without flat jaws."""
         if toolkit.flat_jaws is None:
             raise InputError(f"it lies between flat jaws, which a {toolkit.noun} does not have.")
-        quality = self.quality
+        quality, need = self.quality, self.program_force
         return JawHold(
             parallels=self.parallels,
             stop=self.stop,
@@ -98,6 +108,7 @@ class HoldPart(FormPart):
             above=quality.above,
             full_contact=quality.full_contact,
             clamp_needed_each=tuple(quality.clamp_needed_each),
+            program_need=None if need is None else ProgramNeed(need.force, need.line, need.tool, need.move),
             max_pressure=quality.max_pressure,
             max_force=toolkit.flat_jaws.max_force,
             unit_force=unit_force,

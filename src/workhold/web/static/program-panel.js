@@ -219,7 +219,9 @@ function tellPassing() {
   show(byId("passing-card"), selected !== null && program !== null);
   const { passing = null, program_forces: asksFor = null } = (program && selected) || {};
   fixtureDrawing.showPassing(passing);
-  byId("passing").textContent = passing
+  byId("passing").textContent = selected?.hold
+    ? `The tools keep ${length(program.clearance, 2)} or more from both jaws.`
+    : passing
     ? `T${passing.tool} comes nearest in line ${passing.line}: ${length(passing.distance)} from the ${passing.element}. ${length(program.clearance, 2)} is asked for.`
     : "No tool comes down to where anything holds the part.";
   byId("passing").append(...(asksFor ? [make("br"), asksFor.words.join(" ")] : []));

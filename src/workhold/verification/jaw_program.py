@@ -1,0 +1,207 @@
+"""The jaw force that a program's tools ask for between two flat jaws, derived by another way than the search's.
+
+Prices that answer one load bound what every other asks for from below. So the load of the whole path that is worth most
+at these prices is found in closed form, and answered itself; its prices lead on to a harder one, until none is. That is
+done from many prices, among them those of the line that a file names. What is found is asked for indeed. A harder load
+that no ascent comes upon would be missed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import cos, pi, radians, sin
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.model.fixture import Fixture
+from workhold.model.jaw_hold import ProgramNeed
+from workhold.model.program import Program
+from workhold.verification.jaw_forces import LENGTH, HeldBetweenJaws, UnsettledError, wrench
+from workhold.verification.tool_walk import walk_of
+
+__all__ = ["program_force_faults"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+# Places of an arc that are looked at, steps of an ascent, and directions of the named line that are tried.
+PLACES, MOST_STEPS, TRIED = 33, 40, 8
+# Parts of a force by which one that is written may be above or below, and N.
+ABOVE, BELOW, HAIR = 0.011, 1e-3, 1e-3
+# Radians: half the range of directions about against the feed.
+SIXTY = pi / 3
+
+
+@frozen(eq=False)
+class PressingPath:
+    """The places of a program's path where tools press on a part, in the frame of the jaws.
+
+    Parameters
+    ----------
+    move : (N,) numbers of the program's moves.
+    point : (N, 3) in mm.
+    against : (N,) direction against the feed, in radians.
+    force, torque : (N,) in N and N mm, with the safety factor.
+    axial : (N, 2) along -z, in N, with the safety factor.
+    spread : half the range of directions about against the feed, in radians.
+    """
+
+    move: IntArray
+    point: Array
+    against: Array
+    force: Array
+    torque: Array
+    axial: Array
+    spread: float
+
+    @classmethod
+    def of(cls, program: Program, fixture: Fixture, height: float, safety: float) -> PressingPath:
+        walk, forces, moves = walk_of(program), program.forces, program.moves
+        assert forces is not None
+        stretches = forces.stretches
+        rows, shares = list[IntArray](), list[Array]()
+        for place in np.linspace(0.0, 1.0, PLACES):
+            whole = np.flatnonzero(walk.is_round[stretches.move] | (place in (0.0, 1.0)))
+            rows.append(stretches.move[whole])
+            first, last = stretches.first[whole], stretches.last[whole]
+            shares.append(first + place * (last - first))
+        move, share = np.concatenate(rows), np.concatenate(shares)
+        x, y = walk.at(move, share).T
+        z = moves.start[move, 2] + share * (moves.end[move, 2] - moves.start[move, 2])
+        turn = radians(fixture.pose.theta_deg)
+        point = np.column_stack(
+            [
+                cos(turn) * x - sin(turn) * y + fixture.pose.x,
+                sin(turn) * x + cos(turn) * y + fixture.pose.y,
+                np.minimum(np.maximum(z + forces.height[move], 0.0), height),
+            ]
+        )
+        chord = moves.end[move, :2] - moves.start[move, :2]
+        sweep = np.where(walk.is_round[move], walk.sweep[move], 0.0)
+        against = np.arctan2(chord[:, 1], chord[:, 0]) + sweep * (share - 0.5) + pi + turn
+        return cls(
+            move,
+            point,
+            against,
+            safety * forces.force[move],
+            safety * forces.torque[move],
+            safety * forces.axial[move],
+            SIXTY if forces.direction == "feed" else pi,
+        )
+
+    def only(self, moves: IntArray) -> PressingPath:
+        """Return the places on some moves."""
+        own = np.isin(self.move, moves)
+        return PressingPath(
+            self.move[own],
+            self.point[own],
+            self.against[own],
+            self.force[own],
+            self.torque[own],
+            self.axial[own],
+            self.spread,
+        )
+
+    def load(self, place: int, turn: float, pull: float, twist: float) -> Array:
+        """Return the wrench (6,) of a tool in a place, with a direction in radians, an axial force and a torque."""
+        force = float(self.force[place])
+        x, y, z = self.point[place].tolist()
+        row = wrench(np.array([[x, y, z]]), (force * cos(turn), force * sin(turn), -pull))[0]
+        row[5] += twist / LENGTH
+        return np.asarray(row)
+
+    def dearest(self, prices: Array) -> Array:
+        """Return the load (6,) of all whose price is the least: -prices . load is what it asks for at least."""
+        x, y, z = self.point.T
+        a, b, c, k, m, n = -prices / np.array([1.0, 1.0, 1.0, LENGTH, LENGTH, LENGTH])
+        along, across = a + z * m - y * n, b - z * k + x * n
+        upward = c + y * k - x * m
+        turn = np.arctan2(across, along)
+        off = np.angle(np.exp(1j * (turn - self.against)))
+        turn = self.against + np.clip(off, -self.spread, self.spread)
+        pull = np.where(upward > 0.0, self.axial[:, 0], self.axial[:, 1])
+        worth = (
+            self.force * (along * np.cos(turn) + across * np.sin(turn)) - pull * upward + self.torque * abs(n)
+        )
+        place = int(worth.argmax())
+        twist = float(self.torque[place]) * (1.0 if n > 0.0 else -1.0)
+        return self.load(place, float(turn[place]), float(pull[place]), twist)
+
+    def hardest(self, held: HeldBetweenJaws, starts: list[Array]) -> float | None:
+        """Return the largest jaw force in N that ascents come upon; None where a load is held by none."""
+        worst, known = 0.0, set[bytes]()
+        for prices in starts:
+            for _ in range(MOST_STEPS):
+                load = self.dearest(prices)
+                # Where an ascent came by before, it goes on as it did then.
+                if (key := load.round(9).tobytes()) in known:
+                    break
+                known.add(key)
+                found = held.answer(load)
+                if found is None:
+                    return None
+                force, prices = found
+                worst = max(worst, force)
+        return worst
+
+    def tried_loads(self) -> Iterator[Array]:
+        """Give loads of a few places in several directions."""
+        for place in sorted({0, len(self.move) // 2, len(self.move) - 1}):
+            for number in range(TRIED):
+                turn = float(self.against[place]) + self.spread * (2.0 * number / TRIED - 1.0)
+                yield self.load(place, turn, float(self.axial[place, 0]), float(self.torque[place]))
+
+
+def program_force_faults(
+    program: Program,
+    need: ProgramNeed | None,
+    fixture: Fixture,
+    held: HeldBetweenJaws,
+    height: float,
+    safety: float,
+) -> Iterator[str]:
+    """Give what is wrong with the jaw force that a file says a program asks for, without a full stop.
+
+    Parameters
+    ----------
+    need : as it is written; None where nothing is.
+    held : the part between the jaws.
+    height : of the part, in mm.
+    safety : factor on the loads.
+    """
+    path = PressingPath.of(program, fixture, height, safety)
+    if (need is None) != (not len(path.move)):
+        yield "the jaw force of its program is missing, or given where no tool presses on the part"
+        return
+    if need is None:
+        return
+    moves = program.moves
+    of_line = np.flatnonzero((moves.line == need.line) & (moves.tool == need.tool))
+    named = path.only(of_line)
+    if not len(named.move):
+        yield f"no T{need.tool} presses on the part in line {need.line} of the program"
+        return
+    try:
+        starts = [*np.eye(6), *-np.eye(6)]
+        for load in named.tried_loads():
+            found = held.answer(load)
+            if found is None:
+                if need.force is not None:
+                    yield f"line {need.line} is held by no jaw force, and {need.force:.9g} N are written"
+                return
+            starts.append(found[1])
+        if need.force is None:
+            yield f"no jaw force is said to hold the part in line {need.line}, and some do"
+            return
+        worst, there = path.hardest(held, starts), named.hardest(held, starts)
+    except (UnsettledError, np.linalg.LinAlgError):
+        return
+    if worst is None or there is None:
+        yield f"no jaw force holds the part along the program, and {need.force:.9g} N are written"
+        return
+    spare = HAIR + BELOW * worst
+    if not -spare <= need.force - worst <= spare + ABOVE * worst:
+        yield f"the program asks for {worst:.9g} N, and {need.force:.9g} N are written"
+    elif there < worst * (1.0 - ABOVE) - spare:
+        yield f"line {need.line} asks for {there:.9g} N, and another for {worst:.9g} N"
