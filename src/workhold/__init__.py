@@ -115,7 +115,7 @@ HOMES = {
 
 
 def imported(name: str, home: str) -> Any:
-    """Imports an object; ``home`` is its module, and behind a colon its name there if that is another."""
+    """Import an object; ``home`` is its module, and behind a colon its name there if that is another."""
     module, _, known_as = home.partition(":")
     return getattr(import_module(module), known_as or name)
 

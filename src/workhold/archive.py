@@ -139,7 +139,7 @@ class ArchiveWriter:
         self.stream.write(content)
 
     def add(self, block: Sequence[NDArray[Any]]) -> None:
-        """Writes the next rows, an array for each column in their order."""
+        """Write the next rows, an array for each column in their order."""
         for member, column, values in zip(self.members, self.columns.values(), block, strict=True):
             content = np.ascontiguousarray(values, column.kind).reshape(-1).view(np.uint8).data
             self.put(member.content + member.size - (self.rows - self.done) * column.row_bytes, content)
@@ -147,7 +147,7 @@ class ArchiveWriter:
         self.done += len(block[0])
 
     def shorten(self) -> None:
-        """Writes the number of rows there are into the headers, whose length does not depend on it."""
+        """Write the number of rows there are into the headers, whose length does not depend on it."""
         for member, column in zip(self.members, self.columns.values(), strict=True):
             said, header = column.header(self.rows), column.header(self.done)
             size = self.done * column.row_bytes
@@ -180,7 +180,7 @@ class ArchiveWriter:
 
 
 def followed_by(difference: int, size: int) -> int:
-    """The difference (XOR) of two checksums after ``size`` equal bytes, from their difference before.
+    """Return the difference (XOR) of two checksums after ``size`` equal bytes, from their difference before.
 
     Each bit that follows multiplies the difference by x, modulo the polynomial.
 
@@ -196,7 +196,7 @@ def followed_by(difference: int, size: int) -> int:
 
 
 def multiplied(a: int, b: int) -> int:
-    """The product of two polynomials with bits for coefficients, modulo that of the checksum."""
+    """Return the product of two polynomials with bits for coefficients, modulo that of the checksum."""
     product = 0
     for place in range(TOP, -1, -1):
         if a >> place & 1:
@@ -206,7 +206,7 @@ def multiplied(a: int, b: int) -> int:
 
 
 def is_archive(path: Path) -> bool:
-    """Whether a file begins as an archive does.
+    """Return whether a file begins as an archive does.
 
     Raises
     ------
@@ -223,7 +223,7 @@ class CarefulFile(io.FileIO):
     """A file of which a directory of a sensible size can be read."""
 
     def read(self, size: int | None = -1, /) -> bytes:
-        """Reads so many bytes, or those to the end; raises BadZipFile when they are too many."""
+        """Read so many bytes, or those to the end; raise BadZipFile when they are too many."""
         if size is not None and size > MOST_DIRECTORY:
             raise BadZipFile("its directory is too large")
         return super().read(MOST_DIRECTORY if size is None or size < 0 else size) or b""
@@ -232,7 +232,7 @@ class CarefulFile(io.FileIO):
 def mapped_archive(
     path: Path, columns: Columns | Callable[[str], Columns], name: str, whole: bool = False
 ) -> tuple[str, dict[str, NDArray[Any]]]:
-    """The text of an archive and its columns, which are read only where they are looked at.
+    """Return the text of an archive and its columns, which are read only where they are looked at.
 
     Nothing in the file is trusted. Members must be stored uncompressed, apart from each other and inside the
     file. An array's header must give just as many rows as there is room for.
@@ -280,7 +280,7 @@ def mapped_archive(
 
 
 def refuse_unlike(names: set[str], members: Sequence[ZipInfo], spans: list[tuple[int, int]]) -> None:
-    """Refuses members that are missing, there twice, or not apart from each other; raises BadZipFile."""
+    """Refuse members that are missing, there twice, or not apart from each other; raise BadZipFile."""
     found = [info.filename for info in members]
     for one in sorted(names):
         if found.count(one) != 1:
@@ -291,7 +291,7 @@ def refuse_unlike(names: set[str], members: Sequence[ZipInfo], spans: list[tuple
 
 
 def span(info: ZipInfo, content: mmap.mmap) -> tuple[int, int]:
-    """Where the content of a member begins and ends.
+    """Return where the content of a member begins and ends.
 
     Raises BadZipFile when it is packed or locked, or not inside the file, and struct.error when its header is
     not.
@@ -308,7 +308,7 @@ def span(info: ZipInfo, content: mmap.mmap) -> tuple[int, int]:
 
 
 def checksum(content: mmap.mmap, first: int, end: int) -> int:
-    """The CRC-32 of a part of a file."""
+    """Return the CRC-32 of a part of a file."""
     value = 0
     with memoryview(content) as view:
         for k in range(first, end, MOST_DIRECTORY):
@@ -317,7 +317,7 @@ def checksum(content: mmap.mmap, first: int, end: int) -> int:
 
 
 def mapped(content: mmap.mmap, first: int, end: int, name: str, column: Column) -> NDArray[Any]:
-    """A column (N, ...) in a mapped file, read-only.
+    """Return a column (N, ...) in a mapped file, read-only.
 
     Raises BadZipFile when its header is not that of such a column of such a size, and struct.error when it is
     too short for a header.

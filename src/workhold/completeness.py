@@ -41,7 +41,7 @@ def verify(
     progress: Progress | None = None,
     cancel: Event | None = None,
 ) -> Verification:
-    """Proves or refutes every fixture of a result or a result file, and every number written with it.
+    """Prove or refutes every fixture of a result or a result file, and every number written with it.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def verify(
 def completed(
     outcome: Verification, listing: Listing, *, threads: int | None = None, **watching: Any
 ) -> Verification:
-    """A verification with the faults that a new search of the listing's query finds.
+    """Return a verification with the faults that a new search of the listing's query finds.
 
     When the search is cancelled, the verification is returned unchanged.
 
@@ -162,7 +162,7 @@ def differences(listing: Listing, result: Result) -> Iterator[str]:
 
 
 def hold_differences(listing: Listing, result: Result) -> Iterator[str]:
-    """The same of what flat jaws hold, which angle, parallels and stop distinguish."""
+    """Yield the same of what flat jaws hold, which angle, parallels and stop distinguish."""
     listed, found = keys_of(listing.fixtures), keys_of(result)
     surplus, missing = sorted(listed[key] for key in listed.keys() - found), found.keys() - listed.keys()
     if surplus:
@@ -180,7 +180,7 @@ def hold_differences(listing: Listing, result: Result) -> Iterator[str]:
 
 
 def keys_of(fixtures: Iterable[Fixture]) -> dict[tuple[float, float, str | None], int]:
-    """The places of fixtures of flat jaws by what distinguishes them."""
+    """Return the places of fixtures of flat jaws by what distinguishes them."""
     return {
         (round(one.pose.theta_deg, 4) % 360, round(one.hold.parallels, 6), one.hold.stop): place
         for place, one in enumerate(fixtures)
@@ -189,7 +189,7 @@ def keys_of(fixtures: Iterable[Fixture]) -> dict[tuple[float, float, str | None]
 
 
 def first_other(written: Any, derived: Any, key: str = "") -> str:
-    """The key of the first value that differs by more than ``SAME_SEATING``; empty where all agree."""
+    """Return the key of the first value that differs by more than ``SAME_SEATING``; empty where all agree."""
     if isinstance(derived, dict):
         pairs = [(key or name, written.get(name), value) for name, value in derived.items()]
         return next((other for name, a, b in pairs if (other := first_other(a, b, name))), "")
@@ -218,14 +218,14 @@ def numbers_of(proof: Proof) -> dict[str, int]:
 
 
 def other_numbers(name: str, written: Any, derived: Any) -> Iterator[str]:
-    """A fault for each number for which a search comes to another one."""
+    """Yield a fault for each number for which a search comes to another one."""
     for key, number in derived.items():
         if written.get(key) != number:
             yield f"{name} says {written.get(key)} for {key}, and a search comes to {number}"
 
 
 def other_entries(written: Proof, derived: Proof) -> Iterator[str]:
-    """A fault when other candidates are undecided in a search."""
+    """Yield a fault when other candidates are undecided in a search."""
 
     def key(entry: Undecided) -> tuple[Any, ...]:
         *whole, theta, reason, _ = astuple(entry)

@@ -111,7 +111,7 @@ class InputError(WorkholdError, ValueError):
 
 
 def causes_of(error: BaseException | None, *, or_context: bool = False) -> Iterator[BaseException]:
-    """An error, the one that it was raised from, that one's, and so on; each once.
+    """Yield an error, the one that it was raised from, that one's, and so on; each once.
 
     Parameters
     ----------
@@ -146,7 +146,7 @@ def quoted(value: object) -> str:
 
 
 def refuse_kind(value: object, kind: type, name: str, remedy: str) -> None:
-    """Refuses an argument of another type than it must have.
+    """Refuse an argument of another type than it must have.
 
     Parameters
     ----------

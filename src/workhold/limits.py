@@ -47,7 +47,7 @@ __all__ = [
 
 
 def real(value: Any, name: str = "a number") -> float:
-    """A number as a float: infinite for a whole number too large for a float.
+    """Return a number as a float: infinite for a whole number too large for a float.
 
     A check that refuses numbers that are not finite then refuses these as well.
 
@@ -96,7 +96,7 @@ def with_names(cls: type, fields: list[Attribute[Any]]) -> list[Attribute[Any]]:
 
 
 def read_number(text: Any) -> float:
-    """The number that a file or an option says in words or as a number; NaN for what is none.
+    """Return the number that a file or an option says in words or as a number; NaN for what is none.
 
     >>> read_number("12.5"), read_number("three")
     (12.5, nan)
@@ -110,7 +110,7 @@ def read_number(text: Any) -> float:
 
 
 def real_array(values: Any, name: str) -> NDArray[np.float64]:
-    """A copy of numbers as an array of floats.
+    """Return a copy of numbers as an array of floats.
 
     Raises
     ------
@@ -131,7 +131,7 @@ def real_array(values: Any, name: str) -> NDArray[np.float64]:
 
 
 def counting_number(name: str, value: Any) -> int | None:
-    """A count from 1, or None.
+    """Return a count from 1, or None.
 
     Raises
     ------
@@ -187,7 +187,7 @@ THREAD_SPACE = 8 << 20
 
 
 def refuse_little_space(needed: int, what: str, remedy: str) -> None:
-    """Refuses work that needs more address space than this process may have.
+    """Refuse work that needs more address space than this process may have.
 
     Libraries would end the process without a message.
 
@@ -214,13 +214,13 @@ def refuse_little_space(needed: int, what: str, remedy: str) -> None:
 
 
 def refuse_long(name: str, value: float) -> None:
-    """Refuses a length in mm that is too large."""
+    """Refuse a length in mm that is too large."""
     if abs(value) > MOST_LENGTH:
         raise InputError(f"{name} {value:g} is beyond {MOST_LENGTH:g} mm: check the number and its unit.")
 
 
 def refuse_strong(name: str, value: float, unit: str = "N") -> None:
-    """Refuses a force in N or a moment in N mm that is too large."""
+    """Refuse a force in N or a moment in N mm that is too large."""
     if abs(value) > MOST_FORCE:
         raise InputError(f"{name} {value:g} is beyond {MOST_FORCE:g} {unit}: check the number and its unit.")
 
@@ -228,7 +228,7 @@ def refuse_strong(name: str, value: float, unit: str = "N") -> None:
 def refuse_many_steps(
     pitch: tuple[float, float], columns: int | None, rows: int | None, diameter: float, features: int
 ) -> None:
-    """Refuses a lattice on which two pegs can be placed in too many ways.
+    """Refuse a lattice on which two pegs can be placed in too many ways.
 
     Parameters
     ----------
@@ -256,7 +256,7 @@ def refuse_many_steps(
 
 
 def thread_count(threads: int | None) -> int:
-    """The number of threads to use: as asked for, or one for each processor this process may use.
+    """Return the number of threads to use: as asked for, or one for each processor this process may use.
 
     Raises
     ------
@@ -276,7 +276,7 @@ def thread_count(threads: int | None) -> int:
 def refuse_much_work(
     ways: float, extent: tuple[float, float], pitch: tuple[float, float], ways_at: Callable[[float], float]
 ) -> None:
-    """Refuses a search for two clamps on a lattice that would take hours, and more memory than there is.
+    """Refuse a search for two clamps on a lattice that would take hours, and more memory than there is.
 
     Parameters
     ----------

@@ -13,7 +13,7 @@ Number = TypeVar("Number", bound=np.generic)
 
 
 def largest(values: NDArray[Number]) -> NDArray[Number]:
-    """The largest (N,) of each row of (N, K) numbers, K above 0; NaN where there is one.
+    """Return the largest (N,) of each row of (N, K) numbers, K above 0; NaN where there is one.
 
     Examples
     --------
@@ -25,7 +25,7 @@ def largest(values: NDArray[Number]) -> NDArray[Number]:
 
 
 def smallest(values: NDArray[Number]) -> NDArray[Number]:
-    """The smallest (N,) of each row of (N, K) numbers, K above 0; NaN where there is one.
+    """Return the smallest (N,) of each row of (N, K) numbers, K above 0; NaN where there is one.
 
     Examples
     --------
@@ -37,5 +37,5 @@ def smallest(values: NDArray[Number]) -> NDArray[Number]:
 
 
 def columnwise(values: NDArray[Any]) -> Any:
-    """The columns (K, N) of (N, K) numbers, each in one piece."""
+    """Return the columns (K, N) of (N, K) numbers, each in one piece."""
     return np.ascontiguousarray(values.T)

@@ -40,7 +40,7 @@ class Unit:
     newtons: float = 1.0
 
     def length(self, number: float) -> float:
-        """The length in mm that a number of this unit means.
+        """Return the length in mm that a number of this unit means.
 
         Rounded at 1e-12 mm, so that 1.5 inch is the 38.1 mm that a metric drawing says, not its neighbour in
         floating point: coincidences of part and vise stay exact.
@@ -51,7 +51,7 @@ class Unit:
         return float(number) if self.millimetres == 1 else round(number * self.millimetres, 12)
 
     def number(self, length: float, decimals: int | None = None) -> str:
-        """A length in mm as a number of this unit, without a negative zero.
+        """Return a length in mm as a number of this unit, without a negative zero.
 
         Parameters
         ----------
@@ -67,7 +67,7 @@ class Unit:
         return text.removeprefix("-") if float(text) == 0 else text
 
     def text(self, length: float, decimals: int | None = None) -> str:
-        """A length in mm as a number of this unit and the unit behind it.
+        """Return a length in mm as a number of this unit and the unit behind it.
 
         >>> INCH.text(12.7), MILLIMETRE.text(24.125)
         ('0.5000 in', '24.125 mm')
@@ -75,7 +75,7 @@ class Unit:
         return f"{self.number(length, decimals)} {self.abbreviation}"
 
     def figure(self, length: float, decimals: int | None = None) -> str:
-        """A length in mm as a catalogue would print it: as many decimals as it takes and no more.
+        """Return a length in mm as a catalogue would print it: as many decimals as it takes and no more.
 
         >>> INCH.figure(12.7), MILLIMETRE.figure(20.0), MILLIMETRE.figure(12.7)
         ('0.5', '20', '12.7')
@@ -84,7 +84,7 @@ class Unit:
         return text.rstrip("0").rstrip(".") if "." in text else text
 
     def force_words(self, force: float) -> str:
-        """A force in N in whole units of force, or with three figures when it is small, and the unit.
+        """Return a force in N in whole units of force, or with three figures when it is small, and the unit.
 
         Where that unit is not the newton, newtons stand beside it.
 
@@ -95,7 +95,7 @@ class Unit:
         return words if self.newtons == 1 else f"{words} ({MILLIMETRE.force_alone(force)})"
 
     def force_alone(self, force: float) -> str:
-        """A force in N as of :meth:`force_words` in the unit of force alone, for columns of a table.
+        """Return a force in N as of :meth:`force_words` in the unit of force alone, for columns of a table.
 
         >>> INCH.force_alone(1000.0)
         '225 lbf'
@@ -113,7 +113,7 @@ class Unit:
         return text.removeprefix("-") if float(text) == 0 else text
 
     def moment_words(self, moment: float) -> str:
-        """A moment in N mm in N m, or in ft lbf with N m beside it.
+        """Return a moment in N mm in N m, or in ft lbf with N m beside it.
 
         >>> MILLIMETRE.moment_words(1234.5), INCH.moment_words(1000.0)
         ('1.23 N m', '0.738 ft lbf (1 N m)')
@@ -129,7 +129,7 @@ class Unit:
         return "MPa" if self.newtons == 1 else "ksi"
 
     def stress_number(self, stress: float) -> str:
-        """A stress in MPa as a number of the unit of stress, for columns of a table.
+        """Return a stress in MPa as a number of the unit of stress, for columns of a table.
 
         >>> MILLIMETRE.stress_number(896.2), INCH.stress_number(896.2)
         ('896', '130.0')
@@ -137,7 +137,7 @@ class Unit:
         return f"{stress:.0f}" if self.newtons == 1 else f"{stress / KSI:.1f}"
 
     def stress_words(self, stress: float) -> str:
-        """A stress in MPa in the unit of stress; where that is not the MPa, it stands beside.
+        """Return a stress in MPa in the unit of stress; where that is not the MPa, it stands beside.
 
         >>> MILLIMETRE.stress_words(896.2), INCH.stress_words(896.2)
         ('896 MPa', '130.0 ksi (896 MPa)')
@@ -146,7 +146,7 @@ class Unit:
         return f"{self.stress_number(stress)} {self.pressure}{beside}"
 
     def force_above(self, force: float) -> str:
-        """A force in N as a whole number of the unit of force, rounded up to stay on the safe side.
+        """Return a force in N as a whole number of the unit of force, rounded up to stay on the safe side.
 
         >>> MILLIMETRE.force_above(1234.2), MILLIMETRE.force_above(0.0), INCH.force_above(1000.0)
         ('1235', '0', '225')
@@ -169,7 +169,7 @@ UNITS = {
 
 
 def unit_named(name: str) -> Unit:
-    """The unit of a name, in any mixture of capitals.
+    """Return the unit of a name, in any mixture of capitals.
 
     Raises
     ------
@@ -194,7 +194,7 @@ PIXEL = re.compile(r"px *([0-9]{1,5}(?:\.[0-9]{1,6})?)")
 
 
 def pixels_an_inch(name: str | None) -> float | None:
-    """How many pixels make an inch in a unit such as "px96"; None for other names.
+    """Return how many pixels make an inch in a unit such as "px96"; None for other names.
 
     >>> pixels_an_inch("px72"), pixels_an_inch("mm")
     (72.0, None)
@@ -204,7 +204,7 @@ def pixels_an_inch(name: str | None) -> float | None:
 
 
 def drawing_unit(name: str) -> Unit:
-    """The unit of a drawing: one of length, or pixels of which so many make an inch.
+    """Return the unit of a drawing: one of length, or pixels of which so many make an inch.
 
     Raises
     ------

@@ -227,7 +227,7 @@ def check_fields(question: type, those: list[Attribute[Any]]) -> list[Attribute[
 
 
 def declaration_of(one: Attribute[Any]) -> Declaration:
-    """Returns the declaration of a field, by the name that the field has."""
+    """Return the declaration of a field, by the name that the field has."""
     said: Declaration = one.metadata[KEY]
     return evolve(said, name=one.name)
 
@@ -247,5 +247,5 @@ def declarations_of(question: type, sections: Iterable[str | None] | None = None
 
 
 def values_of(question: Any) -> dict[str, Any]:
-    """Returns the values of a question's declared fields by name."""
+    """Return the values of a question's declared fields by name."""
     return {row.name: getattr(question, row.name) for row in declarations_of(type(question))}

@@ -102,7 +102,7 @@ class ClusterWorkers:
             self.stack.close()
 
     def hear(self, event: tuple[float, Any]) -> None:
-        """Takes note of what the scheduler reports of its workers; runs in a thread of the client's."""
+        """Take note of what the scheduler reports of its workers; runs in a thread of the client's."""
         report = event[1]
         if isinstance(report, dict) and report.get("action") == "remove-worker":
             busy = report.get("processing-tasks") or {}
@@ -195,7 +195,7 @@ class ClusterWorkers:
         return self.threads
 
     def outcome(self, future: Any, task: Task) -> Outcome | None:
-        """What came of a task; None where the scheduler has lost it.
+        """Return what came of a task; None where the scheduler has lost it.
 
         Raises
         ------
@@ -233,12 +233,12 @@ class ClusterWorkers:
 
 
 def is_killed(future: Any) -> bool:
-    """Whether the scheduler has given a task up because its workers died."""
+    """Return whether the scheduler has given a task up because its workers died."""
     return future.status == "error" and type(future.exception()).__name__ == "KilledWorker"
 
 
 def checked_address(address: str) -> str:
-    """The address of a scheduler; without a kind it is one of TCP.
+    """Return the address of a scheduler; without a kind it is one of TCP.
 
     Raises
     ------

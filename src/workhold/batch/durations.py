@@ -50,7 +50,7 @@ def reading_seconds(ending: str, size: int) -> float:
 
 
 def measures(faces: int, size: tuple[float, float], toolkit: Toolkit) -> tuple[str, float, float]:
-    """The law that holds for a toolkit, and the logarithms of what it grows with: faces and steps.
+    """Return the law that holds for a toolkit, and the logarithms of what it grows with: faces and steps.
 
     Width and height of the part are in mm.
     """

@@ -139,7 +139,7 @@ class Report:
     left_out: int = field(default=0, init=False)
 
     def add(self, job: JobRow, sheet: Path | None = None) -> None:
-        """Takes a row; ``sheet`` is the setup sheet of its first choice, where there is one."""
+        """Take a row; ``sheet`` is the setup sheet of its first choice, where there is one."""
         row = job.row
         self.states[row["state"]] += 1
         if row["state"] in BAD and len(self.bad) < MOST_ROWS:
@@ -150,7 +150,7 @@ class Report:
         self.rows.append(self.line(row, self.picture(job), sheet))
 
     def picture(self, job: JobRow) -> str:
-        """The first choice of a job, as far as there is room for it."""
+        """Return the first choice of a job, as far as there is room for it."""
         row = job.row
         if row["state"] != "held" or self.pictures >= MOST_PICTURES:
             return ""
@@ -165,7 +165,7 @@ class Report:
         )
 
     def line(self, row: Row, picture: str, sheet: Path | None) -> str:
-        """The HTML of a row."""
+        """Return the HTML of a row."""
         state = STATES[row["state"]][0] + (
             ", but none that a workshop can use" if row["fit"] is False else ""
         )
@@ -185,7 +185,7 @@ class Report:
         return f"<tr>{''.join(cells)}</tr>\n"
 
     def ways_on(self, row: Row, sheet: Path | None) -> str:
-        """How to get on from a row: its record, and its setup sheet or the line that makes it."""
+        """Return how to get on from a row: its record, and its setup sheet or the line that makes it."""
         if row["state"] != "held":
             return ""
         if "://" in row["record"]:
@@ -245,7 +245,7 @@ class Report:
         return f"{plural(self.states.total(), 'job')}: {', '.join(counted)}." if counted else "No jobs."
 
     def failures(self) -> str:
-        """What failed, as HTML."""
+        """Return what failed, as HTML."""
         rows = "".join(
             f"<tr><td>{escaped(part)}</td><td>{escaped(', '.join(toolkits))}</td>"
             f"<td>{escaped(reason)}</td></tr>\n"
@@ -262,7 +262,7 @@ def escaped(words: Any) -> str:
 
 
 def cell(content: str, *, key: str | None = None, name: str = "", bad: bool = False) -> str:
-    """A cell of HTML; ``key`` is what it is sorted by, if not its text."""
+    """Return a cell of HTML; ``key`` is what it is sorted by, if not its text."""
     classes = " ".join(filter(None, (name, "bad" if bad else "")))
     attributes = (f' class="{classes}"' if classes else "") + ("" if key is None else f' data-key="{key}"')
     return f"<td{attributes}>{content}</td>"
@@ -287,7 +287,7 @@ def write_results(
     summary: Summary,
     sheets: Path | None,
 ) -> Report:
-    """Writes tables and report of all jobs into a folder, and sheets of the first choices into another.
+    """Write tables and report of all jobs into a folder, and sheets of the first choices into another.
 
     Parameters
     ----------
@@ -303,7 +303,7 @@ def write_results(
 
 
 def sheet_of(row: JobRow, store: Store, folder: Path) -> Path | None:
-    """The setup sheet of a job's first choice, written if it is not there; None without a fixture."""
+    """Return the setup sheet of a job's first choice, written if it is not there; None without a fixture."""
     if row.row["state"] != "held":
         return None
     name = re.sub(r"[^\w.-]+", "_", f"{Path(row.row['part']).stem} in {row.job.held_in.name}")[:LONGEST_NAME]

@@ -206,7 +206,7 @@ class BatchRun:
     def do(
         self, doing: str, items: Sequence[T], seconds: Callable[[T], float], task_of: Callable[[T], Task]
     ) -> tuple[dict[str, Outcome], int]:
-        """Does the tasks of items that are not done, longest first, each name once.
+        """Do the tasks of items that are not done, longest first, each name once.
 
         Returns the outcome of each task that was done now, by its name, and how many were done before.
         Refuses to go on when a record cannot be kept.
@@ -246,7 +246,7 @@ class BatchRun:
         return outcomes, len(by_name) - len(reckoned)
 
     def keep(self, outcome: Outcome) -> None:
-        """Keeps the record of a task, unless its worker has, and what it took."""
+        """Keep the record of a task, unless its worker has, and what it took."""
         try:
             self.measured.add(outcome)
             if outcome.record is not None:
@@ -259,7 +259,7 @@ GO_ON = "The answers so far are kept: make room, and start the same command agai
 
 
 def run_batch(requests: Iterable[Request], best: int, work: BatchRun) -> Batch:
-    """Reads all parts and answer all jobs, as far as that is not done.
+    """Read all parts and answer all jobs, as far as that is not done.
 
     Parameters
     ----------
@@ -292,7 +292,7 @@ def run_batch(requests: Iterable[Request], best: int, work: BatchRun) -> Batch:
 
 
 def read_parts(batch: Batch, work: BatchRun) -> None:
-    """Reads the parts that are not read yet, and take note of all."""
+    """Read the parts that are not read yet, and take note of all."""
     parts = [part for part in batch.parts if part.name]
 
     def seconds(part: Part) -> float:
@@ -309,7 +309,7 @@ def read_parts(batch: Batch, work: BatchRun) -> None:
 
 
 def jobs_of(part: Part, best: int) -> Iterator[Job]:
-    """The jobs of a part; those without a name have no task."""
+    """Yield the jobs of a part; those without a name have no task."""
     for held_in in part.request.held_in:
         if part.refusal or not part.content:
             yield Job(part, held_in, refusal=part.refusal)

@@ -76,17 +76,17 @@ def refusal_record(sentence: str) -> bytes:
 
 
 def ended(content: dict[str, Any]) -> bytes:
-    """A record whose last entry is a list, so that it ends as every record does."""
+    """Return a record whose last entry is a list, so that it ends as every record does."""
     return json.dumps(content).encode() + b"\n"
 
 
 def checksum(name: str, content: bytes) -> bytes:
-    """The line that stands beside a record: the SHA-256 of its task's name and its bytes."""
+    """Return the line that stands beside a record: the SHA-256 of its task's name and its bytes."""
     return sha256(name.encode() + b"\n" + content).hexdigest().encode() + b"\n"
 
 
 def is_whole(name: str, content: bytes, line: bytes) -> bool:
-    """Whether bytes are the record of a task: they begin and end as one does, and have its checksum.
+    """Return whether bytes are the record of a task: they begin and end as one does, and have its checksum.
 
     >>> record = refusal_record("no")
     >>> line = checksum("a", record)
@@ -116,7 +116,7 @@ CHECKSUM = ".sha256"
 
 
 def beside(path: str) -> str:
-    """The path of the checksum of the record at a path of an object store."""
+    """Return the path of the checksum of the record at a path of an object store."""
     return path.removesuffix(".json") + CHECKSUM
 
 
@@ -130,14 +130,14 @@ class Store(Protocol):
     __slots__ = ()
 
     def has(self, name: str) -> bool:
-        """Whether a task is done: its record is there, and whole."""
+        """Return whether a task is done: its record is there, and whole."""
         return self.read(name) is not None
 
     def read(self, name: str) -> bytes | None:
-        """The record of a task; None where there is none."""
+        """Return the record of a task; None where there is none."""
 
     def write(self, name: str, record: bytes) -> None:
-        """Keeps a record.
+        """Keep a record.
 
         Raises
         ------
@@ -146,10 +146,10 @@ class Store(Protocol):
         """
 
     def place(self, name: str) -> str:
-        """Where the record of a task is, or would be."""
+        """Return where the record of a task is, or would be."""
 
     def file(self, name: str) -> AbstractContextManager[Path]:
-        """The record of a task that is done, as a file as long as the block runs."""
+        """Return the record of a task that is done, as a file as long as the block runs."""
 
 
 @frozen
@@ -170,7 +170,7 @@ class FolderStore(Store):
         return self.folder / name[:FOLDER_LETTERS] / f"{name}.json"
 
     def read(self, name: str) -> bytes | None:
-        """A record, if it is whole."""
+        """Return a record, if it is whole."""
         path = self.path(name)
         try:
             content, line = (read_limited(file, RECORD) for file in (path, path.with_suffix(CHECKSUM)))
@@ -184,7 +184,7 @@ class FolderStore(Store):
         yield self.path(name)
 
     def write(self, name: str, record: bytes) -> None:
-        """Writes a record; see :meth:`Store.write`."""
+        """Write a record; see :meth:`Store.write`."""
         path = self.path(name)
         with plain_errors(path):
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -207,14 +207,14 @@ class UrlStore(Store):
         return f"{self.url}/{name[:FOLDER_LETTERS]}/{name}.json"
 
     def at(self, name: str) -> tuple[Any, str]:
-        """The file system of a record, and its path there."""
+        """Return the file system of a record, and its path there."""
         from fsspec.core import url_to_fs
 
         system, path = url_to_fs(self.place(name))
         return system, path
 
     def read(self, name: str) -> bytes | None:
-        """A record, if it is whole."""
+        """Return a record, if it is whole."""
         system, path = self.at(name)
         try:
             content: bytes = system.cat_file(path)
@@ -224,7 +224,7 @@ class UrlStore(Store):
         return content if is_whole(name, content, line) else None
 
     def write(self, name: str, record: bytes) -> None:
-        """Keeps a record; see :meth:`workhold.batch.store.Store.write`. One that is cut short is none."""
+        """Keep a record; see :meth:`workhold.batch.store.Store.write`. One that is cut short is none."""
         system, path = self.at(name)
         try:
             system.makedirs(path.rpartition("/")[0], exist_ok=True)
@@ -242,7 +242,7 @@ class UrlStore(Store):
 
 
 def store_at(url: str) -> Store:
-    """The store at a URL, or in a folder of this machine's disks, which all workers see.
+    """Return the store at a URL, or in a folder of this machine's disks, which all workers see.
 
     Raises
     ------

@@ -71,7 +71,7 @@ class JobRow:
     best: Sequence[Row]
 
     def result(self, store: Store) -> Result:
-        """The result of a job that is done, as the command that shows it would read it."""
+        """Return the result of a job that is done, as the command that shows it would read it."""
         from workhold.files.result.reader import read_result
 
         with store.file(self.job.name) as path:
@@ -131,13 +131,13 @@ def take_record(row: Row, named: Row, record: Mapping[str, Any], job: Job) -> li
 
 
 def is_pressed(fixture: Mapping[str, Any]) -> bool:
-    """Whether flat jaws press all over what they touch, and neither touches a corner alone."""
+    """Return whether flat jaws press all over what they touch, and neither touches a corner alone."""
     touched = all(fixture[jaw]["segments"] for jaw in ("fixed", "moving"))
     return touched and bool(fixture["quality"]["full_contact"])
 
 
 def jaws_row(fixture: Mapping[str, Any]) -> Row:
-    """The row of a fixture that flat jaws hold; it has no holes, and no figures of pegs."""
+    """Return the row of a fixture that flat jaws hold; it has no holes, and no figures of pegs."""
     faces = [number for jaw in ("fixed", "moving") for number in fixture[jaw]["segments"]]
     return {
         "type": fixture["type"],
@@ -185,13 +185,13 @@ def has_parquet() -> bool:
 
 
 def table_names() -> tuple[str, str]:
-    """The files of the two tables, as they can be written here."""
+    """Return the files of the two tables, as they can be written here."""
     ending = "parquet" if has_parquet() else "csv"
     return f"results.{ending}", f"best.{ending}"
 
 
 def write_tables(rows: Iterator[JobRow], folder: Path) -> Iterator[JobRow]:
-    """Writes both tables of a folder and passes the rows on; files take their names at the end."""
+    """Write both tables of a folder and passes the rows on; files take their names at the end."""
     table = parquet_table if has_parquet() else csv_table
     with ExitStack() as files:
         add_results, add_best = (

@@ -55,14 +55,14 @@ LETTERS = 32
 
 @cache
 def program() -> str:
-    """The program's version, and a hash of what in it decides outcomes: equal on every machine."""
+    """Return the program's version, and a hash of what in it decides outcomes: equal on every machine."""
     numbers = sorted((name, value) for name, value in vars(conventions).items() if name.isupper())
     content = repr((ANSWERS, FORMAT, PART, REFUSAL, numbers))
     return f"{__version__} {sha256(content.encode()).hexdigest()[:LETTERS]}"
 
 
 def name_of(*content: Any) -> str:
-    """The name of a task of this program, from bytes and plain data.
+    """Return the name of a task of this program, from bytes and plain data.
 
     >>> name_of(b"part", {"best": 3}) == name_of(b"part", {"best": 3}), len(name_of())
     (True, 32)
@@ -106,7 +106,7 @@ class Task:
         raise NotImplementedError
 
     def record(self) -> bytes:
-        """Does the work; refuses what cannot be read or asked."""
+        """Do the work; refuse what cannot be read or asked."""
         raise NotImplementedError
 
 
@@ -136,7 +136,7 @@ class Reading(Task):
         import workhold.kernels.base.distance  # noqa: F401
 
     def record(self) -> bytes:
-        """The part; see :meth:`Task.record`."""
+        """Return the part; see :meth:`Task.record`."""
         from workhold.files.part_list import ListedPart, read_listed
 
         with tempfile.TemporaryDirectory(prefix="workhold-") as folder:
@@ -168,7 +168,7 @@ class Answering(Task):
         import workhold.search.design  # noqa: F401
 
     def record(self) -> bytes:
-        """The result file; see :meth:`Task.record`."""
+        """Return the result file; see :meth:`Task.record`."""
         from workhold.files.result.writer import result_text
         from workhold.model.notes import Many
         from workhold.search.design import answer
@@ -206,7 +206,7 @@ class FirstFixtures:
     result: Result | None = None
 
     def receive(self, result: Result, listed: int, tables: Iterable[FixtureTable]) -> None:
-        """Takes them, best first."""
+        """Take them, best first."""
         self.result = evolve(result, seating=result.seating[: self.most])
         for table in tables:
             first = table.take(np.arange(min(self.most - self.count, len(table))))
@@ -243,7 +243,7 @@ class Outcome:
 
 
 def done(task: Task, worker: str = "") -> Outcome:
-    """Does a task, whatever comes of it."""
+    """Do a task, whatever comes of it."""
     start = perf_counter()
     record, failure, has_no_room = None, "", False
     try:
@@ -302,14 +302,14 @@ class Watcher(Protocol):
         """A worker has nothing to do, or is no more."""
 
     def notify(self, sentence: str) -> None:
-        """Passes on a sentence about what happened, such as the death of a worker."""
+        """Pass on a sentence about what happened, such as the death of a worker."""
 
 
 class Queue(Protocol):
     """What gives tasks to workers."""
 
     def run(self, tasks: Iterator[Task], stop: Event) -> Iterator[Outcome]:
-        """Does tasks, taken in their order when there is a worker for them; outcomes come as they do.
+        """Do tasks, taken in their order when there is a worker for them; outcomes come as they do.
 
         Parameters
         ----------

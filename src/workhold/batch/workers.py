@@ -123,7 +123,7 @@ class LocalWorkers:
             self.drop(one)
 
     def late(self) -> Iterator[Outcome]:
-        """Ends the workers whose tasks take longer than they may, and says so."""
+        """End the workers whose tasks take longer than they may, and says so."""
         for one in [one for one in self.workers if one.task is not None and monotonic() > one.ends_at]:
             task = one.task
             assert task is not None
@@ -162,7 +162,7 @@ class LocalWorkers:
         return Worker(title, process, ours)
 
     def give(self, one: Worker, task: Task) -> None:
-        """Gives a task to a worker; that a dead one cannot take it shows when it is heard."""
+        """Give a task to a worker; that a dead one cannot take it shows when it is heard."""
         one.task, one.seconds = task, min(self.seconds, task.most_seconds)
         one.ends_at = monotonic() + one.seconds
         self.watcher.begun(one.title, task.title)
@@ -170,12 +170,12 @@ class LocalWorkers:
             one.connection.send((1, "task", ENDLESS, task))
 
     def heard(self) -> list[Worker]:
-        """The workers that have something to say, or are no more, after a moment at most."""
+        """Return the workers that have something to say, or are no more, after a moment at most."""
         ready = wait([one.connection for one in self.workers], LOOK)
         return [one for one in self.workers if one.connection in ready]
 
     def hear(self, one: Worker) -> Outcome | None:
-        """What a worker says: an outcome; None when it is ready for the first time, or is no more."""
+        """Return what a worker says: an outcome; None when it is ready for the first time, or is no more."""
         try:
             kind, _, value = one.connection.recv()
         except Exception:
@@ -196,13 +196,13 @@ class LocalWorkers:
         return evolve(outcome, worker=one.title)
 
     def drop(self, one: Worker) -> None:
-        """Closes the pipe to a worker, which ends it."""
+        """Close the pipe to a worker, which ends it."""
         self.workers.remove(one)
         one.end()
         self.watcher.ended(one.title)
 
     def refuse_failed_starts(self, one: Worker) -> None:
-        """Raises an error when one worker after the other ends before it is ready."""
+        """Raise an error when one worker after the other ends before it is ready."""
         self.failed_starts += 1
         if self.failed_starts >= MOST_FAILED_STARTS:
             raise InputError(

@@ -94,7 +94,7 @@ class SetEntry:
 
 
 def data_bytes(name: str) -> bytes:
-    """The content of a file of the benchmark, such as ``check.py`` or ``parts/kite.json``."""
+    """Return the content of a file of the benchmark, such as ``check.py`` or ``parts/kite.json``."""
     return (files("workhold") / "data" / HOME).joinpath(*name.split("/")).read_bytes()
 
 
@@ -106,7 +106,7 @@ def manifest() -> Mapping[str, Any]:
 
 @cache
 def sets() -> tuple[SetEntry, ...]:
-    """All sets, in the order of the manifest."""
+    """Return all sets, in the order of the manifest."""
     return tuple(
         SetEntry(
             name=one["name"],
@@ -122,7 +122,7 @@ def sets() -> tuple[SetEntry, ...]:
 
 
 def set_named(name: str) -> SetEntry:
-    """The set of a name.
+    """Return the set of a name.
 
     Raises
     ------
@@ -148,7 +148,7 @@ def query_of(entry: SetEntry) -> Query:
 
 
 def set_text(name: str, result: Result) -> SetText:
-    """The head and the lines of a set's file, from the complete result of the set's query."""
+    """Return the head and the lines of a set's file, from the complete result of the set's query."""
     fixtures = [
         reduced(json.loads(line))
         for lines in fixture_lines(result.table, result.toolkit, result.workpiece)
@@ -159,7 +159,7 @@ def set_text(name: str, result: Result) -> SetText:
 
 
 def reduced(fixture: Mapping[str, Any]) -> dict[str, Any]:
-    """A fixture of a result file with what a set says of it."""
+    """Return a fixture of a result file with what a set says of it."""
     quality = {key: fixture["quality"][key] for key in FIGURE_KEYS if key in fixture["quality"]}
     return {key: fixture[key] for key in KEPT if key in fixture} | {"quality": quality}
 
@@ -202,7 +202,7 @@ def file_text(head: Mapping[str, Any], lines: Iterable[str]) -> str:
 
 
 def sums_of(head: Mapping[str, Any], lines: Sequence[str]) -> dict[str, str]:
-    """The checksums (SHA-256) of a set, by what they are of.
+    """Return the checksums (SHA-256) of a set, by what they are of.
 
     ``file`` is of the whole text, ``fixtures`` of the lines joined by line ends, and ``holes`` of what is
     whole numbers in them. The last is the same on machines whose arithmetic rounds otherwise.
@@ -215,12 +215,12 @@ def sums_of(head: Mapping[str, Any], lines: Sequence[str]) -> dict[str, str]:
 
 
 def holes_line(line: str) -> str:
-    """The whole numbers of a fixture: of every peg column, row and face."""
+    """Return the whole numbers of a fixture: of every peg column, row and face."""
     fixture = json.loads(line)
     pegs = [[peg.get("column"), peg.get("row"), peg["segment"]] for peg in fixture["pegs"]]
     return json.dumps([fixture["type"], fixture.get("directions", fixture.get("direction")), pegs])
 
 
 def digest(text: str) -> str:
-    """The SHA-256 of a text."""
+    """Return the SHA-256 of a text."""
     return sha256(text.encode("utf-8")).hexdigest()

@@ -62,7 +62,7 @@ class MadeSet:
 def made_list(
     entry: SetEntry, threads: int | None = None, cancel: Event | None = None
 ) -> tuple[dict[str, Any], list[str]] | None:
-    """The head and the lines of a set, from a search; None where that was cancelled."""
+    """Return the head and the lines of a set, from a search; None where that was cancelled."""
     result = answer(query_of(entry), threads=threads, cancel=cancel)
     return set_text(entry.name, result) if result.complete else None
 
@@ -76,7 +76,7 @@ def made_sets(
     progress: Callable[[float, int], None] | None = None,
     cancel: Event | None = None,
 ) -> Iterator[MadeSet]:
-    """Makes sets one after the other and writes each into a folder.
+    """Make sets one after the other and writes each into a folder.
 
     Parameters
     ----------
@@ -105,14 +105,14 @@ def made_sets(
 
 
 def write_common(chosen: Sequence[SetEntry], folder: Path) -> None:
-    """Writes manifest, checker, schemas and the workpieces of some sets into a folder."""
+    """Write manifest, checker, schemas and the workpieces of some sets into a folder."""
     (folder / "parts").mkdir(parents=True, exist_ok=True)
     for name in (*COMMON, *(f"parts/{part}.json" for part in {one.part for one in chosen})):
         write_bytes(folder / name, data_bytes(name))
 
 
 def write_parquet(path: Path, head: Mapping[str, Any], lines: Sequence[str]) -> None:
-    """Writes a set as Parquet: a row for each fixture, and the head in the metadata of the schema."""
+    """Write a set as Parquet: a row for each fixture, and the head in the metadata of the schema."""
     arrow, tables = load_arrow()
     rows = [json.loads(line) for line in lines]
     table = arrow.Table.from_pylist(rows)
@@ -122,7 +122,7 @@ def write_parquet(path: Path, head: Mapping[str, Any], lines: Sequence[str]) -> 
 
 
 def load_arrow() -> tuple[Any, Any]:
-    """Imports pyarrow and its tables of Parquet.
+    """Import pyarrow and its tables of Parquet.
 
     Raises
     ------
@@ -144,7 +144,7 @@ def compared_entry(
     threads: int | None = None,
     cancel: Event | None = None,
 ) -> Comparison | None:
-    """Compares another program's list with the complete one, which is made anew; None where it is cancelled.
+    """Compare another program's list with the complete one, which is made anew; None where it is cancelled.
 
     Raises
     ------

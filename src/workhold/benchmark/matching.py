@@ -93,7 +93,7 @@ class Entry:
 
 
 def read_entry(path: Path, set_name: str | None = None) -> Entry:
-    """Reads another program's list.
+    """Read another program's list.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def read_entry(path: Path, set_name: str | None = None) -> Entry:
 
 
 def entry_of(text: str, usual: str) -> Entry:
-    """The list of a text in JSON; ``usual`` is the set it is for where it does not say."""
+    """Return the list of a text in JSON; ``usual`` is the set it is for where it does not say."""
     try:
         content = json_value(text)
     except InputError as error:
@@ -128,7 +128,7 @@ def entry_of(text: str, usual: str) -> Entry:
 
 
 def numbered(number: int, fixture: Any) -> Entered:
-    """A fixture of a list, whose number stands in the complaint."""
+    """Return a fixture of a list, whose number stands in the complaint."""
     try:
         return entered_fixture(fixture)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
@@ -137,7 +137,7 @@ def numbered(number: int, fixture: Any) -> Entered:
 
 
 def entered_fixture(fixture: Mapping[str, Any]) -> Entered:
-    """A fixture of an object of JSON.
+    """Return a fixture of an object of JSON.
 
     Raises KeyError, TypeError or ValueError where it has not the form.
     """
@@ -152,7 +152,7 @@ def entered_fixture(fixture: Mapping[str, Any]) -> Entered:
 
 
 def role_of(peg: Mapping[str, Any], direction: str | None) -> str:
-    """The role of a peg; of a clamp with the direction, which the peg says or the whole fixture."""
+    """Return the role of a peg; of a clamp with the direction, which the peg says or the whole fixture."""
     role = peg["jaw"] if "jaw" in peg else peg["role"]
     role = f"clamp {peg.get('direction', direction)}" if role == "clamp" else role
     if role not in PUSHES:
@@ -215,7 +215,7 @@ class Places:
         return [place_of(one, scale) for one in self.entered]
 
     def images(self, place: Array) -> list[Array]:
-        """A place under all rotations of the part onto itself, the place itself first."""
+        """Return a place under all rotations of the part onto itself, the place itself first."""
         every = self.part.numbered
         faces = [face.segment for face in every.faces]
         kept = centroid_of_joints(faces)
@@ -229,7 +229,7 @@ class Places:
 
 
 def place_of(entered: Entered, scale: float) -> Array:
-    """The place (P, 6) of a fixture; directions are multiplied by the scale in mm."""
+    """Return the place (P, 6) of a fixture; directions are multiplied by the scale in mm."""
     theta = np.radians(entered.theta_deg)
     rows = []
     for peg in entered.pegs:
@@ -265,7 +265,7 @@ class Comparison:
 
 
 def compared(complete: Places, theirs: Places, tolerance: float, symmetric: bool) -> Comparison:
-    """Compares another program's list with the complete one.
+    """Compare another program's list with the complete one.
 
     The tolerance is how far in mm pegs and directions may be off, these at half the part's extent.
     ``symmetric`` says whether a fixture stands for all that a rotation of the part carries it into.
@@ -316,7 +316,7 @@ class Index:
         return cls(places, sums, np.argsort(sums[:, 0], kind="stable"), tolerance)
 
     def nearest(self, place: Array) -> int | None:
-        """The number of the place nearest to one, if that is within the tolerance."""
+        """Return the number of the place nearest to one, if that is within the tolerance."""
         x, y = place[:, :2].sum(axis=0)
         room = self.tolerance * len(place)
         low, high = np.searchsorted(self.sums[self.order, 0], [x - room, x + room])

@@ -64,7 +64,7 @@ class LoadArguments(ToolArguments):
     picture: bool = Field(default=False, description="show a picture, too")
 
     def reading(self) -> dict[str, Any]:
-        """Returns the arguments of :func:`workhold.load` but the part."""
+        """Return the arguments of :func:`workhold.load` but the part."""
         return given_in(self, OF_READING)
 
 
@@ -117,7 +117,7 @@ class ProgramArguments(ToolArguments):
     )
 
     def reading(self, height: float | None) -> dict[str, Any]:
-        """Returns the arguments of :meth:`workhold.Program.read`.
+        """Return the arguments of :meth:`workhold.Program.read`.
 
         Parameters
         ----------

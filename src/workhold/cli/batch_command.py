@@ -123,7 +123,7 @@ class WorkWords:
     )
 
     def place(self) -> Workplace:
-        """Where the work is done; refuses two places, and a cluster without its library."""
+        """Return where the work is done; refuse two places, and a cluster without its library."""
         count = optional_count("--workers", self.workers)
         processes = optional_count("--local-cluster", self.local_cluster)
         if sum(word is not None for word in (self.workers, self.cluster, self.local_cluster)) > 1:
@@ -335,7 +335,7 @@ def write_all(asked: BatchTask, answer: BatchAnswer) -> Report:
 
 
 def is_seated(held: HeldIn) -> bool:
-    """Whether seating is asked for with one clamp or a vise; with two clamps it needs no kernels."""
+    """Return whether seating is asked for with one clamp or a vise; with two clamps it needs no kernels."""
     from workhold.model.query import Query
 
     return (
@@ -351,7 +351,7 @@ def requests_of(
     reading: PartWords,
     folder: Path,
 ) -> list[Request]:
-    """Lists what is asked of each part, in the order of the command line."""
+    """List what is asked of each part, in the order of the command line."""
     from workhold.cli.jobs import JOB_ENDINGS, read_jobs
 
     lists = varied.has_pitches or toolkit is not None
@@ -386,7 +386,7 @@ def requests_of(
 def requests_in(
     toolkits: Sequence[Named], parts: Sequence[str], words: AskedWords, reading: PartWords, folder: Path
 ) -> list[Request]:
-    """Lists what is asked of some parts, each of which is read once and held in all of some toolkits."""
+    """List what is asked of some parts, each of which is read once and held in all of some toolkits."""
     from workhold.batch.run import ANY_PART, HeldIn, Request
     from workhold.files.part_list import part_list
 
@@ -421,7 +421,7 @@ def asked_toolkits(
     varied: ListWords,
     reading: PartWords,
 ) -> list[Named]:
-    """Lists the toolkits of names, files and lists; of several names one may be a kind."""
+    """List the toolkits of names, files and lists; of several names one may be a kind."""
     from workhold.fixels.kinds import ALIASES, KINDS
 
     words = [word for text in names or () for word in words_of("--toolkit", text)]

@@ -250,7 +250,7 @@ def report_compared(asked: BenchmarkTask, done: Sequence[ComparedFile]) -> None:
 
 
 def comparison_data(name: str, set_name: str, outcome: Comparison) -> dict[str, Any]:
-    """A comparison as an object of JSON; fixtures are numbered from 1."""
+    """Return a comparison as an object of JSON; fixtures are numbered from 1."""
     data: dict[str, Any] = {"file": name, "set": set_name, "listed": outcome.listed, "theirs": outcome.theirs}
     for key in ("found", "missed", "extra", "repeated"):
         data[key] = [number + 1 for number in getattr(outcome, key)]
@@ -273,6 +273,6 @@ def print_comparisons(done: Sequence[ComparedFile]) -> None:
 
 
 def shown_share(outcome: Comparison) -> str:
-    """The share in percent, which is 100 only where nothing is missed."""
+    """Return the share in percent, which is 100 only where nothing is missed."""
     percent = 100 * outcome.share
     return f"{min(percent, 99.9) if outcome.missed else percent:.1f}"

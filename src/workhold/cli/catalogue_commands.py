@@ -157,7 +157,7 @@ def figures_table(loaded: LoadedToolkit, unit: Unit) -> Table:
 
 
 def own_figures(loaded: LoadedToolkit, unit: Unit) -> Iterator[tuple[str, str]]:
-    """Yields the figures that only this kind of toolkit has, each with its value in words."""
+    """Yield the figures that only this kind of toolkit has, each with its value in words."""
     from workhold.fixels.kinds import table_of
 
     toolkit = loaded.toolkit
@@ -181,7 +181,7 @@ def own_figures(loaded: LoadedToolkit, unit: Unit) -> Iterator[tuple[str, str]]:
 
 
 def words_of_value(form: Form, value: Any, unit: Unit) -> str:
-    """The value of a field of some form, as it stands among the figures of a toolkit."""
+    """Return the value of a field of some form, as it stands among the figures of a toolkit."""
     if form == "count":
         return str(value)
     if form == "stress":
@@ -317,7 +317,7 @@ def report_faces(asked: FeaturesTask, loaded: Loaded) -> None:
 
 
 def report_layers(asked: FeaturesTask) -> None:
-    """Prints the layers of a DXF file.
+    """Print the layers of a DXF file.
 
     In JSON sizes are in mm where the unit is known, else in units of the drawing.
     """

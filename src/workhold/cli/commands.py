@@ -25,7 +25,7 @@ __all__ = ["PlainCommand", "PlainGroup", "flag", "forget", "option", "print_rema
 
 
 def print_remark(message: str) -> None:
-    """Prints a remark on stderr, in one line unless a terminal has no room for it.
+    """Print a remark on stderr, in one line unless a terminal has no room for it.
 
     Where the disk is full the remark is lost, and nothing else.
     """
@@ -41,7 +41,7 @@ def print_remark(message: str) -> None:
 
 
 def forget(stream: TextIO) -> None:
-    """Sends the rest of a stream nowhere, once its reader is gone or the disk is full.
+    """Send the rest of a stream nowhere, once its reader is gone or the disk is full.
 
     Otherwise the interpreter would complain when it flushes the stream at its end.
     """
@@ -58,17 +58,17 @@ WIDEST_ENTRY = 27
 
 
 def option(panel: str | None, metavar: str, help: str, *names: str, default: str | None = None) -> Any:
-    """Makes an option in a section of the help: the default of a parameter, or of a field of a group."""
+    """Make an option in a section of the help: the default of a parameter, or of a field of a group."""
     return typer.Option(default, *names, metavar=metavar, help=help, rich_help_panel=panel)
 
 
 def flag(panel: str | None, help: str, name: str) -> Any:
-    """Makes an option without a value, off if not given; see :func:`option`."""
+    """Make an option without a value, off if not given; see :func:`option`."""
     return typer.Option(False, name, help=help, rich_help_panel=panel)
 
 
 def spread(command: Callable[..., None]) -> Callable[..., None]:
-    """Replaces each parameter of a command that is a group of options by the options of the group.
+    """Replace each parameter of a command that is a group of options by the options of the group.
 
     A group is an attrs class whose fields are options.
     """
@@ -97,7 +97,7 @@ def spread(command: Callable[..., None]) -> Callable[..., None]:
 
 
 def untyped(kind: type[Words], **typed: Any) -> Words:
-    """A group of options as it is where none is typed but these."""
+    """Return a group of options as it is where none is typed but these."""
     usual = {name: one.default.default for name, one in signature(kind).parameters.items()}
     return kind(**usual | typed)
 
@@ -106,11 +106,11 @@ class PlainCommand(TyperCommand):
     """A subcommand whose parameters are words."""
 
     def get_params(self, ctx: Any) -> list[Any]:
-        """Returns the parameters and the help option, whose words are not checked here."""
+        """Return the parameters and the help option, whose words are not checked here."""
         return as_typed(super().get_params(ctx))
 
     def format_help(self, ctx: Any, formatter: Any) -> None:
-        """Writes usage, text, and the parameters by their sections."""
+        """Write usage, text, and the parameters by their sections."""
         self.format_usage(ctx, formatter)
         write_text(self, formatter)
         write_sections(self, ctx, formatter)
@@ -121,11 +121,11 @@ class PlainGroup(TyperGroup):
     """A group of subcommands, which shows the help where no subcommand is named."""
 
     def get_params(self, ctx: Any) -> list[Any]:
-        """Returns the parameters and the help option, whose words are not checked here."""
+        """Return the parameters and the help option, whose words are not checked here."""
         return as_typed(super().get_params(ctx))
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Parses the words before the subcommand; without any word it shows the help, unless a shell
+        """Parse the words before the subcommand; without any word it shows the help, unless a shell
         completes.
         """
         if not args and not ctx.resilient_parsing:
@@ -134,7 +134,7 @@ class PlainGroup(TyperGroup):
         return super().parse_args(ctx, args)
 
     def format_help(self, ctx: Any, formatter: Any) -> None:
-        """Writes usage, text, options, subcommands with their first paragraphs, and the epilog as it is."""
+        """Write usage, text, options, subcommands with their first paragraphs, and the epilog as it is."""
         self.format_usage(ctx, formatter)
         write_text(self, formatter)
         write_sections(self, ctx, formatter)
@@ -148,7 +148,7 @@ class PlainGroup(TyperGroup):
 
 
 def as_typed(parameters: list[Any]) -> list[Any]:
-    """Lets parameters hand on a word, or None for an option not given, without a check."""
+    """Let parameters hand on a word, or None for an option not given, without a check."""
     for parameter in parameters:
         if "process_value" not in vars(parameter):
             parameter.process_value = partial(taken, parameter, parameter.process_value)
@@ -156,14 +156,14 @@ def as_typed(parameters: list[Any]) -> list[Any]:
 
 
 def taken(parameter: Any, checked: Callable[[Any, Any], Any], ctx: Any, value: Any) -> Any:
-    """Returns the value of a parameter; Typer checks what is neither a word nor an option not given."""
+    """Return the value of a parameter; Typer checks what is neither a word nor an option not given."""
     if isinstance(value, str) or (value is None and not parameter.required):
         return value if parameter.callback is None else parameter.callback(ctx, parameter, value)
     return checked(ctx, value)
 
 
 def heading(words: str) -> str:
-    """Makes a heading of the help, bold on a terminal."""
+    """Make a heading of the help, bold on a terminal."""
     return typer.style(words, bold=True)
 
 
@@ -172,7 +172,7 @@ NO_BREAK = "\N{NON-BREAKING HYPHEN}"
 
 
 def unbroken(text: str) -> str:
-    """Replaces hyphens by those at which no line is broken.
+    """Replace hyphens by those at which no line is broken.
 
     >>> unbroken("--peg-radius").count("-")
     0
@@ -181,7 +181,7 @@ def unbroken(text: str) -> str:
 
 
 def restore_hyphens(formatter: Any) -> None:
-    """Makes plain hyphens again of all that a help has so far."""
+    """Make plain hyphens again of all that a help has so far."""
     formatter.buffer[:] = [text.replace(NO_BREAK, "-") for text in formatter.buffer]
 
 
@@ -192,7 +192,7 @@ def write_text(command: Any, formatter: Any) -> None:
 
 
 def write_sections(command: Any, ctx: Any, formatter: Any) -> None:
-    """Writes the parameters of a command, each in the section of its panel; those without one come last."""
+    """Write the parameters of a command, each in the section of its panel; those without one come last."""
     sections: dict[str, list[tuple[str, str]]] = {}
     for parameter in command.get_params(ctx):
         entry = parameter.get_help_record(ctx)

@@ -56,7 +56,7 @@ def option_of(row: Declaration) -> Any:
 
 
 def typed_default(row: Declaration) -> str | None:
-    """The default as it would be typed; None where the help says what counts."""
+    """Return the default as it would be typed; None where the help says what counts."""
     if row.typed_default:
         return row.typed_default
     if row.default is None or row.form in SEVERAL:

@@ -125,7 +125,7 @@ class OutputWords:
     json_: bool = JSON
 
     def output(self, inputs: tuple[str | None, ...], before: str | None) -> Output:
-        """Where the answer goes.
+        """Return where the answer goes.
 
         Parameters
         ----------
@@ -373,7 +373,7 @@ def sheet_of_first(asked: DesignTask, result: Result, supported: tuple[Supports,
 
 
 def as_many_as_asked(asked: DesignTask, cancel: Event) -> tuple[Query, int | None]:
-    """Returns the query, or one for the best fixtures where there are very many, and about how many.
+    """Return the query, or one for the best fixtures where there are very many, and about how many.
 
     A remark says so before the search. Refuses all of very many without a file that can carry them.
     """
@@ -404,7 +404,7 @@ def as_many_as_asked(asked: DesignTask, cancel: Event) -> tuple[Query, int | Non
 
 
 def answered(query: Query, engine: str, streamed: str | None, threads: int | None, **watching: Any) -> Result:
-    """Returns the answer of an engine; where ``streamed`` names a file it is written during the search."""
+    """Return the answer of an engine; where ``streamed`` names a file it is written during the search."""
     if engine == "algebra":
         from workhold.algebra.engine import answer_by_algebra
         from workhold.search.seated import seated_answer
@@ -455,7 +455,7 @@ def report_found(result: Result, spent: str, output: Output, unit: Unit) -> None
 
 
 def further_data(asked: DesignTask, result: Result) -> dict[str, Any]:
-    """Returns why there is no fixture, and the pictures drawn, as plain data.
+    """Return why there is no fixture, and the pictures drawn, as plain data.
 
     A search that was interrupted has neither.
     """

@@ -30,12 +30,12 @@ def picture_names() -> list[str]:
 
 
 def picture_name(place: int) -> str:
-    """The name of the picture of the entry in a place, counted from 1, without its ending."""
+    """Return the name of the picture of the entry in a place, counted from 1, without its ending."""
     return f"fixture-{place:02d}"
 
 
 def draw_one(fixture: Fixture, result: Result, folder: Path, name: str, title: str, unit: Unit) -> list[Path]:
-    """Draws one fixture of a result into a folder, as SVG and PNG, and returns the files written."""
+    """Draw one fixture of a result into a folder, as SVG and PNG, and return the files written."""
     from workhold.drawing.fixture_pictures import draw_fixture
 
     with plain_errors(folder):
@@ -45,7 +45,7 @@ def draw_one(fixture: Fixture, result: Result, folder: Path, name: str, title: s
 
 
 def write_pictures(pictures: Mapping[str, str], folder: Path) -> list[Path]:
-    """Writes pictures, by name, as SVG and PNG, and returns the files written; if one fails none is left."""
+    """Write pictures, by name, as SVG and PNG, and return the files written; if one fails none is left."""
     from workhold.drawing.render import render
     from workhold.files.atomic import write_bytes
 
@@ -67,7 +67,7 @@ def write_pictures(pictures: Mapping[str, str], folder: Path) -> list[Path]:
 
 
 def draw_best(result: Result, folder: Path, unit: Unit) -> list[Path]:
-    """Draws the best twelve entries and the thumbnails into a folder, as SVG and PNG; returns the files.
+    """Draw the best twelve entries and the thumbnails into a folder, as SVG and PNG; return the files.
 
     The folder is created. Pictures of these names from an earlier design are replaced, or removed where this
     design has fewer fixtures; nothing else in the folder is touched.
@@ -98,7 +98,7 @@ MOST_HELPS = 6
 def explain_none(
     result: Result, threads: int | None, folder: Path | None, unit: Unit, stream: TextIO
 ) -> None:
-    """Explains what each rule took away, what came nearest, and what would help.
+    """Explain what each rule took away, what came nearest, and what would help.
 
     The nearest miss is drawn into the folder, if there is one, as SVG and PNG.
     """
@@ -114,7 +114,7 @@ def explain_none(
 def print_explanation(
     explanation: Explanation, toolkit: Toolkit, unit: Unit, stream: TextIO, said: Sequence[Note] = ()
 ) -> None:
-    """Prints the explanation, without what was said before."""
+    """Print the explanation, without what was said before."""
     from workhold.cli.tables import fixture_tables
 
     print_tables("", stream=stream)

@@ -73,7 +73,7 @@ class Ending:
             end_now(number)
 
     def lose_patience(self, number: int) -> None:
-        """Ends a program that has not ended in order, unless it keeps what it has found."""
+        """End a program that has not ended in order, unless it keeps what it has found."""
         if not (number == signal.SIGINT and self.keeping):
             end_now(number)
 
@@ -82,7 +82,7 @@ ending = Ending()
 
 
 def end_on_signals() -> None:
-    """Makes Ctrl-C and SIGTERM end this process from now on, within two seconds."""
+    """Make Ctrl-C and SIGTERM end this process from now on, within two seconds."""
     if ending.watched or threading.current_thread() is not threading.main_thread():
         return
     ending.watched = True
@@ -105,19 +105,19 @@ def watch(reader: int) -> None:
 
 
 def interrupt(number: int, frame: FrameType | None) -> None:
-    """Raises :class:`Interrupted` on Ctrl-C."""
+    """Raise :class:`Interrupted` on Ctrl-C."""
     ending.heard = True
     raise Interrupted
 
 
 def terminate(number: int, frame: FrameType | None) -> None:
-    """Ends on SIGTERM through the interpreter, so that temporary files are removed."""
+    """End on SIGTERM through the interpreter, so that temporary files are removed."""
     ending.heard, ending.code = True, TERMINATED
     raise Terminated(TERMINATED)
 
 
 def end_where_it_is_lost(lost: sys.UnraisableHookArgs) -> None:
-    """Ends at once where a signal's exception cannot be passed on, as in a callback of a compiled library."""
+    """End at once where a signal's exception cannot be passed on, as in a callback of a compiled library."""
     for kind, number in ((Interrupted, signal.SIGINT), (Terminated, signal.SIGTERM)):
         if issubclass(lost.exc_type, kind):
             end_now(number)
@@ -125,13 +125,13 @@ def end_where_it_is_lost(lost: sys.UnraisableHookArgs) -> None:
 
 
 def leave(code: int) -> NoReturn:
-    """Ends the program in order with an exit code."""
+    """End the program in order with an exit code."""
     ending.code = code
     sys.exit(code)
 
 
 def keep_the_code() -> None:
-    """Makes signals leave the exit code alone while Python clears up.
+    """Make signals leave the exit code alone while Python clears up.
 
     By then the output is written and the threads have ended. A program that has received a signal does not
     wait for the rest.
@@ -146,7 +146,7 @@ def keep_the_code() -> None:
 
 
 def end_now(number: int) -> None:
-    """Ends this process from any thread, without unfinished files."""
+    """End this process from any thread, without unfinished files."""
     atomic = sys.modules.get("workhold.files.atomic")
     if atomic is not None:
         atomic.remove_unfinished()
@@ -157,7 +157,7 @@ def end_now(number: int) -> None:
 
 
 def say_interrupted() -> None:
-    """Prints one sentence, once."""
+    """Print one sentence, once."""
     if not ending.said:
         ending.said = True
         line = PLAIN_LINE if os.isatty(2) else b""
@@ -166,7 +166,7 @@ def say_interrupted() -> None:
 
 
 def keep_what_is_found() -> None:
-    """Gives an interrupted search, if there is one, the time to return what it has found."""
+    """Give an interrupted search, if there is one, the time to return what it has found."""
     ending.keeping = True
 
 

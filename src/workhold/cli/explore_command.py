@@ -260,7 +260,7 @@ def print_explored(
 
 
 def table_text(found: list[Explored], types: list[str]) -> str:
-    """Formats the table as comma-separated values; lengths in mm, forces in N."""
+    """Format the table as comma-separated values; lengths in mm, forces in N."""
     from workhold.model.quality import FIGURES
 
     stream = io.StringIO()

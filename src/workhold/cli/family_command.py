@@ -394,7 +394,7 @@ def setup_table(setup: SetUp, found: Family, unit: Unit) -> Table:
 
 
 def loss_of(text: str) -> float:
-    """Reads a largest loss; refuses what is no number from 1 upward."""
+    """Read a largest loss; refuse what is no number from 1 upward."""
     value = number(text)
     if not (isfinite(value) and value >= 1.0):
         raise InputError(
@@ -404,7 +404,7 @@ def loss_of(text: str) -> float:
 
 
 def threshold_of(text: str) -> Threshold:
-    """Reads a threshold from words such as ``location-error=0.05``."""
+    """Read a threshold from words such as ``location-error=0.05``."""
     from workhold.family.members import threshold
 
     name, equals, value = text.partition("=")

@@ -20,7 +20,7 @@ SHOWN = ("clamp_needed", "slip_reserve", "safety_reached", "grip", "above", "con
 
 
 def hold_table(result: Result, entries: Entries, count: int, unit: Unit) -> Table:
-    """Tabulates the best holds: what lies on the fixed jaw, parallels, stop and opening, and figures."""
+    """Tabulate the best holds: what lies on the fixed jaw, parallels, stop and opening, and figures."""
     from workhold.model.hold_words import faces_words
     from workhold.model.jaw_hold import HOLD_FIGURES
 
@@ -60,7 +60,7 @@ def hold_table(result: Result, entries: Entries, count: int, unit: Unit) -> Tabl
 
 
 def first_hold_sentence(result: Result, unit: Unit) -> str:
-    """Says why the first hold stands first, and with which friction."""
+    """Say why the first hold stands first, and with which friction."""
     from workhold.model.hold_words import coefficient_words, hold_reasons
 
     first = result[0]
@@ -69,7 +69,7 @@ def first_hold_sentence(result: Result, unit: Unit) -> str:
 
 
 def hold_fixture_tables(fixture: Fixture, rank: int, total: int, unit: Unit) -> tuple[Table | str, ...]:
-    """Says how to set up one hold, with lengths in a unit, and what each load asks for."""
+    """Say how to set up one hold, with lengths in a unit, and what each load asks for."""
     from workhold.model.hold_words import coefficient_words, setup_sentences, warning_sentences
     from workhold.statics.jaw_program import asked_words
 

@@ -90,14 +90,14 @@ def doctor(json_: bool = JSON) -> None:
 
 
 def table(findings: list[InstallationRow]) -> Table:
-    """The findings, one line each; what is missing is red on a terminal."""
+    """Return the findings, one line each; what is missing is red on a terminal."""
     rows: list[tuple[str, ...]] = [(found.what, found.state, found.use) for found in findings]
     missing = {number for number, found in enumerate(findings) if found.remedy}
     return Table(("part", "state", "what it does"), rows, missing)
 
 
 def kernels() -> InstallationRow:
-    """Where the compiled arithmetic comes from: the package, or numba and its cache on disk."""
+    """Return where the compiled arithmetic comes from: the package, or numba and its cache on disk."""
     use = "The arithmetic of every search."
     from workhold.kernels.base.libraries import KERNELS, ROOMS, cache_folder, find_in, is_built
 
@@ -116,7 +116,7 @@ def kernels() -> InstallationRow:
 
 
 def extras(is_built: bool) -> Iterator[InstallationRow]:
-    """Yields what was found of each extra, in the order of :data:`USES`.
+    """Yield what was found of each extra, in the order of :data:`USES`.
 
     ``is_built`` says whether the package has compiled kernels for this machine, so that nothing is compiled
     here.
@@ -143,7 +143,7 @@ def extras(is_built: bool) -> Iterator[InstallationRow]:
 
 
 def requirements() -> dict[str, list[tuple[str, str]]]:
-    """What each extra asks for, with least versions; empty for a copy that was not installed."""
+    """Return what each extra asks for, with least versions; empty for a copy that was not installed."""
     try:
         lines = metadata.requires("workhold") or []
     except metadata.PackageNotFoundError:
@@ -156,7 +156,7 @@ def requirements() -> dict[str, list[tuple[str, str]]]:
 
 
 def state_of(name: str, least: str) -> tuple[str, bool]:
-    """A distribution's name with its version or what is wrong with it, and whether it can be used."""
+    """Return a distribution's name with its version or what is wrong with it, and whether it can be used."""
     if find_spec(MODULES.get(name, name)) is None:
         return f"{name} missing", False
     try:
@@ -170,7 +170,7 @@ def state_of(name: str, least: str) -> tuple[str, bool]:
 
 
 def numbers(version: str) -> list[int]:
-    """The numbers of a version, to compare by.
+    """Return the numbers of a version, to compare by.
 
     >>> numbers("8.0.1rc2") < numbers("8.1")
     True
@@ -179,7 +179,7 @@ def numbers(version: str) -> list[int]:
 
 
 def step_fault() -> str | None:
-    """What keeps STEP files from being read, with its remedy: the system may lack a library."""
+    """Return what keeps STEP files from being read, with its remedy: the system may lack a library."""
     from workhold.files.step.library import load_step_library
 
     try:
@@ -190,7 +190,7 @@ def step_fault() -> str | None:
 
 
 def toolkit_schema() -> dict[str, Any]:
-    """The schema of a toolkit's TOML file: one of those of the kinds."""
+    """Return the schema of a toolkit's TOML file: one of those of the kinds."""
     from pydantic import TypeAdapter
 
     from workhold.files.input_forms import FORMS, one_of
@@ -216,7 +216,7 @@ SCHEMAS = {
 
 
 def schema_of(name: str) -> dict[str, Any]:
-    """Returns the JSON Schema of a name.
+    """Return the JSON Schema of a name.
 
     Forms of which a word in the file chooses one differ in all they say, so that a file must fit at least one
     of them.
@@ -241,7 +241,7 @@ def schema_of(name: str) -> dict[str, Any]:
 
 
 def loosened(schema: Any) -> Any:
-    """Replaces "exactly one of these" by "any of these" throughout a schema."""
+    """Replace "exactly one of these" by "any of these" throughout a schema."""
     if isinstance(schema, dict):
         return {("anyOf" if key == "oneOf" else key): loosened(value) for key, value in schema.items()}
     return [loosened(one) for one in schema] if isinstance(schema, list) else schema

@@ -71,7 +71,7 @@ class JobWords:
     options: Mapping[str, Any]
 
     def over(self, typed: Words) -> Words:
-        """The options of a group as typed, with those of the file in their place."""
+        """Return the options of a group as typed, with those of the file in their place."""
         return evolve(typed, **self.options_of(type(typed)))
 
     def options_of(self, group: type[AttrsInstance]) -> dict[str, Any]:
@@ -118,7 +118,7 @@ def toml_entries(text: str) -> Iterator[dict[str, Any]]:
 
 
 def csv_entries(text: str) -> Iterator[dict[str, Any]]:
-    """Yields the cells of each row of a CSV file, without those in which nothing is given."""
+    """Yield the cells of each row of a CSV file, without those in which nothing is given."""
     from workhold.files.budget import LIMITS, Budget
     from workhold.files.tables import NOT_GIVEN, table_of
 
@@ -128,7 +128,7 @@ def csv_entries(text: str) -> Iterator[dict[str, Any]]:
 
 
 def named(key: str) -> str:
-    """Normalizes the name of a word: ``jaw-force`` is ``jaw_force``."""
+    """Normalize the name of a word: ``jaw-force`` is ``jaw_force``."""
     return key.strip().lower().replace("-", "_").replace(" ", "_").replace("toolkits", TOOLKIT)
 
 
@@ -162,14 +162,14 @@ def flag_of(value: Any, place: str) -> bool:
 
 
 def text_of(value: Any, place: str) -> str:
-    """Returns a value as it would be typed; refuses what nobody can type."""
+    """Return a value as it would be typed; refuse what nobody can type."""
     if isinstance(value, bool) or not isinstance(value, str | int | float):
         raise InputError(f"{place} is neither text nor a number: write it as on the command line, in quotes.")
     return value if isinstance(value, str) else f"{value!r}" if isinstance(value, float) else str(value)
 
 
 def beside(folder: Path, name: str) -> str:
-    """Returns the path of a file beside the file of jobs, if there is one; else the name as it is."""
+    """Return the path of a file beside the file of jobs, if there is one; else the name as it is."""
     try:
         return str(folder / name) if name and (folder / name).exists() else name
     except (OSError, ValueError):
@@ -187,7 +187,7 @@ class FamilyPart:
 
 
 def jobs_of(parts: list[str], words: QueryWords, reading: PartWords) -> list[FamilyPart]:
-    """Lists the parts of the command line and of files of jobs, each under a name of its own."""
+    """List the parts of the command line and of files of jobs, each under a name of its own."""
     from workhold.files.part_list import part_list
 
     plain = [name for name in parts if Path(name).suffix.lower() not in JOB_ENDINGS]
@@ -238,7 +238,7 @@ def asked_of(
     *,
     both_sides: bool = False,
 ) -> tuple[list[Asked], list[LeftOut]]:
-    """Makes the query of each part that can be read, and lists the parts that cannot.
+    """Make the query of each part that can be read, and lists the parts that cannot.
 
     ``both_sides`` makes a second one of each part turned over; the file of a solid is read again for it.
     Refuses a zero that a part does not have.

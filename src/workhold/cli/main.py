@@ -117,14 +117,14 @@ MODULES = {name: f"{name}_command" for name in COMMANDS} | {
 
 
 def command_of(name: str) -> Callable[..., None]:
-    """Imports the module of a command and returns its function."""
+    """Import the module of a command and returns its function."""
     command: Callable[..., None] = getattr(import_module(f"workhold.cli.{MODULES[name]}"), name)
     return command
 
 
 @contextmanager
 def outcomes() -> Iterator[None]:
-    """Handles two outcomes that Typer would handle with words and a code of its own."""
+    """Handle two outcomes that Typer would handle with words and a code of its own."""
     try:
         yield
     except KeyboardInterrupt as error:
@@ -143,7 +143,7 @@ class Workhold(PlainGroup):
         self.commands = {name: PlainCommand(name, help=words) for name, words in COMMANDS.items()}
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        """Imports a command; returns None for a word that names none."""
+        """Import a command; return None for a word that names none."""
         if cmd_name not in COMMANDS:
             return None
         alone = typer.Typer(add_completion=False, rich_markup_mode=None)
@@ -151,12 +151,12 @@ class Workhold(PlainGroup):
         return get_command(alone)
 
     def make_context(self, *args: Any, **extra: Any) -> Any:
-        """Parses the arguments; a help that was asked for is shown here."""
+        """Parse the arguments; a help that was asked for is shown here."""
         with outcomes():
             return super().make_context(*args, **extra)
 
     def _main_shell_completion(self, ctx_args: Any, prog_name: str, complete_var: str | None = None) -> None:
-        """Completes words for a shell; Typer knows the shells only after its set-up."""
+        """Complete words for a shell; Typer knows the shells only after its set-up."""
         if any(name.endswith("_COMPLETE") for name in os.environ):
             import typer.completion
 
@@ -164,7 +164,7 @@ class Workhold(PlainGroup):
         super()._main_shell_completion(ctx_args, prog_name, complete_var)
 
     def invoke(self, ctx: Any) -> Any:
-        """Runs the command."""
+        """Run the command."""
         refuse_little_space(LEAST_SPACE, "workhold", "raise the limit")
         with outcomes():
             return super().invoke(ctx)
@@ -178,7 +178,7 @@ class Workhold(PlainGroup):
         windows_expand_args: bool = True,
         **extra: Any,
     ) -> Any:
-        """Parses the arguments and runs the command; ends the process unless ``standalone_mode`` is off."""
+        """Parse the arguments and runs the command; end the process unless ``standalone_mode`` is off."""
         command = super().main
         code = exit_code(lambda: command(args, prog_name, complete_var, False, windows_expand_args, **extra))
         if standalone_mode:
@@ -215,7 +215,7 @@ def options(
 
 
 def run() -> NoReturn:
-    """Runs the console command and ends the process."""
+    """Run the console command and ends the process."""
     for stream in (sys.stdout, sys.stderr):
         # A part's name must not end the program on a terminal that lacks a letter.
         with suppress(AttributeError, ValueError):
@@ -228,7 +228,7 @@ def run() -> NoReturn:
 
 
 def exit_code(command: Callable[[], Any]) -> int:
-    """Runs a command and turns its outcome into an exit code, with one sentence on stderr if it failed."""
+    """Run a command and turns its outcome into an exit code, with one sentence on stderr if it failed."""
     try:
         return int(command() or DONE)
     except InputError as error:
@@ -258,7 +258,7 @@ def exit_code(command: Callable[[], Any]) -> int:
 
 
 def complain(error: Exception) -> int:
-    """Says what is wrong with the command line, and where the help is."""
+    """Say what is wrong with the command line, and where the help is."""
     message = str(getattr(error, "message", "") or error)
     with suppress(Exception):
         message = error.format_message()  # type: ignore[attr-defined]
@@ -269,7 +269,7 @@ def complain(error: Exception) -> int:
 
 
 def say(message: str) -> None:
-    """Prints one line on stderr, whatever the message holds."""
+    """Print one line on stderr, whatever the message holds."""
     print_remark(" ".join(message.split()))
 
 

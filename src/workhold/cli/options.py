@@ -43,7 +43,7 @@ RankArgument = Annotated[str, typer.Argument(metavar="N", help="Rank of the fixt
 
 
 def asked_rank(text: str) -> int:
-    """Reads a rank, counted from 1."""
+    """Read a rank, counted from 1."""
     rank = whole_number("fixture", text)
     if rank < 1:
         raise InputError(f"there is no fixture {rank}: fixtures are counted from 1, the best one.")
@@ -51,7 +51,7 @@ def asked_rank(text: str) -> int:
 
 
 def result_with(path: str | Path, rank: int) -> Result:
-    """Reads a result file for its fixture of a rank; refuses one that lists fewer."""
+    """Read a result file for its fixture of a rank; refuse one that lists fewer."""
     from workhold.files.result.one_fixture import read_one
 
     return read_one(path, rank)
@@ -89,7 +89,7 @@ SHOWN_UNIT = option(
 
 
 def at_terminal() -> bool:
-    """Whether a user at a terminal can be asked."""
+    """Return whether a user at a terminal can be asked."""
     return sys.stdin.isatty() and sys.stderr.isatty()
 
 
@@ -103,7 +103,7 @@ class PartWords:
         peg_height: str | None
 
     def options(self) -> dict[str, Any]:
-        """Makes the keyword arguments of ``files.part.load.read_workpiece``."""
+        """Make the keyword arguments of ``files.part.load.read_workpiece``."""
         from workhold.files.questions import number_or_name
 
         rows = [row for row in OF_READING if row.name != "unit"]
@@ -118,7 +118,7 @@ class PartWords:
         peg_diameter: float | None = None,
         said: Collection[str] = (),
     ) -> Loaded:
-        """Reads a part and prints remarks about the drawing on stderr.
+        """Read a part and prints remarks about the drawing on stderr.
 
         Parameters
         ----------

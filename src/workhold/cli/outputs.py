@@ -51,19 +51,19 @@ CALLED = "--force"
 def refuse_output(
     path: str | Path, inputs: Iterable[str | Path | None], force: bool, called: str = CALLED
 ) -> None:
-    """Refuses an output file of a command, see :func:`workhold.files.replacing.refuse_output`."""
+    """Refuse an output file of a command, see :func:`workhold.files.replacing.refuse_output`."""
     replacing.refuse_output(path, inputs, force, called)
 
 
 def refuse_output_folder(
     folder: Path, names: Iterable[str], inputs: Iterable[str | Path | None], force: bool
 ) -> None:
-    """Refuses an output folder of a command, see :func:`workhold.files.replacing.refuse_output_folder`."""
+    """Refuse an output folder of a command, see :func:`workhold.files.replacing.refuse_output_folder`."""
     replacing.refuse_output_folder(folder, names, inputs, force, CALLED)
 
 
 def asked_picture(draw: str | None, inputs: Iterable[str | Path | None], force: bool) -> Path | None:
-    """Returns the path of the picture asked for; None where none is.
+    """Return the path of the picture asked for; None where none is.
 
     Refuses another ending than .svg and .png.
     """
@@ -76,7 +76,7 @@ def asked_picture(draw: str | None, inputs: Iterable[str | Path | None], force: 
 
 
 def write_picture(path: Path, svg: str) -> None:
-    """Writes SVG text as a picture of the kind that the name of the file says."""
+    """Write SVG text as a picture of the kind that the name of the file says."""
     from workhold.drawing.render import render
     from workhold.files.atomic import write_bytes
 
@@ -97,7 +97,7 @@ FORMAT = option(
 
 
 def output_form(out: str | None, asked: str | None) -> str:
-    """Returns the form of a result file: the one asked for, or the one that its name suggests.
+    """Return the form of a result file: the one asked for, or the one that its name suggests.
 
     Refuses one that no terminal can take.
     """
@@ -109,7 +109,7 @@ def output_form(out: str | None, asked: str | None) -> str:
 
 
 def refuse_result_file(out: str, form: str, inputs: Iterable[str | Path | None], force: bool) -> None:
-    """Refuses a result file before anything is read or searched."""
+    """Refuse a result file before anything is read or searched."""
     refuse_output(out, inputs, force)
     replacing.refuse_other_ending(out, [f".{form}"], "such a result file")
 
@@ -129,7 +129,7 @@ def write_output(result: Result, out: str, form: str) -> None:
 
 
 def write_found(result: Result, out: str, form: str) -> Result:
-    """Writes what a search found and returns it; after a Ctrl-C it writes only the best of millions."""
+    """Write what a search found and returns it; after a Ctrl-C it writes only the best of millions."""
     try:
         write_output(result, out, form)
     except Interrupted:
@@ -147,7 +147,7 @@ JSON = flag(None, "Print one JSON object instead of tables; lengths in mm whatev
 
 
 def refuse_both(as_json: bool, out: str | None) -> None:
-    """Refuses two things on standard output."""
+    """Refuse two things on standard output."""
     if as_json and out == STANDARD_OUTPUT:
         raise InputError(
             "--json and the result file would both go to the terminal (-): leave one of them out."
@@ -155,13 +155,13 @@ def refuse_both(as_json: bool, out: str | None) -> None:
 
 
 def print_json(**content: Any) -> None:
-    """Prints an object as JSON, in a line of ASCII."""
+    """Print an object as JSON, in a line of ASCII."""
     sys.stdout.write(json.dumps(content, allow_nan=False) + "\n")
     sys.stdout.flush()
 
 
 def print_written(as_json: bool, sentence: str, *paths: str | Path) -> None:
-    """Prints which files were written, in a sentence or as JSON."""
+    """Print which files were written, in a sentence or as JSON."""
     if as_json:
         print_json(written=[str(path) for path in paths])
         return

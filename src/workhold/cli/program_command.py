@@ -111,7 +111,7 @@ def program(
 
 
 def data_of(read: ReadProgram) -> dict[str, Any]:
-    """What was understood, as plain data; lengths in mm."""
+    """Return what was understood, as plain data; lengths in mm."""
     from workhold.model.program_figures import tip_box, tool_figures
 
     program = read.program
@@ -128,7 +128,7 @@ def data_of(read: ReadProgram) -> dict[str, Any]:
 
 
 def force_data(forces: CuttingForces, tool: NDArray[np.int64]) -> list[dict[str, Any]]:
-    """The largest force, torque and axial forces of each tool, in N and N mm."""
+    """Return the largest force, torque and axial forces of each tool, in N and N mm."""
     return [
         {
             "tool": number,
@@ -231,7 +231,7 @@ def report(read: ReadProgram, unit: Unit, from_z_zero: bool) -> None:
 
 
 def clock(seconds: float) -> str:
-    """A time in hours, minutes and seconds.
+    """Return a time in hours, minutes and seconds.
 
     >>> clock(75.4), clock(3675)
     ('1:15', '1:01:15')

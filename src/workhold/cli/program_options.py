@@ -169,7 +169,7 @@ class ProgramWords:
 
 
 def asked_stock(text: str, unit: Unit) -> dict[str, Any]:
-    """What the part is cut from, as ``model.stock.Stock.of`` takes it.
+    """Return what the part is cut from, as ``model.stock.Stock.of`` takes it.
 
     Examples
     --------
@@ -190,7 +190,7 @@ def asked_stock(text: str, unit: Unit) -> dict[str, Any]:
 
 
 def asked_zero(text: str, unit: Unit) -> tuple[float, float]:
-    """The place of the program's zero on the part, in mm."""
+    """Return the place of the program's zero on the part, in mm."""
     return two_lengths("--zero", text, unit, "a place here: give two lengths, such as 10,5.")
 
 
@@ -234,7 +234,7 @@ def asked_reading(
 
 @cache
 def read_once(words: ProgramWords, unit: Unit, thickness: float | None, zero: tuple[float, float]) -> Program:
-    """Reads the program, and prints remarks on it; ``thickness`` of the part and ``zero`` in mm."""
+    """Read the program, and prints remarks on it; ``thickness`` of the part and ``zero`` in mm."""
     assert words.program is not None
     asked = asked_reading(words, unit, thickness, zero)
     from workhold.files.program.reader import read_program

@@ -110,7 +110,7 @@ class BatchProgress:
     done: int = field(default=0, init=False)
 
     def stage(self, doing: str, count: int, seconds: float) -> None:
-        """Begins a stage of so many tasks, which take about so many seconds in all."""
+        """Begin a stage of so many tasks, which take about so many seconds in all."""
         self.count, self.done = count, 0
         if self.bars is None or count == 0:
             return

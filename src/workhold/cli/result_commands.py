@@ -205,7 +205,7 @@ def summary(outcome: Verification) -> str:
 
 
 def unproven_sentences(outcome: Verification, count: int) -> list[str]:
-    """Says what is wrong with the file and with the first fixtures not proven, the refuted ones first."""
+    """Say what is wrong with the file and with the first fixtures not proven, the refuted ones first."""
     sentences = [f"The file: {fault}." for fault in outcome.faults]
     unproven = sorted(outcome.unproven, key=lambda fixture: fixture.verdict != "refuted")
     for fixture in unproven[: max(count, 0)]:

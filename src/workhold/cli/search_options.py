@@ -43,7 +43,7 @@ LOAD_HELP = (
 
 
 def parse_load(text: str, unit_scale: float = 1.0) -> Load:
-    """A load from the text of ``--load``.
+    """Return a load from the text of ``--load``.
 
     Parameters
     ----------
@@ -223,7 +223,7 @@ def asked_tolerance(text: str | None, unit: Unit) -> Tolerance | None:
 
 
 def with_fit_of(asked: Tolerance | None, named: Tolerance | None) -> Tolerance | None:
-    """Returns the tolerance asked for, or that of a named vise; keeps the fit of the named vise's dowels."""
+    """Return the tolerance asked for, or that of a named vise; keeps the fit of the named vise's dowels."""
     if asked is None or named is None:
         return asked or named
     return evolve(asked, fit=named.fit)

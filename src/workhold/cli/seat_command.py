@@ -166,7 +166,7 @@ def report_by_hand(asked: SeatTask) -> None:
 
 
 def by_hand_words(rank: int, result: Result, unit: Unit) -> list[str]:
-    """Lists in numbered steps how to put in a part that two clamps hold."""
+    """List in numbered steps how to put in a part that two clamps hold."""
     from workhold.seating.clamping import WHY, by_hand
 
     steps = by_hand(result[rank - 1], result.workpiece, result.toolkit).steps(unit.text)
@@ -174,7 +174,7 @@ def by_hand_words(rank: int, result: Result, unit: Unit) -> list[str]:
 
 
 def shown_seats(seating: Seating, side: str, opened: float | None, result: Result) -> list[Seat]:
-    """Lists the seats that can be reached; the fixture's own is first."""
+    """List the seats that can be reached; the fixture's own is first."""
     own = [one for one in seating.seats if one.is_own]
     rest = [
         one
@@ -188,7 +188,7 @@ def shown_seats(seating: Seating, side: str, opened: float | None, result: Resul
 
 
 def seating_words(fixture: Fixture, result: Result, unit: Unit) -> list[str]:
-    """Says of the seating of a fixture what to do, what to read, and what to beware of."""
+    """Say of the seating of a fixture what to do, what to read, and what to beware of."""
     from workhold.seating.clamping import Gauge
 
     seating: Seating = fixture.seating

@@ -47,7 +47,7 @@ FIRST_RUN = (
 
 
 def limit(default: str | None, metavar: str, variable: str, help: str) -> Any:
-    """Makes an option that is a limit and can come from the environment."""
+    """Make an option that is a limit and can come from the environment."""
     return typer.Option(
         default, metavar=metavar, envvar=f"WORKHOLD_{variable}", help=help, rich_help_panel=LIMITS
     )
@@ -82,7 +82,7 @@ class ServerWords:
         return at
 
     def proxies(self) -> list[str]:
-        """The proxies that are trusted; refuses what is no address."""
+        """Return the proxies that are trusted; refuse what is no address."""
         for proxy in self.trust_proxy or ():
             try:
                 ip_address(proxy)
@@ -216,7 +216,7 @@ def mcp() -> None:
 
 
 def tool_server(folder: Path) -> Any:
-    """Makes the server of the tools; results for which no file is named are written into the folder."""
+    """Make the server of the tools; results for which no file is named are written into the folder."""
     import mcp_types as types
     from anyio import get_cancelled_exc_class
     from anyio.to_thread import run_sync
@@ -254,7 +254,7 @@ def tool_server(folder: Path) -> Any:
 def outcome(
     name: str, arguments: dict[str, Any] | None, folder: Path, cancel: Event
 ) -> tuple[dict[str, Any] | str, str | None, bool]:
-    """Runs a tool; returns its data or a sentence, its picture as PNG in base 64, and whether it failed."""
+    """Run a tool; return its data or a sentence, its picture as PNG in base 64, and whether it failed."""
     from workhold.cli.agent_arguments import checked_arguments
     from workhold.cli.agent_tools import TOOLS
 

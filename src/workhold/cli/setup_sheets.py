@@ -70,7 +70,7 @@ class BodyWords:
     part: str | None = PART_FILE
 
     def models(self, inputs: Sequence[str | None], force: bool) -> list[Path]:
-        """The files to write; refuses an option of them where there are none."""
+        """Return the files to write; refuse an option of them where there are none."""
         of_files = {"thickness": self.thickness, "supports": self.supports, "part": self.part}
         return asked_models(self.glb, self.step, (*inputs, self.part), force, **of_files)
 
@@ -83,7 +83,7 @@ MOST_ASKED = 200
 def asked_models(
     glb: str | None, step: str | None, inputs: Sequence[str | None], force: bool, **of_files: object
 ) -> list[Path]:
-    """Returns the paths of the GLB and STEP files asked for.
+    """Return the paths of the GLB and STEP files asked for.
 
     ``of_files`` are options that only these files have, by name; none is given where a value is None or
     False. Refuses an option without a file.
@@ -107,7 +107,7 @@ def asked_models(
 
 
 def write_bodies(assembly: Assembly, paths: Sequence[Path], unit: Unit) -> None:
-    """Writes a set-up as GLB and STEP files, and says what the part was taken to be."""
+    """Write a set-up as GLB and STEP files, and says what the part was taken to be."""
     for path in paths:
         assembly.write(path)
     if not paths:
@@ -126,7 +126,7 @@ def write_bodies(assembly: Assembly, paths: Sequence[Path], unit: Unit) -> None:
 
 
 def refuse_sheet(sheet: str | None, inputs: Iterable[str | None], out: str | None, force: bool) -> None:
-    """Refuses a sheet before anything is searched; None is no sheet."""
+    """Refuse a sheet before anything is searched; None is no sheet."""
     if sheet is None:
         return
     path = Path(sheet)
@@ -146,7 +146,7 @@ def first_sheet(
     before: str | None,
     supported: Sequence[Supports] = (),
 ) -> int | None:
-    """Writes the sheet of the first choice and returns its rank; None where there is no fixture.
+    """Write the sheet of the first choice and returns its rank; None where there is no fixture.
 
     The hash of ``out``, the file of the result, stands on the sheet. The part's thickness in mm is given
     where supports are wanted. Then the first choice is the first that has some; ``supported`` are those of
@@ -234,7 +234,7 @@ def chosen_supports(
     loads: Sequence[Load] | None,
     jaw_force: float | None,
 ) -> ChosenSupports:
-    """The best three supports under a fixture, of the usual sizes or else of smaller ones.
+    """Return the best three supports under a fixture, of the usual sizes or else of smaller ones.
 
     A jaw force under which a load would lift the part off a peg is left out: the sheet warns of it anyway.
     Refuses where there are none, and where nobody knows how thick the part is.
@@ -258,7 +258,7 @@ def chosen_supports(
 
 
 def first_side_of(result: Result, rank: int, before: str) -> FirstSide:
-    """What a fixture shares with the best fixture of another result, whose part had another side up.
+    """Return what a fixture shares with the best fixture of another result, whose part had another side up.
 
     Refuses parts that are not of one solid.
     """

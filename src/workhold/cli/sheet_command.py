@@ -212,7 +212,7 @@ def refuse_in_space(
     support_height: str | None,
     first_setup: str | None,
 ) -> None:
-    """Refuses what stands on paper only in a file for a CAM system, and a height of no supports."""
+    """Refuse what stands on paper only in a file for a CAM system, and a height of no supports."""
     if for_cam and first_setup is not None:
         raise InputError(
             f"--first-setup belongs to a sheet on paper, not to {path}: let the name end in .pdf, "

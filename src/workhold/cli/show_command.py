@@ -190,7 +190,7 @@ def write(asked: ShowTask) -> list[Path]:
 def print_fixture(
     result: Result, rank: int, cases: Sequence[LoadCase], unit: Unit, closing: tuple[float | None, float]
 ) -> None:
-    """Prints how to set up the fixture of a rank, its quality and what loads do to it.
+    """Print how to set up the fixture of a rank, its quality and what loads do to it.
 
     ``closing`` is the jaw force in N, None where it is open, and how stiff the jaw is.
     """
@@ -219,7 +219,7 @@ def print_fixture(
 
 
 def bent_pegs_of(result: Result, rank: int, jaw_force: float | None) -> BentPegs | None:
-    """Finds how far the pegs of the fixture of a rank bend, at a jaw force in N or at the result's."""
+    """Find how far the pegs of the fixture of a rank bend, at a jaw force in N or at the result's."""
     from workhold.statics.bent_pegs import bent_pegs
 
     query = result.query
@@ -233,7 +233,7 @@ def bent_pegs_of(result: Result, rank: int, jaw_force: float | None) -> BentPegs
 
 
 def bending_words(result: Result, rank: int, unit: Unit, jaw_force: float | None) -> list[Table | str]:
-    """Says how far each peg bends, and what that moves the part by; nothing where no heights are known.
+    """Say how far each peg bends, and what that moves the part by; nothing where no heights are known.
 
     The jaw force in N stands instead of the result's.
     """
@@ -332,7 +332,7 @@ def load_tables(
 def passing_data(
     result: Result, rank: int, jaw_force: float | None = None, jaw: str | float = "screw"
 ) -> dict[str, Any]:
-    """Returns where the program's tools come nearest, and which forces they ask for, as plain data.
+    """Return where the program's tools come nearest, and which forces they ask for, as plain data.
 
     Nothing without a program. Jaw force and jaw are as of :func:`passing_words`.
     """
@@ -347,7 +347,7 @@ def passing_data(
 
 
 def bending_data(result: Result, rank: int, jaw_force: float | None = None) -> dict[str, Any]:
-    """Returns how far pegs bend as plain data; nothing where no heights are known."""
+    """Return how far pegs bend as plain data; nothing where no heights are known."""
     bent = bent_pegs_of(result, rank, jaw_force)
     return {} if bent is None else {"pins": bent.to_dict()}
 
@@ -355,7 +355,7 @@ def bending_data(result: Result, rank: int, jaw_force: float | None = None) -> d
 def passing_words(
     result: Result, rank: int, unit: Unit, jaw_force: float | None = None, jaw: str | float = "screw"
 ) -> list[str]:
-    """Says how near the program's tools come to the fixture of a rank, and which forces they ask for.
+    """Say how near the program's tools come to the fixture of a rank, and which forces they ask for.
 
     Nothing without a program. The jaw force in N stands instead of the result's. For the jaw see
     :func:`workhold.statics.loads.jaw_stiffness`.

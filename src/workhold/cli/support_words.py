@@ -53,7 +53,7 @@ def supported_within(
 
 
 def stopped_words(last: int, count: int) -> str:
-    """Says at which fixture the search of supports was stopped, what was skipped, and how to get the rest.
+    """Say at which fixture the search of supports was stopped, what was skipped, and how to get the rest.
 
     ``last`` is the rank of that fixture, ``count`` how many fixtures were asked for.
     """
@@ -87,7 +87,7 @@ def runs_of(numbers: Sequence[int]) -> str:
 def size_notes(
     found: Sequence[Supports], usual: Sequence[Supports], bare: Sequence[int], unit: Unit
 ) -> list[str]:
-    """Says of which sizes the supports of some fixtures are, and why some have none.
+    """Say of which sizes the supports of some fixtures are, and why some have none.
 
     Of each fixture in order ``found`` are those that are listed, ``usual`` those of the usual sizes. ``bare``
     are the ranks of those without supports among the listed ones.
@@ -131,7 +131,7 @@ def with_friction(found: Supports, count: int | None, friction: float | None) ->
 
 
 def friction_words(friction: float, helped: list[float], unit: Unit) -> str:
-    """Says what friction could add to the sets that are listed.
+    """Say what friction could add to the sets that are listed.
 
     ``helped`` are their least clamp forces in N.
     """
@@ -145,7 +145,7 @@ def friction_words(friction: float, helped: list[float], unit: Unit) -> str:
 
 
 def spatial_load(text: str, thickness: float, unit: Unit) -> SpatialLoad:
-    """A load with its heights, its axial force and what tilts, from the text of ``--load``."""
+    """Return a load with its heights, its axial force and what tilts, from the text of ``--load``."""
     from workhold.model.support_request import SpatialLoad
 
     place = f'--load "{text}"'
@@ -179,7 +179,7 @@ def spatial_load(text: str, thickness: float, unit: Unit) -> SpatialLoad:
 
 
 def ranged(place: str, text: str | None, usual: tuple[float, float]) -> tuple[float, float]:
-    """One number or a range LOW..HIGH."""
+    """Return one number or a range LOW..HIGH."""
     if text is None:
         return usual
     low, _, high = text.partition("..")

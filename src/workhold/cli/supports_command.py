@@ -118,7 +118,7 @@ class SupportWords:
         friction: str | None
 
     def sizes(self, unit: Unit) -> dict[str, Any]:
-        """What of a :class:`workhold.model.support_request.SupportRequest` was given."""
+        """Return what of a :class:`workhold.model.support_request.SupportRequest` was given."""
         own = read_words(OF_HARDWARE, self, unit) | {
             "band": None if self.band is None else lengths_between("--band", self.band, ":", 2, unit),
             "bottom_zones": [read_zone(KEEP_OFF[0], text, unit) for text in self.keep_out_below or ()],
@@ -298,7 +298,7 @@ def write(asked: SupportsTask, found: Supports) -> None:
 
 
 def asked_thickness(wanted: bool, text: str | None, workpiece: Workpiece, unit: Unit) -> float | None:
-    """How thick a part is in mm, where supports are wanted: as it is said, or as its solid is high.
+    """Return how thick a part is in mm, where supports are wanted: as it is said, or as its solid is high.
 
     Refuses where nobody knows, or it is said of a solid without supports.
     """
@@ -314,7 +314,7 @@ def asked_thickness(wanted: bool, text: str | None, workpiece: Workpiece, unit: 
 
 
 def report_supported(result: Result, thickness: float, unit: Unit, stream: TextIO) -> tuple[Supports, ...]:
-    """Prints which three supports hold up the best fixtures of a result best, if any do, and returns them.
+    """Print which three supports hold up the best fixtures of a result best, if any do, and return them.
 
     They are of the usual sizes, or where these hold up none of the fixtures, of smaller ones.
     """
@@ -349,7 +349,7 @@ def report_supported(result: Result, thickness: float, unit: Unit, stream: TextI
 
 
 def before_first(listed: Sequence[Triple]) -> list[str]:
-    """Says how holes before column A or row 1 are named, where there are such."""
+    """Say how holes before column A or row 1 are named, where there are such."""
     if all(min(pad.column, pad.row) >= 0 for triple in listed for pad in triple.supports):
         return []
     return ["A hole before column A or row 1 is written as (column,row), where A1 is (1,1)."]

@@ -55,12 +55,12 @@ class Table:
         self.rows.append(words)
 
     def lines(self) -> list[str]:
-        """Returns the table as lines without a limit of width: headings, a rule, and a line for each row."""
+        """Return the table as lines without a limit of width: headings, a rule, and a line for each row."""
         fitted = self.fitted(None)
         return [*fitted.headings, *fitted.lines]
 
     def fitted(self, width: int | None) -> Fitted:
-        """Fits the table into a width.
+        """Fit the table into a width.
 
         A table that is wider has its headings wrapped first. Then the spare columns are left out, which a
         last line says. Then columns of words are wrapped, the widest first. At last further columns are left
@@ -134,7 +134,7 @@ def longest_word(texts: Iterable[str]) -> int:
 
 
 def narrowed(widths: list[int], least: list[int], over: int) -> list[int]:
-    """Narrows columns by so many characters in all, always the widest that can be narrowed.
+    """Narrow columns by so many characters in all, always the widest that can be narrowed.
 
     >>> narrowed([30, 10, 40], [24, 10, 24], 14)
     [28, 10, 28]
@@ -153,7 +153,7 @@ def total(widths: list[int], gap: int) -> int:
 
 
 def plural(count: int, word: str) -> str:
-    """A number and its noun.
+    """Return a number and its noun.
 
     >>> plural(1, "fixture"), plural(2, "fixture")
     ('1 fixture', '2 fixtures')
@@ -162,7 +162,7 @@ def plural(count: int, word: str) -> str:
 
 
 def print_tables(*parts: Table | str, stream: TextIO | None = None) -> None:
-    """Prints tables and sentences to a stream, stdout by default.
+    """Print tables and sentences to a stream, stdout by default.
 
     On a terminal headings are bold. What is printed is as wide as the terminal at most, where no single word
     is longer.
@@ -184,7 +184,7 @@ def print_tables(*parts: Table | str, stream: TextIO | None = None) -> None:
 
 
 def sentence_lines(sentence: str, width: int | None) -> list[str]:
-    """Wraps a sentence into lines of a width, all of them indented as it is.
+    """Wrap a sentence into lines of a width, all of them indented as it is.
 
     >>> sentence_lines("  one two three", 10)
     ['  one two', '  three']
@@ -204,7 +204,7 @@ def sentence_lines(sentence: str, width: int | None) -> list[str]:
 
 
 def width_of(stream: TextIO) -> int | None:
-    """Returns the columns of a terminal, or those that the environment says; None where there is no limit."""
+    """Return the columns of a terminal, or those that the environment says; None where there is no limit."""
     given = os.environ.get("COLUMNS", "")
     if given.isascii() and given.isdigit() and int(given[:6]):
         return int(given[:6])

@@ -63,7 +63,7 @@ UNDECIDED = (
 
 
 def counts_sentence(result: Result) -> str:
-    """Says how many fixtures there are, of which type, and how many differ under the part's symmetry."""
+    """Say how many fixtures there are, of which type, and how many differ under the part's symmetry."""
     total = sum(result.found.values())
     kinds = ", ".join(f"{count} of type {kind}" for kind, count in result.found.items())
     of_types = f": {kinds}" if len(result.toolkit.types) > 1 else ""
@@ -82,7 +82,7 @@ def counts_sentence(result: Result) -> str:
 
 
 def first_sentence(result: Result, unit: Unit) -> str:
-    """Says why the first fixture stands first; nothing where another order was asked for."""
+    """Say why the first fixture stands first; nothing where another order was asked for."""
     if result.holds:
         return first_hold_sentence(result, unit)
     from workhold.statics.why_first import why_first
@@ -91,7 +91,7 @@ def first_sentence(result: Result, unit: Unit) -> str:
 
 
 def unfit_sentence(unfit: int, between_jaws: bool = False) -> str:
-    """Says how many fixtures are not shown because they are none for a workshop, and how to see them."""
+    """Say how many fixtures are not shown because they are none for a workshop, and how to see them."""
     are = "is no fixture" if unfit == 1 else "are no fixtures"
     why = (
         "a jaw touches a corner alone"
@@ -102,7 +102,7 @@ def unfit_sentence(unfit: int, between_jaws: bool = False) -> str:
 
 
 def proof_sentences(result: Result, written: str | None = None) -> list[str]:
-    """Says in a line how the search was proven, and below it names the first undecided candidates.
+    """Say in a line how the search was proven, and below it names the first undecided candidates.
 
     ``written`` is the name of the JSON file that lists all of them, if there is one.
     """
@@ -140,7 +140,7 @@ def proof_words(proof: Proof, complete: bool) -> str:
 
 
 def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILLIMETRE) -> Table:
-    """Tabulates the best entries of a result, one line each, with lengths in a unit.
+    """Tabulate the best entries of a result, one line each, with lengths in a unit.
 
     What fixtures are ranked by is shown as it counts, all but the last figure to two digits, so that the
     table looks as sorted as it is.
@@ -193,7 +193,7 @@ def quality_table(
     jaw_force: float | None = None,
     longest: float = inf,
 ) -> Table:
-    """Tabulates the figures of quality of a fixture, and their meaning where ``mover`` (a jaw) presses.
+    """Tabulate the figures of quality of a fixture, and their meaning where ``mover`` (a jaw) presses.
 
     Pegs bend at a jaw force in N, None where it is not known. ``longest`` is the edge distance that stands
     for none, see :func:`no_edge`.
@@ -217,7 +217,7 @@ def quality_table(
 
 
 def standing_sentences(fixture: Fixture, result: Result, unit: Unit) -> list[str]:
-    """Says how far the part stands out or hangs over, and where on its plate the setup sheet has it."""
+    """Say how far the part stands out or hangs over, and where on its plate the setup sheet has it."""
     from workhold.drawing.panel import moved_words
     from workhold.model.moved_setup import middle_move, moved_on, overhang_words
 
@@ -233,7 +233,7 @@ def standing_sentences(fixture: Fixture, result: Result, unit: Unit) -> list[str
 def fixture_tables(
     fixture: Fixture, toolkit: Toolkit, rank: int, total: int, unit: Unit = MILLIMETRE
 ) -> tuple[Table | str, ...]:
-    """Says how to set up one fixture, with lengths in a unit: what to turn, and where each peg goes."""
+    """Say how to set up one fixture, with lengths in a unit: what to turn, and where each peg goes."""
     if fixture.hold is not None:
         return hold_fixture_tables(fixture, rank, total, unit)
     from workhold.model.setup import settings_of
@@ -268,7 +268,7 @@ def setting_sentence(setting: LengthSetting, unit: Unit) -> str:
 
 
 def pair_sentences(fixture: Fixture) -> list[str]:
-    """Says in which order two clamps are tightened and with what forces; empty for other fixtures."""
+    """Say in which order two clamps are tightened and with what forces; empty for other fixtures."""
     from workhold.model.clamps import clamp_names, clamp_shares, order_words
 
     order = order_words(fixture)
@@ -285,7 +285,7 @@ def pair_sentences(fixture: Fixture) -> list[str]:
 
 
 def face_table(workpiece: Workpiece, unit: Unit = MILLIMETRE) -> Table:
-    """Tabulates the numbered faces of a part, with lengths in a unit.
+    """Tabulate the numbered faces of a part, with lengths in a unit.
 
     Where a face ends the next one begins, so that its end is left out where there is little room.
     """
@@ -301,7 +301,7 @@ def face_table(workpiece: Workpiece, unit: Unit = MILLIMETRE) -> Table:
 
 
 def jumps_sentence(workpiece: Workpiece) -> list[str]:
-    """Says why some numbers are not in the table of faces; empty where none is missing."""
+    """Say why some numbers are not in the table of faces; empty where none is missing."""
     further = [str(number) for face in workpiece.faces for number in face.segments if number != face.number]
     if not further:
         return []
@@ -315,7 +315,7 @@ def jumps_sentence(workpiece: Workpiece) -> list[str]:
 
 
 def face_words(face: Face, unit: Unit) -> tuple[str, str, str, str]:
-    """Returns kind, size, start and end of a face, with lengths in a unit."""
+    """Return kind, size, start and end of a face, with lengths in a unit."""
     from workhold.geometry.segment import Arc
 
     segment = face.segment
@@ -331,7 +331,7 @@ def face_words(face: Face, unit: Unit) -> tuple[str, str, str, str]:
 
 
 def place(point: tuple[float, float], unit: Unit) -> str:
-    """Formats the coordinates of a point in mm as numbers of a unit."""
+    """Format the coordinates of a point in mm as numbers of a unit."""
     return f"({unit.number(point[0])}, {unit.number(point[1])})"
 
 
@@ -346,7 +346,7 @@ def solid_table(solids: Sequence[FileSolid], unit: Unit) -> Table:
 
 
 def band_table(workpiece: Workpiece, unit: Unit) -> list[Table]:
-    """Tabulates the heights at which each face is touched; nothing for a part without heights."""
+    """Tabulate the heights at which each face is touched; nothing for a part without heights."""
     solid = workpiece.solid
     if solid is None:
         return []
@@ -360,7 +360,7 @@ def band_table(workpiece: Workpiece, unit: Unit) -> list[Table]:
 
 
 def height_table(rows: Sequence[HeightRow], unit: Unit) -> list[Table]:
-    """Tabulates what the part offers to pegs of other heights; nothing where nobody looked."""
+    """Tabulate what the part offers to pegs of other heights; nothing where nobody looked."""
     if not rows:
         return []
     names = ("pegs above", "up to", "outline", "touchable", "least band")
@@ -372,7 +372,7 @@ def height_table(rows: Sequence[HeightRow], unit: Unit) -> list[Table]:
 
 
 def touches_one_way(workpiece: Workpiece) -> bool:
-    """Whether pegs can touch some faces of a solid, and all these are flat and parallel."""
+    """Return whether pegs can touch some faces of a solid, and all these are flat and parallel."""
     from workhold.geometry.segment import are_parallel_lines
 
     assert workpiece.solid is not None

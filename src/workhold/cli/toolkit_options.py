@@ -55,7 +55,7 @@ MIN_OPENING = option(
 
 
 def typed_options() -> dict[str, Any]:
-    """Makes the attributes of :class:`ToolkitWords` in the order of the help, from the field table."""
+    """Make the attributes of :class:`ToolkitWords` in the order of the help, from the field table."""
     out = {
         "vise": option(
             TOOLKIT_SECTION, "NAME|FILE", "The same as --toolkit; the options below change its values."
@@ -84,7 +84,7 @@ class ToolkitWords:
         min_opening: str | None
 
     def fields(self, unit: Unit) -> dict[str, Any]:
-        """Makes keyword arguments of a toolkit, in mm, of the options that were given."""
+        """Make keyword arguments of a toolkit, in mm, of the options that were given."""
         return {
             row.name: READERS[row.form](row.option, words, unit)
             for row in OPTIONS
@@ -92,7 +92,7 @@ class ToolkitWords:
         }
 
     def refuse_others(self, kind: type[Toolkit]) -> None:
-        """Refuses options that a kind of toolkit does not have."""
+        """Refuse options that a kind of toolkit does not have."""
         from workhold.fixels.kinds import owner_of
 
         known = {row.name for row in kind.table.fields}
@@ -107,7 +107,7 @@ class ToolkitWords:
                 )
 
     def asked(self, unit: Unit) -> tuple[Toolkit, Tolerance | None]:
-        """The toolkit, and the tolerance that a named one comes with.
+        """Return the toolkit, and the tolerance that a named one comes with.
 
         Raises
         ------
@@ -162,18 +162,18 @@ class ToolkitWords:
 
 
 def lengths(option_name: str, text: str, unit: Unit) -> tuple[float, ...]:
-    """Reads lengths with commas between them; returns them in mm."""
+    """Read lengths with commas between them; return them in mm."""
     return tuple(length(option_name, word, unit) for word in text.split(","))
 
 
 def span(option_name: str, text: str, unit: Unit) -> tuple[float, ...]:
-    """Reads the least and the most of a length; returns them in mm."""
+    """Read the least and the most of a length; return them in mm."""
     remedy = "two lengths: give the least and the most, such as 10,35."
     return two_lengths(option_name, text, unit, remedy)
 
 
 def directions(option_name: str, text: str) -> list[str | tuple[str, ...]]:
-    """Reads directions such as ``-x,-y``, or pairs of them such as ``-x:-y,-x:+y``; refuses both together."""
+    """Read directions such as ``-x,-y``, or pairs of them such as ``-x:-y,-x:+y``; refuse both together."""
     words = [word.strip() for word in text.split(",")]
     if len({":" in word for word in words}) == 2:
         raise InputError(
@@ -217,7 +217,7 @@ PLURALS = {
 
 
 def list_options() -> dict[str, Any]:
-    """Makes the attributes of :class:`ListWords` in the order of the help, from the field table."""
+    """Make the attributes of :class:`ListWords` in the order of the help, from the field table."""
     words: Any = str | None
     made = {}
     for row in LISTED:
@@ -234,7 +234,7 @@ class ListWords:
     """Lists of figures of toolkits, as typed; None for those not given."""
 
     def given(self) -> list[tuple[ToolkitField, str]]:
-        """Lists the fields that are varied, each with its list."""
+        """List the fields that are varied, each with its list."""
         typed = ((row, getattr(self, row.name)) for row in LISTED)
         return [(row, text) for row, text in typed if isinstance(text, str)]
 
@@ -264,7 +264,7 @@ class Named:
 
 
 def query_of(workpiece: Workpiece, named: Named, asked: dict[str, Any]) -> Query | InputError:
-    """Makes the query for a toolkit, or returns the error that says why there is no such toolkit."""
+    """Make the query for a toolkit, or returns the error that says why there is no such toolkit."""
     from workhold.fixels.kinds import toolkit_of
     from workhold.model.query import Query
 
@@ -279,7 +279,7 @@ def query_of(workpiece: Workpiece, named: Named, asked: dict[str, Any]) -> Query
 
 
 def heights_of_all(toolkits: Sequence[Named]) -> dict[str, tuple[float, ...]]:
-    """Finds the heights of carriers, by role, with which one reading of a part serves all toolkits.
+    """Find the heights of carriers, by role, with which one reading of a part serves all toolkits.
 
     Refuses toolkits that differ in the heights of a role.
     """
@@ -302,7 +302,7 @@ def heights_of_all(toolkits: Sequence[Named]) -> dict[str, tuple[float, ...]]:
 
 
 def peg_diameter_of(named: Named) -> float | None:
-    """Finds the diameter of a toolkit's pegs in mm; None where there is no such toolkit."""
+    """Find the diameter of a toolkit's pegs in mm; None where there is no such toolkit."""
     from workhold.fixels.kinds import toolkit_of
 
     try:
@@ -314,7 +314,7 @@ def peg_diameter_of(named: Named) -> float | None:
 def toolkits_to_try(
     names: list[str] | None, toolkit: str | None, varied: ListWords, unit: Unit
 ) -> list[Named]:
-    """Lists the toolkits to try.
+    """List the toolkits to try.
 
     ``names`` are names and files with commas between them, and ``toolkit`` is one more of them, or a kind.
     ``varied`` are the lists of figures, which are combined with each other and with each toolkit. The unit is
@@ -396,7 +396,7 @@ def refuse_missing_fields(table: FieldTable, given: list[tuple[ToolkitField, str
 
 
 def refuse_too_few(table: FieldTable, known: set[str], given: list[tuple[ToolkitField, str]]) -> None:
-    """Refuses lists that lack a figure without which there is no toolkit."""
+    """Refuse lists that lack a figure without which there is no toolkit."""
     missing = [row.option for row in table.fields if row.is_required and row.name not in known]
     if missing:
         alone = "a list of pitches alone makes" if len(given) == 1 else "these lists alone make"
@@ -406,7 +406,7 @@ def refuse_too_few(table: FieldTable, known: set[str], given: list[tuple[Toolkit
 
 
 def read(row: ToolkitField, word: str, unit: Unit) -> Any:
-    """Reads an entry of the list of a field; lengths come in mm."""
+    """Read an entry of the list of a field; lengths come in mm."""
     if row is PITCH:
         return pitch_of(word, unit)
     if row.form == TRAVEL.form and word.count(":") != 1:
@@ -421,7 +421,7 @@ def read(row: ToolkitField, word: str, unit: Unit) -> Any:
 
 
 def name_of(row: ToolkitField, word: str) -> str:
-    """What an entry of a list adds to the name of a toolkit.
+    """Return what an entry of a list adds to the name of a toolkit.
 
     >>> name_of(COLUMNS, "1"), name_of(PEG_RADIUS, "2.5"), name_of(PITCH, "8")
     ('1 column', 'radius 2.5', 'pitch 8')
@@ -440,6 +440,6 @@ def words_of(option: str, text: str) -> list[str]:
 
 
 def pitch_of(word: str, unit: Unit) -> tuple[float, float]:
-    """Reads a pitch for both directions, or ``XxY``."""
+    """Read a pitch for both directions, or ``XxY``."""
     x, cross, y = word.partition("x")
     return length("--pitch", x, unit), length("--pitch", y if cross else x, unit)

@@ -64,7 +64,7 @@ def printed_unit(name: str | None, toolkit: Toolkit) -> Unit:
 
 
 def length(option: str, text: str, unit: Unit = MILLIMETRE) -> float:
-    """Reads a finite length in mm; the toolkit checks its sign.
+    """Read a finite length in mm; the toolkit checks its sign.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def length(option: str, text: str, unit: Unit = MILLIMETRE) -> float:
 
 
 def length_from_zero(option: str, text: str, unit: Unit = MILLIMETRE) -> float:
-    """A length of 0 or more in mm."""
+    """Return a length of 0 or more in mm."""
     value = length(option, text, unit)
     if value < 0:
         raise InputError(f"{option} {text} is negative: give 0 or more.")
@@ -120,7 +120,7 @@ def three_lengths(option: str, text: str, unit: Unit, remedy: str) -> tuple[floa
 
 
 def number(text: str) -> float:
-    """Reads a number, or a fraction such as 1/2 or 1-1/2; NaN or infinite for anything else."""
+    """Read a number, or a fraction such as 1/2 or 1-1/2; NaN or infinite for anything else."""
     fraction = FRACTION.fullmatch(text)
     if fraction is None:
         try:
@@ -133,12 +133,12 @@ def number(text: str) -> float:
 
 
 def optional_length(option: str, text: str | None, unit: Unit = MILLIMETRE) -> float | None:
-    """A finite length in mm, or None where the option is not given."""
+    """Return a finite length in mm, or None where the option is not given."""
     return None if text is None else length(option, text, unit)
 
 
 def optional_positive_length(option: str, text: str | None, unit: Unit = MILLIMETRE) -> float | None:
-    """A length above zero in mm, or None where the option is not given."""
+    """Return a length above zero in mm, or None where the option is not given."""
     value = optional_length(option, text, unit)
     if value is not None and value <= 0:
         raise InputError(f"{option} {text!r} is not above 0: give a positive length.")
@@ -146,7 +146,7 @@ def optional_positive_length(option: str, text: str | None, unit: Unit = MILLIME
 
 
 def pitches(text: str, unit: Unit = MILLIMETRE) -> tuple[float, float]:
-    """The x and y pitch in mm, from one length or two.
+    """Return the x and y pitch in mm, from one length or two.
 
     Parameters
     ----------
@@ -171,7 +171,7 @@ def pitches(text: str, unit: Unit = MILLIMETRE) -> tuple[float, float]:
 
 
 def whole_number(option: str, text: str) -> int:
-    """Reads a whole number; its sign is checked elsewhere."""
+    """Read a whole number; its sign is checked elsewhere."""
     try:
         return int(text)
     except ValueError:
@@ -179,7 +179,7 @@ def whole_number(option: str, text: str) -> int:
 
 
 def optional_count(option: str, text: str | None) -> int | None:
-    """A number of things, from 1, or None where the option is not given."""
+    """Return a number of things, from 1, or None where the option is not given."""
     return None if text is None else counting_number(option, whole_number(option, text))
 
 
@@ -191,7 +191,7 @@ def positive_number(option: str, text: str) -> float:
 
 
 def optional_force(option: str, text: str | None) -> float | None:
-    """A force above zero in N, or None where the option is not given.
+    """Return a force above zero in N, or None where the option is not given.
 
     Examples
     --------
@@ -209,7 +209,7 @@ def optional_force(option: str, text: str | None) -> float | None:
 def in_unit(
     option: str, text: str, words: re.Pattern[str], units: Mapping[str, float], usual: str, remedy: str
 ) -> float:
-    """A number above zero with a unit of its own, in what its units are counted in.
+    """Return a number above zero with a unit of its own, in what its units are counted in.
 
     ``words`` is what is typed, with the groups ``number`` and ``unit``. Units are by their names in small
     letters; ``usual`` is that of a number without one. ``remedy`` says what the text is not, and what to
@@ -223,7 +223,7 @@ def in_unit(
 
 
 def choice(option: str, text: str, among: Sequence[str]) -> str:
-    """One of several words, in any mixture of capitals.
+    """Return one of several words, in any mixture of capitals.
 
     Examples
     --------
@@ -237,7 +237,7 @@ def choice(option: str, text: str, among: Sequence[str]) -> str:
 
 
 def picture_ending(path: Path) -> str:
-    """The ending of a picture's name, ``.svg`` or ``.png``."""
+    """Return the ending of a picture's name, ``.svg`` or ``.png``."""
     ending = path.suffix.lower()
     if ending not in PICTURE_ENDINGS:
         raise InputError(f"--draw {path} names no kind of picture: let the name end in .svg or .png.")

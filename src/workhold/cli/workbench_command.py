@@ -93,7 +93,7 @@ class WorkbenchOrder:
 
     @classmethod
     def read(cls, folder: Path) -> WorkbenchOrder:
-        """The order in a folder.
+        """Return the order in a folder.
 
         Raises
         ------
@@ -137,14 +137,14 @@ def workbench(
 
 
 def hear_the_end(cancel: Event) -> None:
-    """Ends the search when the workbench says so on standard input, or is gone; what was found is kept."""
+    """End the search when the workbench says so on standard input, or is gone; what was found is kept."""
     # Not through Python's own buffer, whose lock would outlive the end of the process.
     os.read(sys.stdin.fileno(), 1)
     cancel.set()
 
 
 def asked(order: WorkbenchOrder, part: str) -> Query:
-    """The query of an order; the words are those of ``design``, so that both list the same."""
+    """Return the query of an order; the words are those of ``design``, so that both list the same."""
     from workhold.files.part.load import read_workpiece
     from workhold.model.query import Query
 
@@ -235,7 +235,7 @@ def listed_in(folder: Path, name: str = RESULT) -> list[dict[str, Any]]:
 
 
 def rank_in(fixtures: Sequence[Mapping[str, Any]], marks: str) -> int | None:
-    """The rank of the fixture of a result file that the marks are of, from 1; None where none is.
+    """Return the rank of the fixture of a result file that the marks are of, from 1; None where none is.
 
     Marks are, as JSON, the kind, directions and holes of a fixture, and the angle at which the part lies in
     them: the same holes may hold a part in two ways, such as turned by half a turn.
@@ -253,7 +253,7 @@ def rank_in(fixtures: Sequence[Mapping[str, Any]], marks: str) -> int | None:
 
 
 def marks_of(fixture: Mapping[str, Any]) -> str:
-    """What a fixture of a result file is known by; where a clamp is bolted follows from the part."""
+    """Return what a fixture of a result file is known by; where a clamp is bolted follows from the part."""
     pegs = [[peg.get("jaw"), peg.get("column"), peg.get("row")] for peg in fixture["pegs"]]
     directions = fixture.get("directions", fixture.get("direction"))
     return json.dumps([[fixture["type"], directions, pegs], fixture["pose"]["theta_deg"]])
@@ -287,7 +287,7 @@ def put_in(result: Result, rank: int, order: WorkbenchOrder, folder: Path) -> di
 
 
 def supported(fixture: Fixture, query: Query) -> tuple[ChosenSupports | None, str]:
-    """The best three supports under a fixture with a clamp on top; where there are none, why."""
+    """Return the best three supports under a fixture with a clamp on top; where there are none, why."""
     from workhold.model.support_triples import ChosenSupports
     from workhold.supports.asking import requests_by_size, supported_by_size
     from workhold.supports.words import why_no_set
@@ -307,14 +307,14 @@ def draw_nearest_miss(result: Result, folder: Path) -> None:
 
 
 def draw(svg: str, path: Path, width: int) -> None:
-    """Draws SVG text as a PNG of a width in pixels."""
+    """Draw SVG text as a PNG of a width in pixels."""
     from workhold.drawing.render import svg_to_png
 
     path.write_bytes(svg_to_png(svg, width))
 
 
 def body_data(body: FixtureBody) -> dict[str, Any]:
-    """A body as upright prisms: between two heights, over a border with holes in it."""
+    """Return a body as upright prisms: between two heights, over a border with holes in it."""
     slabs = [
         {"low": one.low, "high": one.high, "borders": [loop_data(loop) for loop in (one.outer, *one.holes)]}
         for one in body.slabs

@@ -137,7 +137,7 @@ def report_copies(asked: CopiesTask, found: list[Fixture], packing: Packing) -> 
 
 
 def plate_size(result: Result, asked: tuple[int | None, int | None]) -> tuple[int, int]:
-    """Returns columns and rows of the plate: those asked for, or those of the result."""
+    """Return columns and rows of the plate: those asked for, or those of the result."""
     from workhold.fixels.making import refuse_many_holes
 
     plate = result.toolkit.carriers[0]
@@ -224,7 +224,7 @@ def drill(
 
 
 def asked_plates(held_in: ToolkitWords, words: DrillWords, unit: Unit) -> tuple[JawPlate, ...]:
-    """The plates of the vise that was typed; refuses one whose plates have no end."""
+    """Return the plates of the vise that was typed; refuse one whose plates have no end."""
     bolts = asked_bolts(words.bolts, words.bolt_diameter, unit)
     diameter = optional_positive_length("--hole-diameter", words.hole_diameter, unit)
     edge = optional_positive_length("--edge", words.edge, unit)
@@ -254,7 +254,7 @@ def write_plates(path: Path, plates: tuple[JawPlate, ...], thickness: float | No
 
 
 def asked_bolts(places: str | None, diameter: str | None, unit: Unit) -> Bolts | None:
-    """Reads the bolts asked for; None where there are none, and refuses one of the two options alone."""
+    """Read the bolts asked for; None where there are none, and refuse one of the two options alone."""
     if places is None and diameter is None:
         return None
     size = optional_positive_length("--bolt-diameter", diameter, unit)

@@ -125,7 +125,7 @@ def distances(one: Array, other: Array) -> Array:
 
 
 def is_clear(bodies: Bodies, move: Array, gap: float) -> bool:
-    """Whether two copies, one of them moved (2,) in mm, are clear of each other.
+    """Return whether two copies, one of them moved (2,) in mm, are clear of each other.
 
     Comparing boundaries is enough: neither copy fits within the other, so where they overlap, their outlines
     cross.
@@ -145,7 +145,7 @@ def is_clear(bodies: Bodies, move: Array, gap: float) -> bool:
 def too_near_shifts(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, gap: float, spread: Shift
 ) -> set[Shift]:
-    """The shifts, up to ``spread`` columns and rows either way, at which two copies are not clear."""
+    """Return the shifts, up to ``spread`` columns and rows either way, at which two copies are not clear."""
     bodies, pitch = bodies_of(fixture, workpiece, toolkit), np.array(toolkit.carriers[0].pitch)
     points = np.concatenate([bodies.outline.reshape(-1, 2), bodies.cores.reshape(-1, 2)])
     reach = np.ptp(points, axis=0) + 2 * bodies.radius.max() + gap + 2 * SAGITTA
@@ -161,7 +161,7 @@ def too_near_shifts(
 
 
 def places_on(fixture: Fixture, toolkit: Toolkit, columns: int, rows: int) -> list[Shift]:
-    """The shifts at which a fixture stands on a plate of so many columns and rows, row by row.
+    """Return the shifts at which a fixture stands on a plate of so many columns and rows, row by row.
 
     Refuses a plate on which one alone does not stand.
     """
@@ -189,7 +189,7 @@ def packing_of(
     gap: float = 1.0,
     seconds: float | None = None,
 ) -> Packing:
-    """The most copies of a fixture that a plate holds.
+    """Return the most copies of a fixture that a plate holds.
 
     Parameters
     ----------
@@ -236,7 +236,7 @@ def in_rows(places: list[Shift]) -> tuple[Shift, ...]:
 
 
 def crowds(near: set[Shift]) -> list[list[Shift]]:
-    """Sets of shifts that are pairwise too near; every shift that is too near is between two of one set."""
+    """Set of shifts that are pairwise too near; every shift that is too near is between two of one set."""
     left, out = near - {(0, 0)}, []
     ordered = sorted(left, key=lambda shift: (abs(shift[0]) + abs(shift[1]), shift))
     for one in ordered:
@@ -253,7 +253,7 @@ def crowds(near: set[Shift]) -> list[list[Shift]]:
 
 
 def solved(places: list[Shift], near: set[Shift], known: list[Shift], seconds: float | None) -> Packing:
-    """The most places no two of which are too near."""
+    """Return the most places no two of which are too near."""
     from scipy.optimize import LinearConstraint
     from scipy.sparse import csr_array
 
@@ -290,7 +290,7 @@ WEIGHT = 0.6
 
 
 def copies_of(row: FixtureTable, toolkit: Toolkit, workpiece: Workpiece, packing: Packing) -> list[Fixture]:
-    """Every copy of a fixture, a table of one row, where it stands."""
+    """Return every copy of a fixture, a table of one row, where it stands."""
     moved = (shifted(row, toolkit, {0: columns}, rows) for columns, rows in packing.shifts)
     return [fixture_at(one, toolkit, 0, workpiece) for one in moved]
 
@@ -303,7 +303,7 @@ def draw_copies(
     *,
     unit: Unit = MILLIMETRE,
 ) -> str:
-    """Draws copies on a plate of so many columns and rows, on A4, as SVG text."""
+    """Draw copies on a plate of so many columns and rows, on A4, as SVG text."""
     plate, (columns, rows) = toolkit.carriers[0], size
     benches = [bench_of(fixture, workpiece, toolkit) for fixture in copies]
     holes = Box(*plate.place(0, 0), *plate.place(columns - 1, rows - 1)).grown(max(plate.pitch) / 2)

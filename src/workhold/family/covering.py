@@ -67,7 +67,7 @@ class Cover:
 
 
 def maximal(masks: WordArray) -> NDArray[np.int64]:
-    """The sets (K,) of some (S, W), given as bits, that are in no other one, larger ones first.
+    """Return the sets (K,) of some (S, W), given as bits, that are in no other one, larger ones first.
 
     Of equal sets it is the first.
     """
@@ -87,7 +87,7 @@ def maximal(masks: WordArray) -> NDArray[np.int64]:
 
 
 def greedy(sets: BoolArray) -> tuple[int, ...]:
-    """A cover by the greedy algorithm: each time the set (of S, M) that holds most of what is left.
+    """Return a cover by the greedy algorithm: each time the set (of S, M) that holds most of what is left.
 
     Every member has to be in some set.
     """
@@ -99,7 +99,7 @@ def greedy(sets: BoolArray) -> tuple[int, ...]:
 
 
 def cover(sets: BoolArray, deadline: float | None = None) -> Cover:
-    """The fewest of some sets (S, M) of members that hold them all; every member is in some set.
+    """Return the fewest of some sets (S, M) of members that hold them all; every member is in some set.
 
     At the deadline, of the clock ``time.monotonic``, it is the best cover known so far, with what is proven
     of the least.
@@ -123,7 +123,7 @@ def cover(sets: BoolArray, deadline: float | None = None) -> Cover:
 
 
 def packing(sets: BoolArray) -> int:
-    """A lower bound of covers: a number of members no two of which are in one set, found greedily."""
+    """Return a lower bound of covers: a number of members no two of which are in one set, found greedily."""
     beside = sets.T.astype(np.int64) @ sets.astype(np.int64) > 0
     left, count = np.ones(len(beside), np.bool_), 0
     while left.any():
@@ -172,7 +172,7 @@ def completed(
 
 
 def as_sets(masks: WordArray, members: int) -> BoolArray:
-    """Sets (S, W) of bits as (S, M)."""
+    """Set (S, W) of bits as (S, M)."""
     bits = np.unpackbits(masks.view(np.uint8), axis=1, bitorder="little")
     return bits[:, :members].astype(np.bool_)
 
@@ -221,7 +221,7 @@ class LossTable:
     loss: NDArray[np.float64]
 
     def masks(self, bound: float) -> NDArray[np.uint64]:
-        """The sets (P, K) of members that patterns hold within a bound, as bits."""
+        """Return the sets (P, K) of members that patterns hold within a bound, as bits."""
         end = int(np.searchsorted(self.loss, bound, side="right"))
         out = np.zeros((len(self.words), -(-self.members // WORD)), np.uint64)
         member = self.member[:end].astype(np.uint64)
@@ -246,7 +246,7 @@ class LossTable:
 
 
 def table_of(members: Sequence[Member]) -> LossTable:
-    """The table of some members, at least one, each of which some pattern holds."""
+    """Return the table of some members, at least one, each of which some pattern holds."""
     words = np.concatenate([one.words for one in members])
     owner = np.repeat(np.arange(len(members)), [len(one.words) for one in members])
     loss = np.concatenate([one.loss for one in members])
@@ -282,7 +282,7 @@ class Search:
     done: float = 0.0
 
     def at(self, place: int, table: LossTable) -> None:
-        """Finds the fewest patterns of a table that are a cover at a bound."""
+        """Find the fewest patterns of a table that are a cover at a bound."""
         masks = table.masks(float(self.bounds[place]))
         kept = maximal(masks)
         found = cover(as_sets(masks[kept], table.members), self.deadline)
@@ -290,7 +290,7 @@ class Search:
         self.covers[place] = Cover(numbers, found.at_least)
 
     def between(self, low: int, high: int, table: LossTable, share: float) -> None:
-        """Finds covers at the bounds between two at which they are known, wherever they may differ."""
+        """Find covers at the bounds between two at which they are known, wherever they may differ."""
         if high - low < 2 or len(self.covers[low].sets) == len(self.covers[high].sets):
             self.done += share
             self.progress(self.done)
@@ -302,7 +302,7 @@ class Search:
         self.between(middle, high, table, share / 2)
 
     def worth_trying(self, low: int, high: int, table: LossTable) -> IntArray:
-        """The places of patterns that between two bounds may hold what no other one does."""
+        """Return the places of patterns that between two bounds may hold what no other one does."""
         least, most = (table.masks(float(self.bounds[place])) for place in (low, high))
         largest = maximal(least)
         inside = np.zeros(len(least), np.bool_)
@@ -333,7 +333,7 @@ def curve_of(
 
 
 def points_of(search: Search) -> Iterator[Point]:
-    """The points of the curve, the smallest loss first."""
+    """Yield the points of the curve, the smallest loss first."""
     fewest = len(search.table.words) + 1
     for place in sorted(search.covers):
         count = len(search.covers[place].sets)
@@ -347,7 +347,7 @@ def points_of(search: Search) -> Iterator[Point]:
 
 
 def named(search: Search, place: int) -> tuple[int, ...]:
-    """The numbers of the patterns at a point: the lexicographically first cover.
+    """Return the numbers of the patterns at a point: the lexicographically first cover.
 
     Covers are of sets that are in no other one, each named by the first pattern that has it.
     """

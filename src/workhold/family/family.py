@@ -60,7 +60,7 @@ class Asked:
     zero: PartZero | None = None
 
     def lying_as(self, read: Workpiece | None) -> Asked:
-        """The other side of the part, of a solid as its file was read for it; None of a drawing.
+        """Return the other side of the part, of a solid as its file was read for it; None of a drawing.
 
         Raises
         ------
@@ -145,7 +145,7 @@ def family_of(
     left_out: Sequence[LeftOut] = (),
     progress: Callable[[float, int], None] = lambda fraction, found: None,
 ) -> Family:
-    """The family of some parts.
+    """Return the family of some parts.
 
     Parameters
     ----------
@@ -286,7 +286,7 @@ def plan_text(plan: Plan, family: Family) -> str:
 
 
 def setup_entry(setup: SetUp, toolkit: Toolkit, numbers: dict[int, int]) -> dict[str, Any]:
-    """A set-up as it is written; ``numbers`` are those of members."""
+    """Return a set-up as it is written; ``numbers`` are those of members."""
     fixture = setup.standing.fixture
     return {
         "pattern": {
@@ -300,7 +300,7 @@ def setup_entry(setup: SetUp, toolkit: Toolkit, numbers: dict[int, int]) -> dict
 
 
 def peg_entry(peg: Peg, toolkit: Toolkit) -> dict[str, Any]:
-    """Where a peg of a pattern stands: its hole, or the line of a clamp of which no more is known."""
+    """Return where a peg of a pattern stands: its hole, or the line of a clamp of which no more is known."""
     carrier, place = toolkit.carrier(peg.carrier), {"column": peg.column, "row": peg.row}
     key, name = carrier.written_as
     if carrier.contact is not CLAMP_TIP:
@@ -331,7 +331,7 @@ def holding_entry(one: Holding, toolkit: Toolkit, number: int) -> dict[str, Any]
 
 
 def opening_entry(fixture: Fixture, toolkit: Toolkit) -> dict[str, Any]:
-    """What is set for a part: the opening of a vise, or the strokes or places of clamps."""
+    """Return what is set for a part: the opening of a vise, or the strokes or places of clamps."""
     lengths = [length(setting.length) for setting in settings_of(fixture, toolkit)]
     return {"opening": lengths[0] if len(lengths) == 1 else lengths}
 
@@ -341,5 +341,5 @@ def length(value: float) -> float:
 
 
 def significant(value: float) -> float | None:
-    """A figure as it is written; None where it is not finite."""
+    """Return a figure as it is written; None where it is not finite."""
     return float(f"{value:.12g}") if isfinite(value) else None

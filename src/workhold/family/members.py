@@ -77,7 +77,7 @@ class Threshold:
 
 
 def threshold(name: str, value: float) -> Threshold:
-    """The threshold of a figure named as a user writes it.
+    """Return the threshold of a figure named as a user writes it.
 
     Raises
     ------
@@ -97,7 +97,7 @@ def loss_figure_words(figure: Figure) -> str:
 
 
 def losses(values: NDArray[np.float64], figure: Figure) -> NDArray[np.float64]:
-    """The losses (N,) of fixtures with values (N,) of a figure: over the best of them, 1 or more.
+    """Return the losses (N,) of fixtures with values (N,) of a figure: over the best of them, 1 or more.
 
     Beside a best of zero everything else is infinitely worse; what is no number is so, too.
     """
@@ -115,7 +115,7 @@ def losses(values: NDArray[np.float64], figure: Figure) -> NDArray[np.float64]:
 
 
 def loss_text(loss: float) -> str:
-    """A loss as it is shown, rounded up, so that what is shown is one within which it is.
+    """Return a loss as it is shown, rounded up, so that what is shown is one within which it is.
 
     >>> loss_text(1.0), loss_text(1.1871), loss_text(float("inf"))
     ('1.000', '1.188', 'any')
@@ -126,7 +126,7 @@ def loss_text(loss: float) -> str:
 def may_be_used(
     table: FixtureTable, thresholds: Sequence[Threshold], tolerance: Tolerance, with_unfit: bool
 ) -> NDArray[np.bool_]:
-    """Whether each fixture (N,) may be used: it reaches every threshold, and is fit for a workshop.
+    """Return whether each fixture (N,) may be used: it reaches every threshold, and is fit for a workshop.
 
     ``with_unfit`` asks for no fitness.
     """
@@ -147,7 +147,7 @@ def mirrored(loop: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def mirrored_load(load: Load) -> Load:
-    """A load on the part as it acts when the part is turned over."""
+    """Return a load on the part as it acts when the part is turned over."""
     low, high = load.directions
     directions = ANY_DIRECTION if (low, high) == ANY_DIRECTION else (180.0 - high, 180.0 - low)
     return evolve(
@@ -156,7 +156,7 @@ def mirrored_load(load: Load) -> Load:
 
 
 def segment_numbers(workpiece: Workpiece) -> dict[int, int]:
-    """The number of each segment in the part turned over, whose loops run the other way round."""
+    """Return the number of each segment in the part turned over, whose loops run the other way round."""
     out, first = dict[int, int](), 0
     for loop in workpiece.loops:
         out |= {first + k: first + len(loop) - 1 - k for k in range(len(loop))}
@@ -165,7 +165,7 @@ def segment_numbers(workpiece: Workpiece) -> dict[int, int]:
 
 
 def other_side(query: Query, read: Workpiece | None = None) -> Query:
-    """The query for the part turned over; angles in the vise stay as they are.
+    """Return the query for the part turned over; angles in the vise stay as they are.
 
     Parameters
     ----------
@@ -219,7 +219,7 @@ def other_side(query: Query, read: Workpiece | None = None) -> Query:
 
 
 def zero_of_other_side(zero: PartZero) -> PartZero:
-    """A part's zero in the coordinates of the part turned over: the same point of the part."""
+    """Return a part's zero in the coordinates of the part turned over: the same point of the part."""
     x, y = zero.point
     return PartZero((0.0 - x, y), zero.words)
 
@@ -276,7 +276,7 @@ def member_of(
     zero: PartZero | None = None,
     same_zero: bool = False,
 ) -> Member:
-    """The member that a part is, from all its fixtures; refuses a disk without room for them.
+    """Return the member that a part is, from all its fixtures; refuse a disk without room for them.
 
     The fixtures are ranked, and the first figure of the ranking is that of losses. For ``thresholds`` and
     ``unfit`` see ``family.members.may_be_used``. The part's zero is the usual one if None. ``same_zero`` says
@@ -308,7 +308,7 @@ def member_of(
 
 
 def distinct_patterns(words: IntArray, number: IntArray, turn: NDArray[np.bool_]) -> int:
-    """The number of patterns (N, W) when one and its half turn count once.
+    """Return the number of patterns (N, W) when one and its half turn count once.
 
     ``number`` (N,) are the numbers of the fixtures, and ``turn`` (N,) whether they are after the half turn.
     """
@@ -350,7 +350,7 @@ def with_half_turns(table: FixtureTable, query: Query) -> tuple[FixtureTable, In
 
 
 def at_angle(degrees: NDArray[np.float64], query: Query) -> NDArray[np.bool_]:
-    """Whether orientations (N,) in degrees lie in a range allowed; without ranges all do."""
+    """Return whether orientations (N,) in degrees lie in a range allowed; without ranges all do."""
     return np.asarray(are_within(degrees, query.restrictions.angles))
 
 

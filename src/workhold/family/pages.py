@@ -52,7 +52,7 @@ MOST_LINES = 9
 
 
 def draw_curve(family: Family, chosen: Point | None = None) -> str:
-    """Draws the curve of a family on A4, as SVG text.
+    """Draw the curve of a family on A4, as SVG text.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ def draw_axes_and_points(scene: Scene, room: Box, points: list[Point], chosen: P
 
 
 def nice_step(least: float) -> float:
-    """The smallest of 1, 2 or 5 times a power of ten that is not below ``least``.
+    """Return the smallest of 1, 2 or 5 times a power of ten that is not below ``least``.
 
     >>> nice_step(0.07), nice_step(0.2), nice_step(3)
     (0.1, 0.2, 5.0)
@@ -162,7 +162,7 @@ class Titles:
 
 
 def draw_setups(plan: Plan, figure: Figure, day: date, unit: Unit = MILLIMETRE) -> tuple[str, ...]:
-    """Draws the sheets of a plan, as SVG text of every page.
+    """Draw the sheets of a plan, as SVG text of every page.
 
     Parameters
     ----------
@@ -182,7 +182,7 @@ def draw_setups(plan: Plan, figure: Figure, day: date, unit: Unit = MILLIMETRE) 
 
 
 def setup_pages(setup: SetUp, before: SetUp | None, number: int, titles: Titles) -> Iterator[Scene]:
-    """The pages of a set-up without their feet."""
+    """Yield the pages of a set-up without their feet."""
     benches = [
         (one, bench_of(one.fixture, one.member.query.workpiece, one.member.query.toolkit))
         for one in setup.holdings
@@ -202,7 +202,7 @@ def setup_pages(setup: SetUp, before: SetUp | None, number: int, titles: Titles)
 
 
 def new_page(setup: SetUp, before: SetUp | None, number: int, titles: Titles) -> Scene:
-    """A page with its heading: which set-up, where its pegs stand, and what is moved for it."""
+    """Return a page with its heading: which set-up, where its pegs stand, and what is moved for it."""
     heading = f"Set-up {number} of {titles.count}: {plural(len(setup.holdings), 'part')}"
     scene = Scene.page(LANDSCAPE, heading)
     group = scene.group("heading")
@@ -219,7 +219,7 @@ def holes_of(setup: SetUp) -> list[str]:
 
 
 def heights_words(setup: SetUp, lengths: LengthUnit) -> Iterator[str]:
-    """Says at which heights carriers with heights of their own touch, where the parts are solids."""
+    """Say at which heights carriers with heights of their own touch, where the parts are solids."""
     toolkit = setup.standing.member.query.toolkit
     if all(one.member.query.workpiece.solid is None for one in setup.holdings):
         return
@@ -376,7 +376,7 @@ def name_lines(name: str, width: float, most: int) -> list[str]:
 def draw_table(
     scene: Scene, room: Box, head: list[str], rows: list[list[str]], notes: list[str], most: int
 ) -> None:
-    """Draws the table of parts, numbers on the right of their columns, and the notes below it.
+    """Draw the table of parts, numbers on the right of their columns, and the notes below it.
 
     Names have ``most`` lines at most.
     """
@@ -403,7 +403,7 @@ def draw_table(
 
 
 def in_two(words: str) -> tuple[str, str]:
-    """A heading in two lines as short as they can be, the first of them empty where there is one word.
+    """Return a heading in two lines as short as they can be, the first of them empty where there is one word.
 
     >>> in_two("part"), in_two("location error mm")
     (('', 'part'), ('location', 'error mm'))

@@ -50,7 +50,7 @@ def column_groups(toolkit: Toolkit) -> list[int]:
 
 
 def half_turn(toolkit: Toolkit, arrangement: int) -> tuple[int, ...] | None:
-    """The carrier whose place each carrier takes after half a turn of everything.
+    """Return the carrier whose place each carrier takes after half a turn of everything.
 
     It is None where the turn does not leave the arrangement as it is.
     """
@@ -84,7 +84,7 @@ def pattern_words(table: FixtureTable, toolkit: Toolkit) -> IntArray:
 
 
 def least(values: IntArray, inside: BoolArray) -> IntArray:
-    """The smallest (N, 1) of the values (N, P) that count, 0 where none does."""
+    """Return the smallest (N, 1) of the values (N, P) that count, 0 where none does."""
     found = np.where(inside, values, NO_PLACE).min(axis=1, keepdims=True, initial=NO_PLACE)
     return np.where(found == NO_PLACE, 0, found)
 
@@ -118,7 +118,7 @@ NOTHING = 1 << 40
 
 
 def shifted(one: FixtureTable, toolkit: Toolkit, columns: dict[int, int], rows: int) -> FixtureTable:
-    """A fixture moved by whole columns and rows; the part moves with the first carrier.
+    """Return a fixture moved by whole columns and rows; the part moves with the first carrier.
 
     ``columns`` are by group of carriers, see :func:`column_groups`.
     """
@@ -182,7 +182,7 @@ def turned(table: FixtureTable, toolkit: Toolkit) -> FixtureTable:
 
 
 def tips_of(table: FixtureTable, toolkit: Toolkit) -> NDArray[np.float64]:
-    """The places (N, K, 2) in mm of the tips of fixtures' clamps."""
+    """Return the places (N, K, 2) in mm of the tips of fixtures' clamps."""
     x, y = toolkit.places(table.arrangement, table.column, table.row, table.jaw_separation)
     count = 1 if table.jaw_separation.ndim == 1 else table.jaw_separation.shape[1]
     return np.stack([x[:, -count:], y[:, -count:]], axis=2)
@@ -202,7 +202,7 @@ def with_tips(table: FixtureTable, toolkit: Toolkit, tips: NDArray[np.float64]) 
 
 
 def holes_of(one: FixtureTable, toolkit: Toolkit) -> list[Hole]:
-    """Where every peg of a fixture stands, in order; the ends of a wall are left out."""
+    """Return where every peg of a fixture stands, in order; the ends of a wall are left out."""
     out = []
     carriers = toolkit.peg_carriers(one.arrangement)
     places = (rows[0].tolist() for rows in (carriers, one.column, one.row))

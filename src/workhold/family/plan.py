@@ -60,7 +60,7 @@ class Step:
 
 
 def freedom_of(toolkit: Toolkit) -> Freedom:
-    """Which ways set-ups of a toolkit may be moved: where it has no end."""
+    """Return which ways set-ups of a toolkit may be moved: where it has no end."""
     plates, is_counted = toolkit.plates, toolkit.datum.fixes_rows
     return Freedom(
         columns=all(plate.columns is None for plate in plates),
@@ -95,7 +95,7 @@ def nearest(before: Holes, after: Holes, freedom: Freedom) -> tuple[int, int, in
 
 
 def best_order(setups: Sequence[Holes], freedom: Freedom) -> list[Step]:
-    """The best order of set-ups, from the holes of each; of equal orders the first by numbers.
+    """Return the best order of set-ups, from the holes of each; of equal orders the first by numbers.
 
     All are moved so that the lowest column and row that may be moved are 0.
     """
@@ -118,7 +118,7 @@ def best_order(setups: Sequence[Holes], freedom: Freedom) -> list[Step]:
 
 
 def shortest_path(cost: NDArray[np.int64]) -> list[int]:
-    """The first shortest path through all places, from the costs (S, S) of the ways between them."""
+    """Return the first shortest path through all places, from the costs (S, S) of the ways between them."""
     count = len(cost)
     bit, every = 1 << np.arange(count), np.arange(count)
     # length[v, s]: of the shortest way from place s through all that are not among the bits of v.
@@ -137,7 +137,7 @@ def shortest_path(cost: NDArray[np.int64]) -> list[int]:
 
 
 def greedy_path(cost: NDArray[np.int64]) -> list[int]:
-    """A path from the first place to the nearest that is left, and so on."""
+    """Return a path from the first place to the nearest that is left, and so on."""
     path, left = [0], np.arange(len(cost)) != 0
     while left.any():
         path.append(int(np.argmin(np.where(left, cost[path[-1]], FAR))))

@@ -34,16 +34,16 @@ def touch_all(table: FixtureTable, query: Query) -> BoolArray:
 
 
 def faces_named(numbers: tuple[int, ...], workpiece: Workpiece) -> set[int]:
-    """The numbers of faces, each of which may be named by any of its segments."""
+    """Return the numbers of faces, each of which may be named by any of its segments."""
     return {face.number for face in workpiece.numbered.faces if not set(face.segments).isdisjoint(numbers)}
 
 
 def are_precise(table: FixtureTable, query: Query) -> BoolArray:
-    """Which fixtures (N,), whose figures are known, have a location error no larger than asked."""
+    """Return which fixtures (N,), whose figures are known, have a location error no larger than asked."""
     most = query.max_location_error
     return np.ones(len(table), np.bool_) if most is None else table.quality[:, LOCATION_ERROR] <= most
 
 
 def are_as_asked(table: FixtureTable, query: Query) -> BoolArray:
-    """Which fixtures (N,), whose figures are known, are as asked of each by itself."""
+    """Return which fixtures (N,), whose figures are known, are as asked of each by itself."""
     return touch_all(table, query) & are_precise(table, query)

@@ -155,7 +155,7 @@ def preferred_angles(query: Query) -> list[tuple[float, float]]:
 
 
 def tilted_keys(query: Query, problem: Problem) -> OrderKeys | None:
-    """The least keys, one row, that fixtures at other than the preferred angles can have.
+    """Return the least keys, one row, that fixtures at other than the preferred angles can have.
 
     None where angles have no say, or nothing is bounded.
 

@@ -59,7 +59,7 @@ class Rows:
 
     @classmethod
     def joined(cls, parts: Sequence[Self]) -> Self:
-        """The rows of several, at least one."""
+        """Return the rows of several, at least one."""
         return cls(*(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(cls)))
 
 
@@ -188,7 +188,7 @@ def packed_holes(c: Candidates, most: tuple[int, int] | None = None) -> list[Int
 
 
 def changes(words: list[IntArray]) -> NDArray[np.bool_]:
-    """Which entries (N,) of packed numbers differ from the one before; the first does."""
+    """Return which entries (N,) of packed numbers differ from the one before; the first does."""
     fresh = np.zeros(len(words[0]), np.bool_)
     fresh[:1] = True
     for word in words:
@@ -240,7 +240,7 @@ def listed_once(c: Candidates) -> Candidates:
 
 
 def place_number(point: Array, gap: Array) -> Array:
-    """A number (N,) that distinguishes places of the workpiece.
+    """Return a number (N,) that distinguishes places of the workpiece.
 
     It mixes a peg's centre (N, 2) in the workpiece's frame and gaps (N,), both in mm.
     """
@@ -248,7 +248,7 @@ def place_number(point: Array, gap: Array) -> Array:
 
 
 def different_places(c: Candidates, first: IntArray, group: IntArray) -> IntArray:
-    """Which of candidates ``first`` (K,), in ``group`` (K,) by their holes and orientations, are no
+    """Return which of candidates ``first`` (K,), in ``group`` (K,) by their holes and orientations, are no
     repetitions, in the order of group, faces and place; see :func:`listed_once`."""
     place = place_number(c.point[first, 0], c.gap[first])
     order = np.lexsort([place, group])

@@ -91,7 +91,7 @@ class ClampContacts:
 
 
 def contacts_on_wall(found: WallFixtures, problem: Problem) -> ClampContacts:
-    """The contacts of a wall, a locator and a clamp that the search of one direction proved."""
+    """Return the contacts of a wall, a locator and a clamp that the search of one direction proved."""
     found = found.listed_once()
     found = found.take(is_one_of_two(found.null[:, :3], found.push))
     index, hole = found.placement(problem).holes(problem, every=True)
@@ -121,7 +121,7 @@ def contacts_on_wall(found: WallFixtures, problem: Problem) -> ClampContacts:
 
 
 def contacts_of_candidates(c: Candidates, problem: Problem) -> ClampContacts:
-    """The contacts of three locators and a clamp that the search of one direction proved."""
+    """Return the contacts of three locators and a clamp that the search of one direction proved."""
     frame = problem.frame
     rows = problem.rows[c.feature]
     wrench = wrenches(c.point, outward_normals(rows, c.point), problem.wrench_length)
@@ -199,7 +199,7 @@ def sharpened(
 
 
 def box_of(c: Candidates, number: int, problem: Problem) -> CandidateBox:
-    """A contact of three locators and a clamp in the frame of the search."""
+    """Return a contact of three locators and a clamp in the frame of the search."""
     column, row, lattice = c.column[number], c.row[number], problem.frame.lattice
     x, y = (column[LOCATOR_CONTACTS] - column[0]) * lattice.pitch_x, (row - row[0]) * lattice.pitch_y
     separation = float(x.max() + c.gap[number])
@@ -214,7 +214,7 @@ def box_beside(
     middle: tuple[float, float, float, float],
     problem: Problem,
 ) -> CandidateBox:
-    """A box about a proven contact of three locators and a clamp, as drawn, see
+    """Return a box about a proven contact of three locators and a clamp, as drawn, see
     ``proof.ball_contacts.CandidateBox``."""
     from flint import ctx
 

@@ -51,7 +51,7 @@ def direction_number(toolkit: Toolkit) -> int:
 
 
 def is_upright(direction: IntArray) -> BoolArray:
-    """Which directions, by their numbers, are along columns."""
+    """Return which directions, by their numbers, are along columns."""
     return np.asarray(direction >= DIRECTION_NAMES.index("-y"))
 
 
@@ -61,12 +61,12 @@ def axis_of(carrier: Carrier) -> int:
 
 
 def is_bolted(clamp: Carrier) -> bool:
-    """Whether a clamp stands in a hole; without a longest travel it is its tip alone."""
+    """Return whether a clamp stands in a hole; without a longest travel it is its tip alone."""
     return clamp.travel is not None and clamp.travel.most is not None
 
 
 def last_holes(plate: Carrier) -> tuple[float, float]:
-    """The most columns and rows that holes of a plate are apart; infinite where it has no end."""
+    """Return the most columns and rows that holes of a plate are apart; infinite where it has no end."""
     columns, rows = (inf if count is None else count - 1.0 for count in (plate.columns, plate.rows))
     return columns, rows
 
@@ -110,7 +110,7 @@ class ClampPlacement:
         return hole, fits
 
     def holes(self, problem: Problem, every: bool) -> tuple[IntArray, IntArray]:
-        """The holes in which clamps may be bolted.
+        """Return the holes in which clamps may be bolted.
 
         Parameters
         ----------

@@ -65,7 +65,7 @@ BLOCK = 1 << 14
 
 
 def finish(records: list[Array], problem: Problem, cancel: Event | None = None) -> tuple[Candidates, Account]:
-    """Decides records, brings them to the listed form and lists them once, on this thread.
+    """Decide records, brings them to the listed form and lists them once, on this thread.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ class Batches:
     waiting: list[Array] = field(factory=lambda: [np.zeros((0, record.RECORD_LENGTH))], init=False)
 
     def add(self, records: Array) -> list[Array]:
-        """Takes records (N, 19); the blocks that are full."""
+        """Take records (N, 19); the blocks that are full."""
         self.waiting.append(records)
         if sum(map(len, self.waiting)) < BLOCK:
             return []
@@ -120,7 +120,7 @@ class Batches:
         return [together[k : k + BLOCK] for k in range(0, len(together), BLOCK)]
 
     def rest(self) -> Array:
-        """The records that fill no block, which may be none."""
+        """Return the records that fill no block, which may be none."""
         return np.concatenate(self.waiting)
 
 
@@ -171,7 +171,7 @@ class BestFixtures:
         return self.problem.query.best
 
     def add(self, records: NDArray[np.float64]) -> Needed:
-        """Takes records (N, 19) from the search; what further ones must reach."""
+        """Take records (N, 19) from the search; what further ones must reach."""
         self.waiting.append(records)
         least = WAITING if self.problem.query.by_margin_alone else WAITING_LONG
         if sum(map(len, self.waiting)) >= max(least, self.most):
@@ -227,7 +227,7 @@ class BestFixtures:
         return self.keys is not None and bool(bound.beaten(self.keys, self.most, bound.lowest).all())
 
     def finished(self) -> tuple[Candidates, Account]:
-        """All that may be among the best, and the account of all records, once the search is over."""
+        """Return all that may be among the best, and the account of all records, once the search is over."""
         self.decide()
         assert self.kept is not None
         self.has_dropped |= len(self.kept.standing) > self.most
@@ -288,7 +288,7 @@ class ResultCollector:
 
     @contextmanager
     def given_up_on_errors(self) -> Iterator[None]:
-        """Ends soon what is being decided when the block ends by an error or a signal: the pool waits for
+        """End soon what is being decided when the block ends by an error or a signal: the pool waits for
         it."""
         try:
             yield
@@ -297,7 +297,7 @@ class ResultCollector:
             raise
 
     def take(self, records: NDArray[np.float64]) -> Needed:
-        """Takes records (N, 19) of the search, in its order; what further ones must reach, which is
+        """Take records (N, 19) of the search, in its order; what further ones must reach, which is
         nothing."""
         self.course.total += len(records)
         for block in self.batches.add(records):
@@ -310,7 +310,7 @@ class ResultCollector:
             self.keep(*self.deciding.popleft().result())
 
     def decided(self, block: NDArray[np.float64]) -> tuple[SortedRun, Account]:
-        """The fixtures of a block sorted by their holes, and what became of its records."""
+        """Return the fixtures of a block sorted by their holes, and what became of its records."""
         candidates, account = listed_form(block, self.problem, self.course)
         return self.by_their_holes(candidates), account
 
@@ -323,11 +323,11 @@ class ResultCollector:
         self.accounts.append(account)
 
     def add(self, candidates: Candidates, account: Account) -> None:
-        """Takes fixtures that are decided already."""
+        """Take fixtures that are decided already."""
         self.keep(self.by_their_holes(candidates), account)
 
     def finish_deciding(self, progress: Progress | None = None) -> Account:
-        """Waits for what is being decided; the account of all records."""
+        """Wait for what is being decided; the account of all records."""
         self.decide(self.batches.rest())
         while self.deciding:
             wait([self.deciding[0]], timeout=NAP)
@@ -338,7 +338,7 @@ class ResultCollector:
         return Account.together(self.accounts)
 
     def measure(self, progress: Progress | None = None) -> bool:
-        """Lists once, measures and counts; whether nothing was left because somebody asked to stop."""
+        """List once, measures and counts; whether nothing was left because somebody asked to stop."""
         parts, done = self.by_holes.parts(), 0
         course = Course(len(parts), cancel=self.cancel)
         for table, turned, least in in_order(
@@ -368,7 +368,7 @@ class ResultCollector:
     def measured_part(
         self, numbered: tuple[int, Callable[[], SortedRun]]
     ) -> tuple[SortedRun, SortedRun | None, OrderKeys]:
-        """The fixtures of a part in the order of their ranks, as far as these depend on no other part.
+        """Return the fixtures of a part in the order of their ranks, as far as these depend on no other part.
 
         Beside them, of a symmetric workpiece the smallest of the forms that its turns give them, and the keys
         of the one with the least effective error.

@@ -56,11 +56,11 @@ class PackedContacts:
         return len(self.reals)
 
     def take(self, chosen: NDArray[np.int64] | slice) -> Array:
-        """The records (M, 19) of an index array or slice."""
+        """Return the records (M, 19) of an index array or slice."""
         return np.hstack([self.whole[chosen], self.reals[chosen]])
 
     def parts(self) -> Iterator[Array]:
-        """All records, some at a time; one part of nothing where there are none."""
+        """Yield all records, some at a time; one part of nothing where there are none."""
         for first in range(0, max(len(self), 1), TOGETHER):
             yield self.take(slice(first, first + TOGETHER))
 
@@ -132,13 +132,13 @@ class SeatGroups:
             left, together = left[end:], 2 * together
 
     def among(self, groups: IntArray) -> tuple[IntArray, IntArray]:
-        """The contacts of some groups one after the other, and where each begins."""
+        """Return the contacts of some groups one after the other, and where each begins."""
         sizes = np.diff(self.starts, append=len(self.order))[groups]
         starts = np.cumsum(sizes) - sizes
         return self.order[np.arange(sizes.sum()) + np.repeat(self.starts[groups] - starts, sizes)], starts
 
     def followed_by(self, last: IntArray) -> SeatGroups:
-        """The groups, and one after them of contacts (N,) that hold nothing."""
+        """Return the groups, and one after them of contacts (N,) that hold nothing."""
         if len(last) == 0:
             return self
         order, starts = np.concatenate([self.order, last]), np.append(self.starts, len(self.order))

@@ -168,12 +168,12 @@ class Identity:
 
 
 def half_turns(toolkit: Toolkit) -> bool:
-    """Whether half a turn of everything leaves a plate as it is, which a wall does not allow."""
+    """Return whether half a turn of everything leaves a plate as it is, which a wall does not allow."""
     return WALL_END not in toolkit.contacts
 
 
 def turns_into_itself(arrangement: Arrangement, toolkit: Toolkit) -> bool:
-    """Whether half a turn of everything makes an arrangement the same again.
+    """Return whether half a turn of everything makes an arrangement the same again.
 
     It does with as many pegs on either jaw, or with two clamps in opposite directions on a plate without a
     wall.
@@ -193,7 +193,7 @@ def turns_into_itself(arrangement: Arrangement, toolkit: Toolkit) -> bool:
 def precedes(
     words: Sequence[IntArray], pose: Array, others: Sequence[IntArray], other_pose: Array
 ) -> BoolArray:
-    """Which (N,) of some whole numbers (N,) each and poses (N, P) come before others in lexicographic
+    """Return which (N,) of some whole numbers (N,) each and poses (N, P) come before others in lexicographic
     order."""
     before = np.zeros(len(pose), np.bool_)
     for one, other in zip(pose.T[::-1], other_pose.T[::-1], strict=True):
@@ -241,7 +241,7 @@ class SetCount:
 
 
 def identity_order(table: FixtureTable, toolkit: Toolkit | None = None) -> NDArray[np.intp]:
-    """The order of fixtures by type, holes, orientation, faces and place.
+    """Return the order of fixtures by type, holes, orientation, faces and place.
 
     Where the toolkit has a wall with ends, columns count from the first peg's, as on an endless one.
     """
@@ -308,7 +308,7 @@ def first_of_each(groups: IntArray) -> tuple[IntArray, IntArray]:
 
 
 def near_duplicates(table: FixtureTable, workpiece: Workpiece, toolkit: Toolkit) -> IntArray:
-    """A number (N,) for each fixture, the same for near duplicates."""
+    """Return a number (N,) for each fixture, the same for near duplicates."""
     if len(table) == 0 or table.column.shape[1] == 0:
         # What flat jaws hold differs in side, parallels or stop.
         return np.arange(len(table), dtype=np.int64)

@@ -100,7 +100,7 @@ def half_turned(c: Candidates, swapped: int) -> Candidates:
 
 
 def bodies_clear(c: Candidates, frame: Frame) -> BoolArray:
-    """Which fixtures' pegs (N,) stand far enough apart for their bodies."""
+    """Return which fixtures' pegs (N,) stand far enough apart for their bodies."""
     clear = np.ones(len(c.standing), np.bool_)
     if all(carrier.body_radius == carrier.peg_radius for carrier in frame.carriers):
         # Neighbouring holes are far enough apart for the pegs themselves.
@@ -120,7 +120,7 @@ def at_angle(theta: Array, angles: Sequence[Sequence[float]], frame: Frame) -> B
 
 
 def free_columns(c: Candidates, frame: Frame) -> tuple[IntArray, IntArray]:
-    """How many columns (N,) are free beyond the pegs of each carrier."""
+    """Return how many columns (N,) are free beyond the pegs of each carrier."""
     standing = is_standing(c.standing)
     return (
         frame.standing.column_count - 1 - largest(np.where(standing, c.column, 0)),
@@ -129,7 +129,7 @@ def free_columns(c: Candidates, frame: Frame) -> tuple[IntArray, IntArray]:
 
 
 def free_rows(c: Candidates, frame: Frame) -> IntArray:
-    """How many rows (N,) are free above the pegs of a carrier with an end; 0 where none has."""
+    """Return how many rows (N,) are free above the pegs of a carrier with an end; 0 where none has."""
     if all(carrier.rows is None for carrier in frame.carriers):
         return np.zeros(len(c.standing), np.int64)
     ends = np.where(
@@ -210,7 +210,7 @@ def offsets(frame: Frame, endless: bool, spare: IntArray) -> list[int]:
 
 
 def in_blocked(column: IntArray, row: IntArray, standing: BoolArray, frame: Frame) -> BoolArray:
-    """Which fixtures (N,) have a peg in a blocked hole; column, row and standing are (N, 4)."""
+    """Return which fixtures (N,) have a peg in a blocked hole; column, row and standing are (N, 4)."""
     hit = np.zeros(column.shape, np.bool_)
     for carrier in frame.carriers:
         for holes in carrier.blocked:
@@ -245,7 +245,7 @@ def clamp_placement(c: Candidates, problem: Problem) -> ClampPlacement:
 
 
 def placeable(c: Candidates, problem: Problem) -> BoolArray:
-    """Which candidates (N,) have a place in the toolkit."""
+    """Return which candidates (N,) have a place in the toolkit."""
     if problem.frame.moving.on is None:
         return arranged(c, problem).fits
     _, fits = clamp_placement(c, problem).nearest(problem)
@@ -253,7 +253,7 @@ def placeable(c: Candidates, problem: Problem) -> BoolArray:
 
 
 def placed(c: Candidates, problem: Problem) -> FixtureTable:
-    """The table of candidates that fit; of their quality only the closure margin is known yet."""
+    """Return the table of candidates that fit; of their quality only the closure margin is known yet."""
     if problem.frame.moving.on is not None:
         return placed_with_clamp(c, problem)
     frame = problem.frame

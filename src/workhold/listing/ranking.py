@@ -159,7 +159,7 @@ class OrderKeys:
         return OrderKeys(np.full((1, self.first.shape[1]), inf), error, np.full((1, self.rest.shape[1]), inf))
 
     def where(self, chosen: BoolArray, other: OrderKeys) -> OrderKeys:
-        """The keys of those chosen (N,), and other ones of the rest."""
+        """Return the keys of those chosen (N,), and other ones of the rest."""
         error = None
         if self.error is not None and other.error is not None:
             error = np.where(chosen, self.error, other.error)
@@ -169,7 +169,7 @@ class OrderKeys:
         return OrderKeys(first, error, rest)
 
     def unknown_where(self, chosen: BoolArray) -> OrderKeys:
-        """The keys, those chosen (N,) without any bound."""
+        """Return the keys, those chosen (N,) without any bound."""
         error = None if self.error is None else np.where(chosen, 0, self.error)
         first, rest = (np.where(chosen[:, None], -inf, rows) for rows in (self.first, self.rest))
         return OrderKeys(first, error, rest)
@@ -247,7 +247,7 @@ class OrderKeys:
         return out
 
     def kept_among(self, there: NDArray[np.intp], rest: IntArray, most: int) -> BoolArray:
-        """The same of some (T,) that nothing distinguishes before the steps."""
+        """Return the same of some (T,) that nothing distinguishes before the steps."""
         assert self.error is not None
         error, out = self.error[there], np.ones(len(there), np.bool_)
         if len(there) <= most:
@@ -272,7 +272,7 @@ class OrderKeys:
         return out
 
     def beaten(self, kept: OrderKeys, most: int, floor: int) -> BoolArray:
-        """Which (N,) of these bounds so many of some fixtures surely come before.
+        """Return which (N,) of these bounds so many of some fixtures surely come before.
 
         Parameters
         ----------
@@ -302,14 +302,14 @@ class OrderKeys:
         return out
 
     def is_known_above(self, floor: int) -> bool:
-        """Whether the least error of these is that of all, if no other has less than ``floor``."""
+        """Return whether the least error of these is that of all, if no other has less than ``floor``."""
         if self.error is None or not self.is_fine.any():
             return False
         return (self.least or 0) <= floor
 
 
 def has_a_step_more(error: IntArray, than: IntArray | np.int64) -> BoolArray:
-    """Where an error surely is a step above others, none of which is below the least of all."""
+    """Return where an error surely is a step above others, none of which is below the least of all."""
     eleven, ten = STEP_TENTHS
     return np.asarray((ten * error >= eleven * than) & (than > 0))
 
@@ -328,7 +328,7 @@ def ranks_of(rows: Array) -> IntArray:
 
 
 def error_steps(error: IntArray, least: int) -> IntArray:
-    """How many steps (N,) errors (N,) are above the least of all, both in billionths of a millimetre.
+    """Return how many steps (N,) errors (N,) are above the least of all, both in billionths of a millimetre.
 
     So many numbers j from 1 on have error >= 1.1^j least, in whole numbers.
 
@@ -352,12 +352,12 @@ def billionths(error: Array) -> IntArray:
 
 
 def in_mm(error: int | None) -> float | None:
-    """An error in billionths as files have it, in mm."""
+    """Return an error in billionths as files have it, in mm."""
     return None if error is None or error >= MOST_ERROR else round(error / PER_MM, FIGURE_DECIMALS)
 
 
 def usual_errors(query: Query) -> EffectiveErrors | None:
-    """What gives effective errors, where these count in the order of a query; else None."""
+    """Return what gives effective errors, where these count in the order of a query; else None."""
     return EffectiveErrors.of(query) if query.has_house_order else None
 
 
@@ -368,7 +368,7 @@ def order_keys(table: FixtureTable, query: Query, effective: EffectiveErrors | N
 
 
 def keys_of(quality: Array, query: Query, error: Array | IntArray | None, angle: IntArray) -> OrderKeys:
-    """The keys of N fixtures.
+    """Return the keys of N fixtures.
 
     Parameters
     ----------
@@ -423,7 +423,7 @@ def best_possible(count: int, query: Query) -> NDArray[np.float64]:
 
 
 def is_worse(keys: NDArray[np.float64], last: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which keys (N, R) come after others (R,) in lexicographic order."""
+    """Return which keys (N, R) come after others (R,) in lexicographic order."""
     worse, equal = np.zeros(len(keys), np.bool_), np.ones(len(keys), np.bool_)
     for values, one in zip(keys.T, last.tolist(), strict=True):
         worse |= equal & (values > one)

@@ -68,7 +68,7 @@ class Work:
 
 
 def stage(progress: Progress | None, low: float, high: float) -> Progress | None:
-    """The progress of one stage of the work, from one fraction of the whole to another."""
+    """Return the progress of one stage of the work, from one fraction of the whole to another."""
     if progress is None:
         return None
     return lambda fraction, found: progress(low + (high - low) * fraction, found)
@@ -84,7 +84,7 @@ def listed_result(
     threads: int = 1,
     is_part: bool = False,
 ) -> Result:
-    """Checks, lists once, ranks and counts the fixtures that an engine found.
+    """Check, lists once, ranks and counts the fixtures that an engine found.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ def listed_result(
 
 
 def collected_result(collector: ResultCollector, work: Work, progress: Progress | None = None) -> Result:
-    """The result of what a collector was given, without its fixtures; those it hands over.
+    """Return the result of what a collector was given, without its fixtures; those it hands over.
 
     Parameters
     ----------
@@ -238,7 +238,7 @@ class RankedTable:
             self.tables, self.known = [together.take(chosen)], keys.take(chosen)
 
     def keys_of(self, table: FixtureTable) -> OrderKeys:
-        """The keys of some fixtures that are not measured yet."""
+        """Return the keys of some fixtures that are not measured yet."""
         return order_keys(measured_as(table, self.query, self.touched), self.query, self.effective)
 
     @property
@@ -249,7 +249,7 @@ class RankedTable:
         return self.known
 
     def beaten(self, bounds: OrderKeys, floor: int) -> NDArray[np.bool_]:
-        """Which of N bounds are those of nothing that is among the best.
+        """Return which of N bounds are those of nothing that is among the best.
 
         Parameters
         ----------
@@ -260,13 +260,13 @@ class RankedTable:
         return bounds.beaten(self.keys, self.query.best, floor)
 
     def rules_out(self, bound: OrderKeys) -> bool:
-        """Whether nothing that has no less than one bound is among the best; it is left out then."""
+        """Return whether nothing that has no less than one bound is among the best; it is left out then."""
         is_out = bool(self.beaten(bound, bound.lowest).all())
         self.has_dropped |= is_out
         return is_out
 
     def together(self) -> FixtureTable:
-        """What is kept of all that was added, in the order of identities."""
+        """Return what is kept of all that was added, in the order of identities."""
         self.measure()
         everything = FixtureTable.joined(self.tables)
         self.tables = [everything.take(identity_order(everything, self.query.toolkit))]
@@ -298,7 +298,7 @@ class RankedTable:
 
 
 def joined_ways(results: Sequence[Result], query: Query) -> Result:
-    """The results of all ways of a query's toolkit (``Toolkit.ways``), in their order, as that of the
+    """Return the results of all ways of a query's toolkit (``Toolkit.ways``), in their order, as that of the
     query."""
     table = joined_tables([result.table for result in results])
     # Of a search that was stopped no more than the best of a way may be listed: of all then, too.

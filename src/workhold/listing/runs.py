@@ -59,7 +59,7 @@ def key_of(*numbers: NDArray[Any]) -> Keys:
 
 
 def order_of(keys: Keys) -> NDArray[np.intp]:
-    """The order (N,) of keys, equal ones as they stand.
+    """Return the order (N,) of keys, equal ones as they stand.
 
     Comparing bytes takes long. So the words that keys are made of become one number. Each counts by its
     distance from the least of its kind or, where that is too much for a number, by its rank. The number is
@@ -87,7 +87,7 @@ def small(word: NDArray[np.uint64], most: int) -> tuple[NDArray[np.uint64], int]
 
 
 def ranked(word: NDArray[np.uint64]) -> tuple[NDArray[np.uint64], int]:
-    """The ranks (N,) of numbers, equal ones alike, and how many there are."""
+    """Return the ranks (N,) of numbers, equal ones alike, and how many there are."""
     values, ranks = np.unique(word, return_inverse=True)
     return ranks.astype(np.uint64), len(values)
 
@@ -120,7 +120,7 @@ class SortedRun:
         return self.keys[::STRIDE]
 
     def place(self, key: Keys) -> int:
-        """How many of its rows come before a key (1,)."""
+        """Return how many of its rows come before a key (1,)."""
         return int(np.searchsorted(self.keys, key)[0])
 
     def rows(self, first: int, end: int) -> SortedRun:
@@ -145,7 +145,7 @@ class Scratch:
         self.file = TemporaryFile(dir=self.folder, buffering=0)  # noqa: SIM115
 
     def write(self, array: NDArray[Any]) -> int:
-        """Writes the bytes of an array; the place where they begin."""
+        """Write the bytes of an array; the place where they begin."""
         content = np.ascontiguousarray(array).reshape(-1).view(np.uint8).data
         with self.lock:
             place = self.file.seek(0, os.SEEK_END)
@@ -186,7 +186,7 @@ class StoredRun:
         return np.frombuffer(content, form).reshape(end - first, *shape)
 
     def place(self, key: Keys) -> int:
-        """How many of its rows come before a key (1,)."""
+        """Return how many of its rows come before a key (1,)."""
         first = STRIDE * max(int(np.searchsorted(self.some_keys, key)[0]) - 1, 0)
         return first + int(np.searchsorted(self.array(0, first, min(first + STRIDE, self.count)), key)[0])
 
@@ -213,7 +213,7 @@ class Runs:
         return sum(map(len, self.runs)) + sum(map(len, self.fresh))
 
     def add(self, run: SortedRun) -> None:
-        """Adds rows.
+        """Add rows.
 
         Raises
         ------
@@ -237,7 +237,7 @@ class Runs:
         return [self.part(runs, first, end) for first, end in pairwise(edges)]
 
     def each(self) -> Iterator[Callable[[], SortedRun]]:
-        """What gives the rows of each run by itself, which are forgotten here as they are asked for."""
+        """Yield what gives the rows of each run by itself, which are forgotten here as they are asked for."""
         while self.runs or self.fresh:
             run = (self.runs or self.fresh).pop(0)
             yield partial(run.rows, 0, len(run))
@@ -250,7 +250,7 @@ class Runs:
         )
 
     def close(self) -> None:
-        """Gives back memory and disk."""
+        """Give back memory and disk."""
         self.runs, self.fresh = [], []
         if self.scratch is not None:
             self.scratch.file.close()
@@ -259,7 +259,7 @@ class Runs:
 def in_order(
     pool: Executor, ahead: int, work: Callable[[One], Other], items: Iterable[One]
 ) -> Iterator[Other]:
-    """What work gives for each item, in the order of the items; so many at a time are begun and not yet
+    """Yield what work gives for each item, in the order of the items; so many at a time are begun and not yet
     taken."""
     running: deque[Future[Other]] = deque()
     try:

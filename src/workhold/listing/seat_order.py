@@ -184,20 +184,20 @@ def group_bounds(
 
 
 def best_known(order: IntArray, off: Array, starts: IntArray) -> IntArray:
-    """The lowest of numbers (M,) in an order that are off the least, of each place (G,)."""
+    """Return the lowest of numbers (M,) in an order that are off the least, of each place (G,)."""
     least = np.repeat(np.minimum.reduceat(off, starts), np.diff(starts, append=len(off)))
     return np.asarray(np.minimum.reduceat(np.where(off <= least, order, NO_CONTACT), starts))
 
 
 def is_among(numbers: IntArray, few: IntArray) -> BoolArray:
-    """Which numbers (N,) are among a few (F,) in ascending order."""
+    """Return which numbers (N,) are among a few (F,) in ascending order."""
     if len(few) == 0:
         return np.zeros(len(numbers), np.bool_)
     return np.asarray(few[np.minimum(np.searchsorted(few, numbers), len(few) - 1)] == numbers)
 
 
 def seat_numbers(records: Array, problem: Problem) -> tuple[IntArray, Array, Array, Array, Array, BoolArray]:
-    """What distinguishes the seats of contacts (N, 19), whatever the direction of the clamp.
+    """Return what distinguishes the seats of contacts (N, 19), whatever the direction of the clamp.
 
     Returns
     -------

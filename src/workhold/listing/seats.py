@@ -102,7 +102,7 @@ def seats_of(
     within: Sequence[tuple[float, float]] = ((-inf, inf),),
     is_limited: bool = False,
 ) -> Seats:
-    """The seats of the contacts of some directions.
+    """Return the seats of the contacts of some directions.
 
     Parameters
     ----------
@@ -237,7 +237,7 @@ class ClampedSeats:
         return half_turns(self.toolkit)
 
     def half_of(self, seats: Seats) -> IntArray:
-        """Which seats (S,) are paired: 1 for those that are, else 0.
+        """Return which seats (S,) are paired: 1 for those that are, else 0.
 
         Of opposite directions half a turn makes one fixture another, so that only one half turn of seats is
         paired.
@@ -245,7 +245,7 @@ class ClampedSeats:
         return ((seats.theta < pi - SAME_POSE) | (not self.turns_half)).astype(np.int64)
 
     def count(self, seats: Seats) -> int:
-        """How many fixtures seats have, as they are listed; pairs that hardly close count as well."""
+        """Return how many fixtures seats have, as they are listed; pairs that hardly close count as well."""
         every = self.query.listing == "all"
         rows = pairs_of(seats.spans, self.half_of(seats), seats.clamps, self.hardware, every)
         if every:
@@ -253,7 +253,7 @@ class ClampedSeats:
         return self.held_in(rows)
 
     def held_in(self, rows: Array) -> int:
-        """How many seats, by pair of directions, are held in pairs (N, 10)."""
+        """Return how many seats, by pair of directions, are held in pairs (N, 10)."""
         return len(np.unique(rows[:, SEAT] * len(self.toolkit.arrangements) + rows[:, KIND]))
 
     def add(self, seats: Seats) -> None:
@@ -284,7 +284,7 @@ class ClampedSeats:
         return np.asarray(rows[are_precise(table, self.query)])
 
     def of_interest(self, rows: Array, seats: Seats) -> Array:
-        """The pairs (N, 10) of seats that may be among the best.
+        """Return the pairs (N, 10) of seats that may be among the best.
 
         A pair that is open hardly closes. So it has a warning, and is not the best of a seat that has
         another one.

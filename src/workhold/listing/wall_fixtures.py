@@ -65,7 +65,7 @@ class WallFixtures(Rows):
         return self.take(first_of_each((self.edge, self.row, self.line), place, self.feature))
 
     def placement(self, problem: Problem) -> ClampPlacement:
-        """Where the clamps may be bolted; columns count from the locator's."""
+        """Return where the clamps may be bolted; columns count from the locator's."""
         plate, clamp, flush = problem.toolkit.carriers[0], problem.toolkit.moving, problem.workpiece.flush
         assert clamp.travel is not None
         columns, rows = last_holes(plate)
@@ -145,7 +145,7 @@ def wall_table(found: WallFixtures, hole: IntArray, problem: Problem) -> Fixture
 
 
 def placed_on_wall(found: WallFixtures, problem: Problem) -> FixtureTable:
-    """The table of the fixtures whose clamps have a place, each once."""
+    """Return the table of the fixtures whose clamps have a place, each once."""
     found = found.listed_once()
     hole, fits = found.placement(problem).nearest(problem)
     return wall_table(found.take(fits), hole[fits], problem)

@@ -95,7 +95,7 @@ class Assembly:
         chosen: ChosenSupports | None = None,
         shape: PartShape | None = None,
     ) -> Assembly:
-        """Makes the bodies of a fixture; on a set of supports where one is chosen, counted as its holes are.
+        """Make the bodies of a fixture; on a set of supports where one is chosen, counted as its holes are.
 
         Parameters
         ----------
@@ -130,7 +130,7 @@ class Assembly:
         )
 
     def content(self, ending: str, zero: PartZero | None = None) -> bytes:
-        """The bytes of a file with an ending of :data:`GLB_ENDINGS` or :data:`STEP_ENDINGS`.
+        """Return the bytes of a file with an ending of :data:`GLB_ENDINGS` or :data:`STEP_ENDINGS`.
 
         Parameters
         ----------
@@ -152,7 +152,7 @@ class Assembly:
         return bodies_step(self.bodies, self.result.toolkit, point, pose, solid)
 
     def write(self, path: str | Path) -> None:
-        """Writes a file of the kind that its ending names.
+        """Write a file of the kind that its ending names.
 
         Raises
         ------
@@ -166,7 +166,7 @@ class Assembly:
 
 
 def shape_in(path: str | Path | None, workpiece: Workpiece) -> PartShape | None:
-    """The shape of a part in the STEP file that it was read from; None without a file.
+    """Return the shape of a part in the STEP file that it was read from; None without a file.
 
     Raises
     ------
@@ -193,7 +193,7 @@ def save_glb(
     part: str | Path | None = None,
     overwrite: bool = False,
 ) -> None:
-    """Writes a GLB file, see :meth:`workhold.Fixture.save_glb`."""
+    """Write a GLB file, see :meth:`workhold.Fixture.save_glb`."""
     if Path(path).suffix.lower() not in GLB_ENDINGS:
         raise InputError(f"{path} is not the name of a GLB file: let the name end in {GLB_ENDINGS[0]}.")
     refuse_output(path, (part,), overwrite)
@@ -218,7 +218,7 @@ def from_build123d(
     heights: Mapping[str, Sequence[float]] | None = None,
     toolkit: Toolkit | None = None,
 ) -> Workpiece:
-    """Makes a workpiece of a part of build123d, as :func:`workhold.load` does of a file.
+    """Make a workpiece of a part of build123d, as :func:`workhold.load` does of a file.
 
     Parameters
     ----------
@@ -261,7 +261,7 @@ def from_cadquery(
     heights: Mapping[str, Sequence[float]] | None = None,
     toolkit: Toolkit | None = None,
 ) -> Workpiece:
-    """Makes a workpiece of a work plane or a shape of CadQuery, as :func:`from_build123d` does.
+    """Make a workpiece of a work plane or a shape of CadQuery, as :func:`from_build123d` does.
 
     Parameters
     ----------
@@ -291,7 +291,7 @@ def from_cadquery(
 
 
 def axis_name(up: Any) -> str:
-    """The name of the axis along a direction, which may be an axis, a plane, a vector or a name.
+    """Return the name of the axis along a direction, which may be an axis, a plane, a vector or a name.
 
     >>> axis_name((0, 0, -2))
     '-z'
@@ -328,7 +328,7 @@ def to_build123d(
     supports: Supports | None = None,
     best: int = 1,
 ) -> Any:
-    """Makes a compound of build123d, see :meth:`workhold.Fixture.to_build123d`."""
+    """Make a compound of build123d, see :meth:`workhold.Fixture.to_build123d`."""
     cad = library("build123d")
     children = []
     for name, shape, colour in bodies_of(fixture, around, thickness, supports, best):
@@ -347,7 +347,7 @@ def to_cadquery(
     supports: Supports | None = None,
     best: int = 1,
 ) -> Any:
-    """Makes an assembly of CadQuery, see :meth:`workhold.Fixture.to_cadquery`."""
+    """Make an assembly of CadQuery, see :meth:`workhold.Fixture.to_cadquery`."""
     cad = library("cadquery")
     assembly = cad.Assembly(name=title(fixture))
     for name, shape, colour in bodies_of(fixture, around, thickness, supports, best):
@@ -384,7 +384,7 @@ def own_shape(part: Any) -> Any:
 
 
 def to_model(shape: Any, workpiece: Workpiece, fixture: Fixture) -> Any:
-    """The location that carries the frame of the toolkit into the model of the part's solid.
+    """Return the location that carries the frame of the toolkit into the model of the part's solid.
 
     Refuses a part that was not read from a solid, and a solid of another size.
     """

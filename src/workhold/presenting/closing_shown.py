@@ -47,7 +47,7 @@ def closing_shown(picture: LivePicture) -> dict[str, Any]:
 
 
 def closed(picture: LivePicture, solver: Solver, seating: Seating) -> dict[str, Any]:
-    """The closing of a fixture of a known seating; refuses one without room for the part."""
+    """Return the closing of a fixture of a known seating; refuse one without room for the part."""
     fixture, toolkit = picture.fixture, picture.result.toolkit
     sentences = SeatingSentences(seating, fixture, toolkit, LengthUnit.mm())
     most = picture.opened if seating.capture_opening is None else OF_CAPTURE * seating.capture_opening

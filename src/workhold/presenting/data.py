@@ -67,12 +67,12 @@ __all__ = [
 
 
 def finite(value: float) -> float | None:
-    """Returns a number, or None for one that JSON does not have."""
+    """Return a number, or None for one that JSON does not have."""
     return float(value) if isfinite(value) else None
 
 
 def part_data(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, Any]:
-    """Describes a part and its faces; the remarks are about how it was read."""
+    """Describe a part and its faces; the remarks are about how it was read."""
     first, loop_of = 0, {}
     for index, loop in enumerate(workpiece.loops):
         loop_of.update(dict.fromkeys(range(first, first + len(loop)), index))
@@ -92,12 +92,12 @@ def part_data(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, An
 
 
 def solid_data(solid: SolidOutline | None) -> dict[str, Any]:
-    """Describes how the solid of an outline stands, and the heights at which each segment is touched."""
+    """Describe how the solid of an outline stands, and the heights at which each segment is touched."""
     return {} if solid is None else {"solid": asdict(solid, filter=exclude(fields(SolidOutline).low))}
 
 
 def face_data(face: Face) -> dict[str, Any]:
-    """Describes a face: a line or an arc, whose sweep is in degrees; loop 0 is the outer one."""
+    """Describe a face: a line or an arc, whose sweep is in degrees; loop 0 is the outer one."""
     segment = face.segment
     ends = {"from": list(segment.start), "to": list(segment.end)}
     if not isinstance(segment, Arc):
@@ -140,14 +140,14 @@ def fixture_data(fixture: Fixture, toolkit: Toolkit, rank: int | None = None) ->
 
 
 def hold_data(fixture: Fixture) -> dict[str, Any]:
-    """Describes how flat jaws hold a part, as a result file does."""
+    """Describe how flat jaws hold a part, as a result file does."""
     entry = hold_entry(fixture)
     names = ("parallels", "stop", "fixed", "moving", "jaw_separation", "warnings", "program_force")
     return {"pegs": [], **{name: entry[name] for name in names if name in entry}, "quality": entry["quality"]}
 
 
 def pair_data(fixture: Fixture) -> dict[str, Any]:
-    """Describes the pair of clamps of a fixture and how to tighten them; empty for other fixtures."""
+    """Describe the pair of clamps of a fixture and how to tighten them; empty for other fixtures."""
     if pair := fixture.pair:
         ratio = [finite(one) for one in pair.ratio]
         return {"pairs": pair.count, "ratio": ratio, "order": order_words(fixture)}
@@ -160,7 +160,7 @@ def stands_on(carrier: Carrier) -> str:
 
 
 def by_hand_data(fixture: Fixture, rank: int | None) -> dict[str, Any]:
-    """Describes how the part is put into two clamps, if the result was asked for the seating of this rank."""
+    """Describe how the part is put into two clamps, if the result was asked for the seating of this rank."""
     result = None if fixture.listed is None else fixture.listed.result
     if result is None or result.toolkit.closes_at_once or rank is None or rank > (result.query.seating or 0):
         return {}
@@ -183,7 +183,7 @@ def load_case_data(case: LoadCase) -> dict[str, Any]:
 
 
 def worst_data(worst: Worst) -> dict[str, Any]:
-    """Describes where and in which direction a load is worst; the peg is counted from 0."""
+    """Describe where and in which direction a load is worst; the peg is counted from 0."""
     x, y = worst.point
     return {"value": finite(worst.value), "peg": worst.peg, "point": [x, y], "direction": worst.direction}
 
@@ -212,7 +212,7 @@ def result_data(result: Result, shown: Entries, count: int) -> dict[str, Any]:
 
 
 def proof_data(proof: Proof) -> dict[str, Any]:
-    """Describes the proof of a search as a result file does, but with ``faces`` in place of ``segments``."""
+    """Describe the proof of a search as a result file does, but with ``faces`` in place of ``segments``."""
     entry = proof_entry(proof)
     lost = [
         {("faces" if key == "segments" else key): value for key, value in one.items()}
@@ -222,7 +222,7 @@ def proof_data(proof: Proof) -> dict[str, Any]:
 
 
 def explanation_data(explanation: Explanation, toolkit: Toolkit) -> dict[str, Any]:
-    """Describes why there is no fixture, and what would help."""
+    """Describe why there is no fixture, and what would help."""
     nearest = explanation.nearest
     return {
         "contacts": explanation.contacts,
@@ -239,7 +239,7 @@ def explanation_data(explanation: Explanation, toolkit: Toolkit) -> dict[str, An
 
 
 def helps_data(explanation: Explanation, key: str) -> list[dict[str, Any]]:
-    """Describes what would help, with the changed fields of the toolkit under a key."""
+    """Describe what would help, with the changed fields of the toolkit under a key."""
     return [
         {
             "change": help.change,
@@ -266,7 +266,7 @@ def toolkit_data(loaded: LoadedToolkit) -> dict[str, Any]:
 
 
 def explored_data(found: Iterable[Explored]) -> list[dict[str, Any]]:
-    """Describes how well each toolkit holds a part."""
+    """Describe how well each toolkit holds a part."""
     return [
         {
             "name": item.name,
@@ -283,7 +283,7 @@ def explored_data(found: Iterable[Explored]) -> list[dict[str, Any]]:
 
 
 def verification_data(outcome: Verification) -> dict[str, Any]:
-    """Describes what was proven of a result; fixtures are named by their rank."""
+    """Describe what was proven of a result; fixtures are named by their rank."""
     return {
         "holds": outcome.holds,
         "fixtures": outcome.fixtures,
@@ -312,18 +312,18 @@ REQUIREMENTS = {
 
 
 def to_pandas(result: Result) -> DataFrame:
-    """Makes a DataFrame, see :meth:`workhold.Result.to_pandas`."""
+    """Make a DataFrame, see :meth:`workhold.Result.to_pandas`."""
     frame: DataFrame = library("pandas").DataFrame(columns_of(result))
     return frame
 
 
 def to_arrow(result: Result) -> pyarrow.Table:
-    """Makes a table of Arrow, see :meth:`workhold.Result.to_arrow`."""
+    """Make a table of Arrow, see :meth:`workhold.Result.to_arrow`."""
     return library("pyarrow").table(columns_of(result))
 
 
 def to_shapely(workpiece: Workpiece, tolerance: float) -> Any:
-    """Makes a polygon of shapely, see :meth:`workhold.Workpiece.to_shapely`."""
+    """Make a polygon of shapely, see :meth:`workhold.Workpiece.to_shapely`."""
     if not 0 < real(tolerance, "the tolerance") < inf:
         raise InputError(
             f"the tolerance {tolerance:g} of an outline is not usable: give a length above 0, in mm."
@@ -363,7 +363,7 @@ def library(name: str) -> Any:
 
 
 def columns_of(result: Result) -> dict[str, Any]:
-    """Returns columns by name: numbers as arrays (N,), words as lists; lengths in mm, angles in degrees."""
+    """Return columns by name: numbers as arrays (N,), words as lists; lengths in mm, angles in degrees."""
     toolkit = result.toolkit
     names, count = column_names(result), 6 * toolkit.peg_count
     titles = np.array([one.title for one in toolkit.arrangements])

@@ -71,13 +71,13 @@ def figures_shown(result: Result) -> tuple[list[Figure], list[Figure]]:
 
 
 def fixture_title(fixture: Fixture) -> str:
-    """What a fixture of a result is called, such as "Fixture 2 of 40 of bracket"."""
+    """Return what a fixture of a result is called, such as "Fixture 2 of 40 of bracket"."""
     listed = fixture.listing
     return f"Fixture {listed.rank:,} of {listed.count:,} of {listed.result.workpiece.name}"
 
 
 def short_heading(figure: Figure, unit: Unit) -> str:
-    """A figure's name, or what it is called where that is too wide, and its unit."""
+    """Return a figure's name, or what it is called where that is too wide, and its unit."""
     return f"{SHORT.get(figure.key, figure.words)} {unit_of(figure, unit)}".rstrip()
 
 
@@ -102,13 +102,13 @@ def peg_groups(toolkit: Toolkit) -> dict[str, list[str]]:
 
 
 def place_of(peg: Peg, toolkit: Toolkit) -> str:
-    """The name of a peg's hole or line, without the noun of a clamp."""
+    """Return the name of a peg's hole or line, without the noun of a clamp."""
     carrier = toolkit.carrier(peg.carrier)
     return peg.hole.removeprefix(f"{carrier.noun} ") if carrier.contact is CLAMP_TIP else peg.hole
 
 
 def heading(figure: Figure, unit: Unit) -> str:
-    """A figure's name and unit."""
+    """Return a figure's name and unit."""
     return f"{figure.words} {unit_of(figure, unit)}".rstrip()
 
 
@@ -118,7 +118,7 @@ def unit_of(figure: Figure, unit: Unit) -> str:
 
 
 def rounded(value: float, decimals: int) -> str:
-    """Formats a number with so many decimals, and zero without a sign.
+    """Format a number with so many decimals, and zero without a sign.
 
     >>> rounded(-1e-15, 3), rounded(-0.5, 1)
     ('0.000', '-0.5')
@@ -128,7 +128,7 @@ def rounded(value: float, decimals: int) -> str:
 
 
 def no_edge(workpiece: Workpiece, toolkit: Toolkit) -> float:
-    """The edge distance in mm of contacts that have no edge, as figures have it."""
+    """Return the edge distance in mm of contacts that have no edge, as figures have it."""
     from workhold.statics.contact_matrix import wrench_length
 
     return wrench_length(workpiece, toolkit)
@@ -145,12 +145,12 @@ def edgeless(figures: Mapping[str, float], longest: float) -> dict[str, float]:
 
 
 def is_edgeless(figures: Mapping[str, float], longest: float) -> bool:
-    """Whether the edge distance among figures stands for no edge, see :func:`edgeless`."""
+    """Return whether the edge distance among figures stands for no edge, see :func:`edgeless`."""
     return EDGE in figures and figures[EDGE] >= longest * (1 - SAME_SHARE)
 
 
 def figure_text(figure: Figure, value: float, unit: Unit) -> str:
-    """Formats a figure's value as a number of its unit; in words where it is infinite or not known."""
+    """Format a figure's value as a number of its unit; in words where it is infinite or not known."""
     if not isfinite(value):
         return "-" if isnan(value) else "none" if figure.key in ("reading", EDGE) else "any"
     if figure.unit == "MPa":
@@ -163,17 +163,17 @@ def figure_text(figure: Figure, value: float, unit: Unit) -> str:
 
 
 def size_of(figure: Figure, unit: Unit) -> float:
-    """How much in mm or N the unit is in which a figure is shown."""
+    """Return how much in mm or N the unit is in which a figure is shown."""
     return {"mm": unit.millimetres, "mm²": unit.millimetres**2, "N": unit.newtons}.get(figure.unit, 1.0)
 
 
 def figure_words(figure: Figure, value: float, unit: Unit) -> str:
-    """A figure's value with its unit, in words alone where it is infinite or not known."""
+    """Return a figure's value with its unit, in words alone where it is infinite or not known."""
     return f"{figure_text(figure, value, unit)} {unit_of(figure, unit) if isfinite(value) else ''}".rstrip()
 
 
 def counted_text(figure: Figure, value: float, unit: Unit) -> str:
-    """Formats a figure's value, rounded as the ranking rounds it in mm, in a unit."""
+    """Format a figure's value, rounded as the ranking rounds it in mm, in a unit."""
     from math import floor, log10
 
     if not isfinite(value):

@@ -112,7 +112,7 @@ class CurveFixture:
 
 
 def lesson(workpiece: Workpiece, cancel: Event | None = None) -> dict[str, Any]:
-    """Makes the lesson of a part.
+    """Make the lesson of a part.
 
     Parameters
     ----------
@@ -150,13 +150,13 @@ def lesson(workpiece: Workpiece, cancel: Event | None = None) -> dict[str, Any]:
 
 
 def short_faces(workpiece: Workpiece) -> tuple[int, ...]:
-    """The numbers of all faces but the longest ones."""
+    """Return the numbers of all faces but the longest ones."""
     faces = sorted(workpiece.faces, key=lambda face: -face.segment.length)
     return tuple(face.number for face in faces[MOST_FACES:])
 
 
 def queries(workpiece: Workpiece, avoided: tuple[int, ...]) -> Iterator[Query]:
-    """Makes what is asked of one vise after the other, those with one column first."""
+    """Make what is asked of one vise after the other, those with one column first."""
     x0, y0, x1, y1 = workpiece.bounds
     for columns in (1, 2):
         for share in PITCHES:
@@ -166,7 +166,7 @@ def queries(workpiece: Workpiece, avoided: tuple[int, ...]) -> Iterator[Query]:
 
 
 def rounded(length: float) -> float:
-    """A length to two digits.
+    """Return a length to two digits.
 
     >>> rounded(17.3), rounded(0.4567)
     (17.0, 0.46)
@@ -175,7 +175,7 @@ def rounded(length: float) -> float:
 
 
 def on_curves(problem: Problem, result: Result) -> list[CurveFixture]:
-    """The fixtures of a result of which both pairs of pegs stand on chord curves, in its order."""
+    """Return the fixtures of a result of which both pairs of pegs stand on chord curves, in its order."""
     frame = problem.frame
     steps = lattice_steps(frame.carriers, problem.diameter)
     table = curve_table(loosened(problem.rows[:, :SEGMENT_LENGTH]), steps)
@@ -193,7 +193,7 @@ def on_curves(problem: Problem, result: Result) -> list[CurveFixture]:
 def range_of(
     problem: Problem, table: CurveTable, fixture: Fixture, pegs: tuple[Peg, ...], swapped: bool = False
 ) -> ChordRange | None:
-    """The chord on which two pegs of a fixture stand, None where they stand on a sliding pair."""
+    """Return the chord on which two pegs of a fixture stand, None where they stand on a sliding pair."""
     tail, head = pegs
     inverse, center = fixture.pose.inverse, problem.workpiece.center
     places = [

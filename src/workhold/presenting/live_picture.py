@@ -84,7 +84,7 @@ class TriedForce:
 
     @classmethod
     def of(cls, numbers: Sequence[float]) -> TriedForce:
-        """Makes a push of four numbers, in the order of its fields.
+        """Make a push of four numbers, in the order of its fields.
 
         Raises
         ------
@@ -132,7 +132,7 @@ class LivePicture:
     def of(
         cls, result: Result, index: int, usual: float, asked: Mapping[str, Any] | None = None
     ) -> LivePicture:
-        """The picture of the fixture of an index.
+        """Return the picture of the fixture of an index.
 
         Parameters
         ----------
@@ -175,7 +175,7 @@ class LivePicture:
         return float(x), float(y)
 
     def svg(self) -> str:
-        """The picture, with its groups as in ``presenting.moving_picture``."""
+        """Return the picture, with its groups as in ``presenting.moving_picture``."""
         bench, view = self.bench, self.view
         scene = Scene.page(PAGE, fixture_title(self.fixture))
         draw_ground(scene, bench, view)
@@ -189,7 +189,7 @@ class LivePicture:
         return scene.svg()
 
     def draw_set(self, scene: Scene, chosen: ChosenSupports, ways: Mapping[str, Point | None]) -> None:
-        """Draws a set of three with the names of its holes; each moves with the jaw that it stands on.
+        """Draw a set of three with the names of its holes; each moves with the jaw that it stands on.
 
         ``ways`` has by its name in which way each carrier clamps; None for those that stand still.
         """
@@ -203,7 +203,7 @@ class LivePicture:
         draw_tip(scene.group("stands"), view(planned.clamp), size_of(planned.tip_radius, view))
 
     def write_name(self, scene: Scene, number: int) -> None:
-        """Writes the hole of a peg beside it, away from the part and within the page.
+        """Write the hole of a peg beside it, away from the part and within the page.
 
         That of a clamp stands beside its body, which is behind the tip.
         """
@@ -217,13 +217,13 @@ class LivePicture:
         scene.text(at, peg.hole, NAME, "middle", bold=True, halo=3.0)
 
     def arrow(self, push: TriedForce) -> list[float]:
-        """The arrow of a push on the page: x and y of the point it acts at, and of its tip."""
+        """Return the arrow of a push on the page: x and y of the point it acts at, and of its tip."""
         (x, y), length = self.view(self.fixture.pose.apply(push.x, push.y)), push.size * USUAL / self.usual
         angle = radians(push.direction + self.fixture.pose.theta_deg)
         return [float(x), float(y), float(x + length * cos(angle)), float(y - length * sin(angle))]
 
     def push(self, arrow: Sequence[float]) -> TriedForce:
-        """The push of an arrow on the page, in whole newtons; of size 0 for one that is too short.
+        """Return the push of an arrow on the page, in whole newtons; of size 0 for one that is too short.
 
         Raises
         ------
@@ -318,7 +318,7 @@ class LivePicture:
         return {"center": list(self.center), "keyframes": list(keyframes) or plain, "words": words}
 
     def keyframe(self, pose: Pose, opened: float) -> list[float]:
-        """The keyframe in which the part lies in a pose and what moves is open by so many mm."""
+        """Return the keyframe in which the part lies in a pose and what moves is open by so many mm."""
         x, y = self.view(pose.apply(*self.result.workpiece.center))
         turned = (pose.theta_deg - self.fixture.pose.theta_deg + 180.0) % 360.0 - 180.0
         numbers = turned, x - self.center[0], y - self.center[1], opened
@@ -326,7 +326,7 @@ class LivePicture:
 
 
 def set_words(found: Supports) -> str:
-    """The best set of three and the clamp on top in a sentence, or why there is none."""
+    """Return the best set of three and the clamp on top in a sentence, or why there is none."""
     if not found.triples:
         return why_no_set(found, MILLIMETRE)
     chosen, number = ChosenSupports.of(found), MILLIMETRE.number

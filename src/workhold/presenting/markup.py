@@ -54,7 +54,7 @@ def paragraph(*pieces: str) -> Markup:
 
 
 def table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Markup:
-    """A table; a column whose heading begins with ``>`` is flush right, all others are flush left.
+    """Return a table; a column whose heading begins with ``>`` is flush right, all others are flush left.
 
     Which way is said twice: some sanitizers take away styles, and some pages have styles that win.
     """
@@ -73,7 +73,7 @@ def table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Markup:
 
 
 def image(svg: str, words: str, width: int, shrinks: bool = True) -> Markup:
-    """A picture, ``width`` pixels wide, as an image; ``words`` stand where it cannot be shown.
+    """Return a picture, ``width`` pixels wide, as an image; ``words`` stand where it cannot be shown.
 
     A picture of more than :data:`MOST_SVG` bytes, or :data:`MOST_PAGE` of a page, becomes one of pixels.
     ``shrinks`` says whether it gets narrower in a narrow page; in a table it should not, as its column would.
@@ -110,7 +110,7 @@ def rounded(match: re.Match[str]) -> str:
 
 
 def hoist(group: ET.Element) -> None:
-    """Gives a group what all of its children say of themselves, where they inherit it."""
+    """Give a group what all of its children say of themselves, where they inherit it."""
     if len(group) < 2:
         return
     for name in INHERITED:

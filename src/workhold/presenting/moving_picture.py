@@ -27,7 +27,7 @@ __all__ = ["draw_ground", "draw_peg", "drawn_back", "moving_group", "ways_of"]
 
 
 def moving_group(scene: Scene, view: View, clamping: Point | None, **attributes: str) -> Scene:
-    """Adds a group for what stands still, or for what clamps in a direction of the plan."""
+    """Add a group for what stands still, or for what clamps in a direction of the plan."""
     if clamping is None:
         return scene.group("stands", None, **attributes)
     (x, y), scale = clamping, view.scale
@@ -35,13 +35,13 @@ def moving_group(scene: Scene, view: View, clamping: Point | None, **attributes:
 
 
 def ways_of(bench: Bench) -> dict[str, Point | None]:
-    """The direction in which each carrier clamps, by its name; None for those that stand still."""
+    """Return the direction in which each carrier clamps, by its name; None for those that stand still."""
     ways = {one.carrier.name: one.clamping for one in bench.shown.carriers}
     return ways | {one.carrier.name: one.clamping for one in bench.shown.clamps}
 
 
 def drawn_back(clamp: ShownClamp) -> float | None:
-    """How far in mm a clamp can be drawn back from where it clamps; None where only its line is known.
+    """Return how far in mm a clamp can be drawn back from where it clamps; None where only its line is known.
 
     Below 0 for a clamp that does not reach its tip from its hole.
     """
@@ -53,7 +53,7 @@ def drawn_back(clamp: ShownClamp) -> float | None:
 
 
 def draw_ground(scene: Scene, bench: Bench, view: View) -> None:
-    """Draws plates, walls, clamps and the part, whose group has the class ``part``."""
+    """Draw plates, walls, clamps and the part, whose group has the class ``part``."""
     for carrier in bench.shown.carriers:
         group = moving_group(scene, view, carrier.clamping)
         draw_plate(group, carrier, view, 5.0)

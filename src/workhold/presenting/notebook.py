@@ -75,7 +75,7 @@ MOST_ROWS, SMALL = 6, 200
 
 
 def result_html(result: Result) -> str:
-    """Shows a result, see :class:`workhold.Result`: its first entries with their pictures and figures."""
+    """Show a result, see :class:`workhold.Result`: its first entries with their pictures and figures."""
     if not len(result):
         return none_html(result)
     shown = entries(result)
@@ -163,7 +163,7 @@ def thumbnail(fixture: Fixture) -> Markup:
 
 
 def fixture_html(fixture: Fixture) -> str | None:
-    """Shows a fixture: its picture to set it up from and its figures; None for one of no result."""
+    """Show a fixture: its picture to set it up from and its figures; None for one of no result."""
     if fixture.listed is None:
         return None
     words = f"{fixture_title(fixture)}: {fixture_words(fixture, fixture.listing.result.toolkit)}"
@@ -171,7 +171,7 @@ def fixture_html(fixture: Fixture) -> str | None:
 
 
 def workpiece_html(workpiece: Workpiece) -> str:
-    """Shows a workpiece: the part with its faces numbered."""
+    """Show a workpiece: the part with its faces numbered."""
     return paragraph(image(workpiece_picture(workpiece), repr(workpiece).strip("<>"), LARGE))
 
 
@@ -197,7 +197,7 @@ PAGE, RIM = (360.0, 270.0), 8.0
 
 
 def supports_html(supports: Supports) -> str:
-    """Shows the supports of a fixture: the best sets of three with the clamp on top, or why there is none."""
+    """Show the supports of a fixture: the best sets of three with the clamp on top, or why there is none."""
     title = paragraph(Markup(f"<b>{safe(sentence(supports.words))}</b>"))
     if not supports.triples:
         return "\n".join((title, paragraph(why_no_set(supports, MILLIMETRE))))
@@ -231,7 +231,7 @@ def supports_picture(supports: Supports, rank: int) -> Markup:
 
 
 def seating_html(seating: Seating) -> str:
-    """Shows a seating: its figures, and where else closing can come to rest."""
+    """Show a seating: its figures, and where else closing can come to rest."""
     unit, known = MILLIMETRE, seating.figures
     figures = [
         (one.words, figure_text(one, known[one.key], unit), unit_of(one, unit), one.meaning)
@@ -316,7 +316,7 @@ class WhyNone:
 
 
 def why_none(result: Result) -> WhyNone:
-    """Explains a result without fixtures, see :meth:`workhold.Result.why_none`."""
+    """Explain a result without fixtures, see :meth:`workhold.Result.why_none`."""
     from workhold.search.explaining import explain
 
     if len(result):
@@ -357,7 +357,7 @@ def result_widget(
     jaw: str | float,
     supports: Mapping[str, Any] | None,
 ) -> FixtureWidget | StillPicture:
-    """Makes the widget of a result, see :meth:`workhold.Result.widget`."""
+    """Make the widget of a result, see :meth:`workhold.Result.widget`."""
     if find_spec("anywidget") is None:
         if not 1 <= rank <= len(result):
             raise InputError(f"there is no fixture {rank}: {len(result)} are listed.")

@@ -58,7 +58,7 @@ class Picture(str):
         return image(self, "A picture of workhold", LARGE)
 
     def save(self, path: str | Path, *, overwrite: bool = False) -> Picture:
-        """Writes the picture and returns it.
+        """Write the picture and returns it.
 
         Parameters
         ----------
@@ -88,7 +88,7 @@ def workpiece_picture(
     unit: str = "mm",
     overwrite: bool = False,
 ) -> Picture:
-    """Draws the workpiece with its faces numbered, see :meth:`workhold.Workpiece.draw`."""
+    """Draw the workpiece with its faces numbered, see :meth:`workhold.Workpiece.draw`."""
     return saved(draw_features(workpiece, peg_radius=peg_radius, unit=unit_named(unit)), path, overwrite)
 
 
@@ -100,7 +100,7 @@ def fixture_picture(
     unit: str = "mm",
     overwrite: bool = False,
 ) -> Picture:
-    """Draws the fixture to set up from, see :meth:`workhold.Fixture.draw`."""
+    """Draw the fixture to set up from, see :meth:`workhold.Fixture.draw`."""
     listed = fixture.listing
     words = f"Fixture {listed.rank} of {listed.count}" if title is None else title
     result, planned = listed.result, planned_path(listed.result, listed.row)
@@ -113,7 +113,7 @@ def fixture_picture(
 def result_picture(
     result: Result, path: str | Path | None = None, *, unit: str = "mm", overwrite: bool = False
 ) -> Picture:
-    """Draws thumbnails of the best fixtures, see :meth:`workhold.Result.draw`."""
+    """Draw thumbnails of the best fixtures, see :meth:`workhold.Result.draw`."""
     if not len(result):
         raise InputError(" ".join(("there is no fixture to draw.", *map(str, result.reasons))))
     return saved(best_at_a_glance(result, entries(result), unit_named(unit)), path, overwrite)
@@ -140,7 +140,7 @@ def save_sheet(
     overwrite: bool = False,
     **asked: Any,
 ) -> None:
-    """Writes the setup sheet or the set-up of a fixture, see :meth:`workhold.Fixture.save_sheet`."""
+    """Write the setup sheet or the set-up of a fixture, see :meth:`workhold.Fixture.save_sheet`."""
     from workhold.statics.loads import jaw_stiffness
 
     listed, ending = fixture.listing, Path(path).suffix.lower()
@@ -172,7 +172,7 @@ def save_sheet(
 
 
 def refuse_other_result(result_file: str | Path, fixture: Fixture) -> None:
-    """Refuses a file whose hash would stand on the sheet of a fixture that is not in it."""
+    """Refuse a file whose hash would stand on the sheet of a fixture that is not in it."""
     from workhold.files.result.one_fixture import read_one
 
     listed = fixture.listing
@@ -187,7 +187,7 @@ def refuse_other_result(result_file: str | Path, fixture: Fixture) -> None:
 
 
 def is_set_up_alike(one: Fixture, other: Fixture) -> bool:
-    """Whether two fixtures are one, as far as a file rounds its numbers."""
+    """Return whether two fixtures are one, as far as a file rounds its numbers."""
     pegs = [[(peg.hole, peg.touched) for peg in fixture.pegs] for fixture in (one, other)]
     numbers = [
         (fixture.pose.theta_deg, fixture.pose.x, fixture.pose.y, fixture.travel) for fixture in (one, other)
@@ -202,7 +202,7 @@ def is_set_up_alike(one: Fixture, other: Fixture) -> bool:
 def write_paper(
     path: str | Path, result: Result, rank: int, result_file: str | Path | None, settings: dict[str, Any]
 ) -> None:
-    """Writes a setup sheet.
+    """Write a setup sheet.
 
     Parameters
     ----------
@@ -229,7 +229,7 @@ def write_paper(
 
 
 def pages_bytes(pages: Sequence[str], ending: str, day: date) -> bytes:
-    """Makes a file of pages in SVG: a PDF of a day, or one SVG or PNG with the pages below each other.
+    """Make a file of pages in SVG: a PDF of a day, or one SVG or PNG with the pages below each other.
 
     Parameters
     ----------
@@ -244,7 +244,7 @@ def pages_bytes(pages: Sequence[str], ending: str, day: date) -> bytes:
 
 
 def hash_of(result_file: str | Path | None) -> str:
-    """Returns the SHA-256 of a file in hexadecimal; empty where there is none."""
+    """Return the SHA-256 of a file in hexadecimal; empty where there is none."""
     if result_file is None:
         return ""
     try:
@@ -255,7 +255,7 @@ def hash_of(result_file: str | Path | None) -> str:
 
 
 def write_model(path: str | Path, result: Result, rank: int, settings: dict[str, Any]) -> None:
-    """Writes the set-up for a CAM system, or the list of its pins.
+    """Write the set-up for a CAM system, or the list of its pins.
 
     Parameters
     ----------
@@ -273,7 +273,7 @@ def write_model(path: str | Path, result: Result, rank: int, settings: dict[str,
 
 
 def model_bytes(fixture: Fixture, result: Result, ending: str, settings: dict[str, Any]) -> bytes:
-    """Makes the file of a set-up for a CAM system, or of the list of its pins; see :func:`write_model`."""
+    """Make the file of a set-up for a CAM system, or of the list of its pins; see :func:`write_model`."""
     toolkit, unit = result.toolkit, settings["unit"]
     zero = part_zero(result.workpiece, settings["zero"], unit)
     at, clearance, chosen = settings["at"], settings["clearance"], settings.get("supports")

@@ -23,7 +23,7 @@ __all__ = ["FixtureWidget"]
 
 
 def text_of(name: str) -> str:
-    """A file that goes to the browser."""
+    """Return a file that goes to the browser."""
     return resources.files("workhold.presenting").joinpath("static", name).read_text(encoding="utf-8")
 
 
@@ -94,7 +94,7 @@ class FixtureWidget(anywidget.AnyWidget):  # type: ignore[misc]
         return min(max(int(proposal["value"]), 1), len(self.result))
 
     def show(self, _: Any = None) -> None:
-        """Draws the fixture of the rank, with the force that is tried out."""
+        """Draw the fixture of the rank, with the force that is tried out."""
         self.live = LivePicture.of(self.result, self.rank - 1, self.usual, self.supports)
         with self.hold_sync():
             self.picture = {
@@ -107,7 +107,7 @@ class FixtureWidget(anywidget.AnyWidget):  # type: ignore[misc]
             self.push()
 
     def take(self, change: Any) -> None:
-        """Takes the arrow that was dragged in the browser for the force."""
+        """Take the arrow that was dragged in the browser for the force."""
         *arrow, number = change["new"]
         try:
             pushed = self.live.push(arrow)

@@ -52,14 +52,14 @@ DOT = 5.0
 
 
 def kept(scene: Scene, at: Point, axes: str = "xy", **attributes: str) -> Scene:
-    """Adds a group that keeps its size about a page point when the picture is zoomed."""
+    """Add a group that keeps its size about a page point when the picture is zoomed."""
     return scene.group("kept", None, data_at=f"{number(at[0])} {number(at[1])}", data_axes=axes, **attributes)
 
 
 def draw_zoomed(
     bench: Bench, title: str, size: tuple[float, float], placed: Sequence[float] = (0.0, 0.0)
 ) -> str:
-    """Draws a fixture as it stands, for a frame of a size in page units.
+    """Draw a fixture as it stands, for a frame of a size in page units.
 
     ``data-model-to-page`` of the picture is the map from where the fixture is listed, from which it stands on by
     ``placed`` mm. ``data-extent`` is in mm of that frame, and ``data-rim`` in page units.
@@ -118,7 +118,7 @@ def is_reached(clamp: ShownClamp) -> bool:
 
 
 def draw_forces(scene: Scene, bench: Bench, view: View) -> None:
-    """Draws the force of each contact, which keeps its size."""
+    """Draw the force of each contact, which keeps its size."""
     forces = scene.group("forces")
     for index in range(len(bench.fixture.pegs)):
         tail, tip = force_arrow(bench, index, view, LONGEST_ARROW)
@@ -244,7 +244,7 @@ SMALL_PEG = 2.4
 
 
 def draw_small(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> str:
-    """Draws the part with the faces that are touched and the pegs, to choose a fixture by; SVG text."""
+    """Draw the part with the faces that are touched and the pegs, to choose a fixture by; SVG text."""
     pose = fixture.pose
     loops = [[pose.carry(segment) for segment in loop] for loop in workpiece.loop_segments]
     radii = [toolkit.carrier(peg.carrier).peg_radius for peg in fixture.pegs]

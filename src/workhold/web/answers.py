@@ -48,7 +48,7 @@ PLACE = re.compile(r"\((-?\d[\d.eE+-]*), (-?\d[\d.eE+-]*)\)")
 
 
 def place_in(sentence: str) -> dict[str, float] | None:
-    """Finds the first place (x, y) that a sentence names, if any.
+    """Find the first place (x, y) that a sentence names, if any.
 
     >>> place_in("loop 0 crosses itself at (1.5, -2): mend it.")
     {'x': 1.5, 'y': -2.0}
@@ -89,13 +89,13 @@ def face_numbers(workpiece: Workpiece) -> dict[int, int]:
 
 
 def own_numbers(workpiece: Workpiece, role: str) -> list[int]:
-    """Returns the faces of the segments of what carriers of a role meet, numbered on."""
+    """Return the faces of the segments of what carriers of a role meet, numbered on."""
     outline, first = workpiece.outline_of(role)
     return [first + face for _, face in sorted(face_numbers(outline).items())]
 
 
 def own_answer(workpiece: Workpiece) -> dict[str, Any]:
-    """Describes what carriers with heights of their own meet of a part, by role, as a request takes it."""
+    """Describe what carriers with heights of their own meet of a part, by role, as a request takes it."""
     entries = outlines_entry(workpiece).get("outlines", {})
     return {
         role: {"heights": [one.solid.low, one.solid.peg_height], **entries[role]}
@@ -116,7 +116,7 @@ def shape(segment: Segment, bulge: float) -> dict[str, Any]:
 
 
 def face_answer(number: int, segment: Segment) -> dict[str, Any]:
-    """Describes a face: its size is the length of a line or the radius of an arc; a hollow arc is concave."""
+    """Describe a face: its size is the length of a line or the radius of an arc; a hollow arc is concave."""
     if isinstance(segment, Arc):
         return {"number": number, "kind": "arc", "size": segment.radius, "concave": segment.sign < 0}
     return {"number": number, "kind": "line", "size": segment.length, "concave": False}
@@ -134,7 +134,7 @@ def rows_answer(
     ranks: Iterable[int],
     holds: Sequence[JawHold] = (),
 ) -> list[dict[str, Any]]:
-    """Describes fixtures as rows; ``ranks`` are those of the table's fixtures, and ``holds`` how flat jaws hold them."""
+    """Describe fixtures as rows; ``ranks`` are those of the table's fixtures, and ``holds`` how flat jaws hold them."""
     longest = no_edge(workpiece, toolkit)
     fixtures = [fixture_at(table, toolkit, number, workpiece) for number in range(len(table))]
     for number, hold in enumerate(holds):
@@ -146,12 +146,12 @@ def rows_answer(
 
 
 def arrangements_answer(toolkit: Toolkit) -> list[dict[str, str]]:
-    """Lists the arrangements of a toolkit's fixtures: the title of each on the page, and its description."""
+    """List the arrangements of a toolkit's fixtures: the title of each on the page, and its description."""
     return [{"title": one.title, "words": arrangement_words(one, toolkit)} for one in toolkit.arrangements]
 
 
 def row_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, longest: float) -> dict[str, Any]:
-    """Describes a fixture as a row of a list, without its rank, as it stands in the middle of its plate.
+    """Describe a fixture as a row of a list, without its rank, as it stands in the middle of its plate.
 
     Where ``edgeless``, its edge distance stands for none, which it does when it is ``longest``.
     """
@@ -172,7 +172,7 @@ def row_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, longest
 
 
 def hold_answer(fixture: Fixture) -> dict[str, Any]:
-    """Describes how flat jaws hold a part, as a result file does, with what to do and to beware of in words."""
+    """Describe how flat jaws hold a part, as a result file does, with what to do and to beware of in words."""
     hold = fixture.hold
     assert hold is not None
     entry = hold_entry(fixture)
@@ -197,7 +197,7 @@ def row_title(fixture: Fixture, toolkit: Toolkit) -> str:
 def fixture_answer(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, size: tuple[float, float] = USUAL_SIZE
 ) -> dict[str, Any]:
-    """Describes a fixture, without its rank: its row, its geometry, and a picture of a size in page units.
+    """Describe a fixture, without its rank: its row, its geometry, and a picture of a size in page units.
 
     All places are in the frame of the fixture as it is listed; it stands on by ``placed``. A carrier, which may
     be a wall or a clamp, has the numbers of its pegs, their radius, and the direction in which it clamps.
@@ -233,7 +233,7 @@ def fixture_answer(
 
 
 def carriers_answer(fixture: Fixture, seen: Shown) -> list[dict[str, Any]]:
-    """Lists plates, then walls, then clamps."""
+    """List plates, then walls, then clamps."""
     numbers = defaultdict[str, list[int]](list)
     for number, peg in enumerate(fixture.pegs):
         numbers[peg.carrier].append(number)
@@ -249,7 +249,7 @@ def carriers_answer(fixture: Fixture, seen: Shown) -> list[dict[str, Any]]:
 
 
 def proof_answer(proof: Proof) -> dict[str, Any]:
-    """Describes the proof of a search, with how many candidates are undecided and the first of them."""
+    """Describe the proof of a search, with how many candidates are undecided and the first of them."""
     entry = proof_entry(proof)
     return {
         **entry,

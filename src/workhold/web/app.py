@@ -46,7 +46,7 @@ def create_app(
     token: str | None = None,
     origins: Origins | None = None,
 ) -> FastAPI:
-    """Makes the application.
+    """Make the application.
 
     Parameters
     ----------
@@ -92,13 +92,13 @@ def create_app(
 
 
 async def openapi(request: Request) -> dict[str, Any]:
-    """Sends the description of the interface."""
+    """Send the description of the interface."""
     server: FastAPI = request.app
     return server.openapi()
 
 
 async def page(request: Request) -> Response:
-    """Sends the page."""
+    """Send the page."""
     return await static_file(request, "index.html")
 
 
@@ -108,7 +108,7 @@ async def method_page(request: Request) -> Response:
 
 
 async def static_file(request: Request, path: str) -> Response:
-    """Sends a file of the page."""
+    """Send a file of the page."""
     file = state_of(request).files.get(path)
     if file is None:
         raise HTTPException(404, "There is no such page.")

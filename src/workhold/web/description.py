@@ -42,7 +42,7 @@ FAMILY_NAME = "c3Rk8tWq5bXo1nZ7yVh0Pw"
 
 
 def described(app: FastAPI) -> dict[str, Any]:
-    """Makes the description, once."""
+    """Make the description, once."""
     if app.openapi_schema is None:
         schema = get_openapi(
             title=app.title,

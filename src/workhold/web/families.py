@@ -105,7 +105,7 @@ class FamilyFound:
         }
 
     def plan(self, setups: int | None) -> Plan:
-        """Returns the plan with at most so many set-ups; None is the fewest."""
+        """Return the plan with at most so many set-ups; None is the fewest."""
         fitting = [plan for plan in self.plans if setups is None or plan.point.setups <= setups]
         if not fitting:
             raise InputError("there is no plan with so few set-ups: ask for more.")
@@ -113,7 +113,7 @@ class FamilyFound:
 
 
 def find_family(payload: AskedQueries, order: Order) -> FamilyFound:
-    """Finds a family; reports are ("progress", fraction, found)."""
+    """Find a family; reports are ("progress", fraction, found)."""
     from workhold.family.family import Asked, family_of, family_text
 
     def progress(fraction: float, found: int) -> None:

@@ -83,7 +83,7 @@ class PaperForm(AddressForm):
     revision: Revision = None
 
     def question(self) -> SheetQuestion:
-        """What stands on the sheet, in mm; its day is today where none is asked for."""
+        """Return what stands on the sheet, in mm; its day is today where none is asked for."""
         rows, unit = declarations_of(SheetQuestion), unit_named(self.unit)
         given = {
             row.name: in_mm(row, value, unit)
@@ -99,7 +99,7 @@ def in_mm(row: Declaration, value: Any, unit: Unit) -> Any:
 
 
 def ranked(result: Result, rank: int) -> int:
-    """The index of a fixture; answers 404 when there is none of that rank."""
+    """Return the index of a fixture; answers 404 when there is none of that rank."""
     if rank > len(result):
         raise HTTPException(404, f"There is no fixture {rank}: {len(result)} are listed.")
     return rank - 1
@@ -109,7 +109,7 @@ def ranked(result: Result, rank: int) -> int:
 async def seated(
     request: Request, name: str, rank: int, revision: int | None
 ) -> tuple[Held, Seating | ByHand]:
-    """Finds the seating of a fixture, or how it is put into two clamps, once, and keeps it with the job."""
+    """Find the seating of a fixture, or how it is put into two clamps, once, and keeps it with the job."""
     job = found_job(request, name)
     result = result_of_job(job, revision)
     held = result[ranked(result, rank)], result.workpiece, result.toolkit
@@ -246,7 +246,7 @@ async def warnings(
 
 
 def before_of(request: Request, form: FirstSideForm | None) -> Before | None:
-    """The set-up of the other side before a paper's, and what it cuts; None where there is none."""
+    """Return the set-up of the other side before a paper's, and what it cuts; None where there is none."""
     if form is None:
         return None
     result = result_of_job(found_job(request, form.job))

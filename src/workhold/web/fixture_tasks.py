@@ -104,7 +104,7 @@ class PaperOrder:
         return self.result[self.index]
 
     def chosen_supports(self) -> ChosenSupports | None:
-        """Finds the supports asked for and chooses a set of them; None where none are asked for,
+        """Find the supports asked for and chooses a set of them; None where none are asked for,
         or none hold the part.
         """
         if self.supports is None:
@@ -114,12 +114,12 @@ class PaperOrder:
 
 
 def has_step() -> bool:
-    """Whether STEP files can be read and written."""
+    """Return whether STEP files can be read and written."""
     return find_spec("OCP") is not None
 
 
 def make_paper(payload: PaperOrder, order: Order) -> tuple[bytes, str | None]:
-    """Makes the bytes of what was ordered, and the hash of the result's file if it was needed."""
+    """Make the bytes of what was ordered, and the hash of the result's file if it was needed."""
     return KINDS[payload.kind][1](payload)
 
 
@@ -252,7 +252,7 @@ def lengths_of(held: Held, unit: str) -> LengthUnit:
 
 
 def find_seating(held: Held, order: Order) -> Seating | ByHand:
-    """Finds the seating of a fixture where the result has none; with two clamps how the part is put in."""
+    """Find the seating of a fixture where the result has none; with two clamps how the part is put in."""
     from workhold.seating.solver import Solver
 
     fixture, workpiece, toolkit = held
@@ -263,7 +263,7 @@ def find_seating(held: Held, order: Order) -> Seating | ByHand:
 
 
 def seating_answer(held: Held, seating: Seating | ByHand, unit: str) -> dict[str, Any]:
-    """Describes a seating by the fields of a result file and their meaning; with two clamps by ``by_hand``
+    """Describe a seating by the fields of a result file and their meaning; with two clamps by ``by_hand``
     alone.
 
     ``own`` is the place of the fixture's own seat in ``seats``. ``nearest`` are the places of the wrong ones
@@ -293,7 +293,7 @@ def seating_answer(held: Held, seating: Seating | ByHand, unit: str) -> dict[str
 
 
 def close(payload: ClosingOrder, order: Order) -> dict[str, Any] | None:
-    """Simulates a closing: its way, its ending and what is read then; None once it was cancelled."""
+    """Simulate a closing: its way, its ending and what is read then; None once it was cancelled."""
     from workhold.seating.closing_simulation import simulate_closing
     from workhold.seating.solver import Solver
 

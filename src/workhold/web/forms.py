@@ -74,7 +74,7 @@ class ToolkitRequest(Form):
 
 
 def form_again(is_named: bool, said: Mapping[str, Any]) -> ToolkitRequest:
-    """The form of a toolkit as another process had it."""
+    """Return the form of a toolkit as another process had it."""
     forms = NAMED_FORMS if is_named else FORMS
     form: ToolkitRequest = forms[table_of(said["kind"]).noun](**said)
     return form
@@ -174,7 +174,7 @@ SeveralLoads = TypeAdapter(Annotated[list[LoadForm], Field(max_length=MOST_LOADS
 
 
 def asked_loads(text: str | None) -> tuple[Load, ...] | None:
-    """The loads of an address, JSON as in a search; None where none are given."""
+    """Return the loads of an address, JSON as in a search; None where none are given."""
     if text is None:
         return None
     return tuple(form.load() for form in of_address(SeveralLoads, "loads", text))
@@ -228,7 +228,7 @@ class JobForm(SearchForm):
     every: bool = Field(default=False, description="find all fixtures, even where there are over 200,000")
 
     def queries(self, most_segments: int) -> tuple[tuple[str, Query], ...]:
-        """The query, which has no name."""
+        """Return the query, which has no name."""
         query = self.query(self.toolkit.toolkit(), most_segments)
         return (("", evolve(query, **given_in(self, OF_ONE))),)
 
@@ -239,7 +239,7 @@ class ExploreForm(SearchForm):
     toolkits: list[NamedHeldIn] | None = Field(default=None, min_length=1, max_length=MOST_TOOLKITS)
 
     def queries(self, most_segments: int) -> tuple[tuple[str, Query], ...]:
-        """The queries, one for each toolkit, and what the toolkits are called."""
+        """Return the queries, one for each toolkit, and what the toolkits are called."""
         from workhold.files.toolkit_file import preset, preset_names
 
         if self.toolkits is not None:

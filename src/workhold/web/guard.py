@@ -79,7 +79,7 @@ class ServerLimits:
 
 
 def usual_memory(searches: int) -> int:
-    """Returns the bytes of address space for each of so many searches at the same time.
+    """Return the bytes of address space for each of so many searches at the same time.
 
     It is 4 GiB, or less where the machine has less.
     """
@@ -129,7 +129,7 @@ class Hosts:
     any_address: bool = False
 
     def knows(self, host: str) -> bool:
-        """Whether a Host header is one of them.
+        """Return whether a Host header is one of them.
 
         >>> Hosts().knows("localhost:8000"), Hosts().knows("evil.example"), Hosts().knows("[::1]:80")
         (True, False, True)
@@ -145,7 +145,7 @@ class Hosts:
 
 
 def host_name(host: str) -> str:
-    """Returns a host without its port, in small letters."""
+    """Return a host without its port, in small letters."""
     if host.startswith("["):
         return host[1:].partition("]")[0].lower()
     return host.partition(":")[0].lower()
@@ -223,7 +223,7 @@ class Guard:
             self.arriving += Counter()
 
     def refusal(self, scope: Scope, headers: dict[str, str]) -> tuple[int, str] | None:
-        """Returns status and sentence for a request that is not let through."""
+        """Return status and sentence for a request that is not let through."""
         host = headers.get("host", "")
         if not self.hosts.knows(host):
             return 400, "This server is not known by that name: use the address that it printed."
@@ -248,7 +248,7 @@ class Guard:
 
 
 def brings(token: str, headers: dict[str, str]) -> bool:
-    """Whether the headers of a request hold the secret, as a cookie or as a bearer's token."""
+    """Return whether the headers of a request hold the secret, as a cookie or as a bearer's token."""
     cookies = (part.strip().partition("=") for part in headers.get("cookie", "").split(";"))
     offered = [value for name, _, value in cookies if name == COOKIE]
     kind, _, value = headers.get("authorization", "").partition(" ")
@@ -293,7 +293,7 @@ class Body:
     end: float | None = None
 
     async def __call__(self) -> Message:
-        """Returns the next piece; once all is there, what comes after it.
+        """Return the next piece; once all is there, what comes after it.
 
         Raises HTTPException 413 for too much, 408 when it takes too long.
         """
@@ -319,7 +319,7 @@ def too_large(most: int) -> str:
 
 
 async def answer(send: Send, status: int, sentence: str) -> None:
-    """Sends an error in the form of the server's other errors."""
+    """Send an error in the form of the server's other errors."""
     body = json.dumps({"error": sentence, "place": None}).encode()
     headers = [(b"content-type", b"application/json"), (b"content-length", str(len(body)).encode())]
     if status in (408, 413):

@@ -37,7 +37,7 @@ EMPTY = FixtureTable.empty()
 
 
 def found_job(request: Request, name: str) -> ServerJob:
-    """Finds the job of a name; answers 404 when there is none."""
+    """Find the job of a name; answers 404 when there is none."""
     job = state_of(request).jobs.get(name)
     if job is None:
         raise HTTPException(404, "There is no such search (any more): search again.")
@@ -45,7 +45,7 @@ def found_job(request: Request, name: str) -> ServerJob:
 
 
 def result_of_job(job: ServerJob, revision: int | None = None, when_over: bool = False) -> Result:
-    """Returns the result of a job.
+    """Return the result of a job.
 
     ``revision`` is the one that the caller has seen, None for any; ``when_over`` says whether only the whole
     result will do. Answers 409 when there is nothing (yet), or the fixtures have changed.
@@ -86,7 +86,7 @@ async def begin(request: Request, form: JobForm | ExploreForm | FamilyForm, when
 
 
 def base_of(request: Request) -> str:
-    """Returns the beginning of the addresses of the version that was asked."""
+    """Return the beginning of the addresses of the version that was asked."""
     return next(base for base in BASES if request.scope["path"].startswith(f"{base}/"))
 
 
@@ -170,7 +170,7 @@ async def events(
 
 
 def seen_version(text: str | None) -> int | None:
-    """Reads the version of a job in the id of an event; None for what was never one.
+    """Read the version of a job in the id of an event; None for what was never one.
 
     >>> seen_version("12"), seen_version("-1"), seen_version(None)
     (12, None, None)
@@ -179,7 +179,7 @@ def seen_version(text: str | None) -> int | None:
 
 
 async def stream(server: ServerState, job: ServerJob, sent: int | None) -> AsyncIterator[str]:
-    """Yields the events of a job, but for the one that was sent before."""
+    """Yield the events of a job, but for the one that was sent before."""
     watcher = asyncio.Event()
     job.watchers.add(watcher)
     server.streams += 1
@@ -243,7 +243,7 @@ async def fixtures(
 
 
 def caught_in(result: Result, rank: int) -> dict[str, float | None] | None:
-    """Returns from how far open in mm a fixture catches the part; None where that is not known.
+    """Return from how far open in mm a fixture catches the part; None where that is not known.
 
     The opening is null where the part never gets away.
     """
@@ -299,7 +299,7 @@ def download(
 
 
 def attachment(name: str, ending: str) -> str:
-    """Makes the header that names a file to save."""
+    """Make the header that names a file to save."""
     plain = (
         "".join(c if c.isascii() and (c.isalnum() or c in "-_.") else "_" for c in name)[:80].strip(".")
         or "part"
@@ -313,7 +313,7 @@ Setups = Annotated[
 
 
 def family_of_job(request: Request, name: str) -> FamilyFound:
-    """Returns the family that a job has found.
+    """Return the family that a job has found.
 
     Raises HTTPException 409 when it is of something else, or there is nothing (yet).
     """

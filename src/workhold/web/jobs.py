@@ -120,13 +120,13 @@ class ServerJob:
         return kept + sum(int(getattr(table, a.name).nbytes) for a in table.__attrs_attrs__)
 
     def changed(self) -> None:
-        """Wakes those who watch the job."""
+        """Wake those who watch the job."""
         self.version += 1
         for watcher in self.watchers:
             watcher.set()
 
     def answer(self) -> dict[str, Any]:
-        """Describes the job, without its request."""
+        """Describe the job, without its request."""
         result, over = self.result, self.is_over
         end = self.ended if self.ended is not None else monotonic()
         complete = self.state == "done" and (
@@ -155,13 +155,13 @@ class ServerJob:
         }
 
     def keep_seating(self, key: tuple[int, int], seating: Seating | ByHand) -> None:
-        """Keeps the seating of a fixture, by revision and rank, and forgets the oldest of too many."""
+        """Keep the seating of a fixture, by revision and rank, and forgets the oldest of too many."""
         while len(self.seatings) >= SEATINGS_KEPT:
             self.seatings.pop(next(iter(self.seatings)))
         self.seatings[key] = seating
 
     def chosen(self, selection: Selection, result: Result) -> Entries:
-        """Returns the entries of the result that a selection chooses; the last few selections are kept."""
+        """Return the entries of the result that a selection chooses; the last few selections are kept."""
         key = (self.revision, selection)
         if key not in self.orders:
             found = selection.entries(result)
@@ -187,14 +187,14 @@ class Jobs:
     freeing: asyncio.Task[None] | None = field(default=None, init=False)
 
     def get(self, name: str) -> ServerJob | None:
-        """Finds a job by its name and notes its use; None when there is none (any more)."""
+        """Find a job by its name and notes its use; None when there is none (any more)."""
         job = self.by_name.get(name)
         if job is not None:
             job.used = monotonic()
         return job
 
     def refuse_more(self, address: str) -> None:
-        """Refuses a further job.
+        """Refuse a further job.
 
         Raises TooManyError when this address has too many that are not over, BusyError when too many wait.
         """
@@ -214,7 +214,7 @@ class Jobs:
         sent_bytes: int = 0,
         stops_when_left: bool = False,
     ) -> ServerJob:
-        """Begins a job; ``sent_bytes`` is the length of its request."""
+        """Begin a job; ``sent_bytes`` is the length of its request."""
         self.refuse_more(address)
         weight = sent_bytes * BYTES_KEPT
         job = ServerJob(token_urlsafe(NAME_BYTES), request, asked, address, kind, weight, stops_when_left)
@@ -224,7 +224,7 @@ class Jobs:
         return job
 
     async def stop_when_left(self, job: ServerJob) -> None:
-        """Cancels a job once nobody has asked for it or followed it for as long as the limits say."""
+        """Cancel a job once nobody has asked for it or followed it for as long as the limits say."""
         while not job.is_over:
             away = 0.0 if job.watchers else monotonic() - job.used
             if away >= self.limits.left_seconds:
@@ -295,7 +295,7 @@ class Jobs:
         job.orders.clear()
 
     def heard(self, job: ServerJob, value: tuple[Any, ...]) -> None:
-        """Applies a report of a worker."""
+        """Apply a report of a worker."""
         match value:
             case ("progress", fraction, found):
                 job.fraction, job.found = max(float(fraction), job.fraction), max(int(found), job.best)
@@ -313,7 +313,7 @@ class Jobs:
         job.changed()
 
     async def explain(self, job: ServerJob) -> Explanation:
-        """Explains why a job found no fixture; this is worked out once.
+        """Explain why a job found no fixture; this is worked out once.
 
         Raises
         ------
@@ -326,7 +326,7 @@ class Jobs:
         return await asyncio.shield(job.explaining)
 
     def cancel(self, job: ServerJob) -> None:
-        """Asks a job to stop; what it has found is kept."""
+        """Ask a job to stop; what it has found is kept."""
         if job.task is not None and not job.is_over:
             self.pool.cancel(job.task)
 
@@ -343,7 +343,7 @@ class Jobs:
         self.free_memory()
 
     def make_room(self) -> None:
-        """Forgets jobs whose life is over, and the longest unused ones when too much is kept."""
+        """Forget jobs whose life is over, and the longest unused ones when too much is kept."""
         now = monotonic()
         for job in [job for job in self.by_name.values() if now - job.used > self.limits.life_seconds]:
             self.delete(job.name)
@@ -357,28 +357,28 @@ class Jobs:
             self.delete(job.name)
 
     def wake_watchers(self) -> None:
-        """Wakes those who watch any job, though nothing has changed."""
+        """Wake those who watch any job, though nothing has changed."""
         for job in self.by_name.values():
             for watcher in job.watchers:
                 watcher.set()
 
     def free_memory(self) -> None:
-        """Gives back what jobs took that are no more, soon and once for many of them."""
+        """Give back what jobs took that are no more, soon and once for many of them."""
         if self.freeing is None or self.freeing.done():
             self.freeing = asyncio.create_task(self.give_back())
 
     async def give_back(self) -> None:
-        """Gives freed memory back after a moment, in which other jobs may be deleted too."""
+        """Give freed memory back after a moment, in which other jobs may be deleted too."""
         await asyncio.sleep(FREE_AFTER)
         await asyncio.to_thread(return_memory)
 
     async def sweep(self) -> None:
-        """Forgets jobs at intervals, for ever."""
+        """Forget jobs at intervals, for ever."""
         while True:
             await asyncio.sleep(min(max(self.limits.life_seconds / 10, 0.1), 30.0))
             self.make_room()
 
 
 def explained(task: asyncio.Task[Explanation]) -> bool:
-    """Whether an explanation has ended without an error."""
+    """Return whether an explanation has ended without an error."""
     return not task.cancelled() and task.exception() is None

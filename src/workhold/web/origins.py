@@ -38,7 +38,7 @@ class Origins:
     names: Collection[str] = ()
 
     def allows(self, headers: Mapping[str, str]) -> bool:
-        """Whether a request comes from a page of one of them.
+        """Return whether a request comes from a page of one of them.
 
         >>> Origins(("https://shop.example",)).allows({"origin": "https://shop.example"})
         True
@@ -46,7 +46,7 @@ class Origins:
         return headers.get("origin", "").lower() in self.names
 
     def is_preflight(self, method: str, headers: Mapping[str, str]) -> bool:
-        """Whether a browser asks for a page of theirs what it may send."""
+        """Return whether a browser asks for a page of theirs what it may send."""
         return method == "OPTIONS" and "access-control-request-method" in headers and self.allows(headers)
 
     def preflight(self, headers: Mapping[str, str]) -> Headers:
@@ -62,7 +62,7 @@ class Origins:
         return may
 
     def shown(self, headers: Mapping[str, str]) -> Headers:
-        """Makes the headers with which a browser hands an answer to a page of theirs."""
+        """Make the headers with which a browser hands an answer to a page of theirs."""
         if not self.names:
             return []
         varies = (b"vary", b"Origin")
@@ -76,7 +76,7 @@ class Origins:
 
 
 def checked_origin(text: str) -> str:
-    """Writes an origin as browsers send it.
+    """Write an origin as browsers send it.
 
     Raises
     ------

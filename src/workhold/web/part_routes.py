@@ -114,7 +114,7 @@ OF_ALL_FILES = ("unit", "part_number", "layers", "join_tolerance")
 
 
 async def sent(request: Request, asked: Annotated[UploadForm, Query()]) -> Upload:
-    """Collects a file that is sent, and the options of how to read it."""
+    """Collect a file that is sent, and the options of how to read it."""
     content = await request.body()
     name = shown_name(request.headers.get("x-filename", ""))
     given = asked.model_dump(exclude_none=True, exclude={"heights"})
@@ -169,7 +169,7 @@ async def shape_part(
 
 
 def shown_name(header: str) -> str:
-    """Cleans a file's name for display: without folders and what cannot be printed."""
+    """Clean a file's name for display: without folders and what cannot be printed."""
     name = unquote(header, errors="replace").replace("\\", "/").rpartition("/")[2]
     return "".join(letter for letter in name if letter.isprintable())[-LONGEST_NAME:].strip()
 

@@ -79,7 +79,7 @@ class Upload:
 
 
 def check_part(payload: tuple[WorkpieceForm, int], order: Order) -> dict[str, Any]:
-    """Checks a part drawn by hand, and describes it for the page."""
+    """Check a part drawn by hand, and describes it for the page."""
     from workhold.web.answers import part_answer
 
     form, most_segments = payload
@@ -87,7 +87,7 @@ def check_part(payload: tuple[WorkpieceForm, int], order: Order) -> dict[str, An
 
 
 def builtin_part(name: str, order: Order) -> dict[str, Any]:
-    """Describes a built-in part; the name is known to exist."""
+    """Describe a built-in part; the name is known to exist."""
     from workhold.files.part.finding import builtin_path
     from workhold.files.part.load import read_workpiece
     from workhold.web.answers import part_answer
@@ -106,7 +106,7 @@ def read_part(upload: Upload, order: Order) -> dict[str, Any]:
 
 
 def survey_part(upload: Upload, order: Order) -> dict[str, Any]:
-    """Describes what a file that was sent holds and leaves open, with the part if it can be read."""
+    """Describe what a file that was sent holds and leaves open, with the part if it can be read."""
     from workhold.files.part.survey import survey
 
     with sent_file(upload) as path:
@@ -117,7 +117,7 @@ def survey_part(upload: Upload, order: Order) -> dict[str, Any]:
 
 @contextmanager
 def sent_file(upload: Upload) -> Iterator[Path]:
-    """Writes a file that was sent for the duration of the block; errors are raised without its path."""
+    """Write a file that was sent for the duration of the block; errors are raised without its path."""
     ending = f".{upload.name.rpartition('.')[2].lower()}"
     with TemporaryDirectory(prefix="workhold-") as folder:
         path = Path(folder) / f"part{ending if ending in ENDINGS else ''}"
@@ -133,12 +133,12 @@ def sent_file(upload: Upload) -> Iterator[Path]:
 
 
 def without_path(sentence: str, path: Path) -> str:
-    """Removes the path of a file from a sentence, for its user knows it by another name."""
+    """Remove the path of a file from a sentence, for its user knows it by another name."""
     return sentence.replace(f"{path.name}: ", "", 1)
 
 
 def uploaded_part(upload: Upload, path: Path, loaded: Loaded) -> dict[str, Any]:
-    """Describes a part for the page; where it has no name it gets that of the file that was sent.
+    """Describe a part for the page; where it has no name it gets that of the file that was sent.
 
     Refuses more segments than this server takes.
     """
@@ -177,7 +177,7 @@ class ShapeOrder:
 
 
 def find_shape(payload: ShapeOrder, order: Order) -> PartShape:
-    """Finds the solid that gives the outline of a part, and makes a mesh of it.
+    """Find the solid that gives the outline of a part, and makes a mesh of it.
 
     Refuses a file of another part, and a shape too large to keep.
     """
@@ -196,14 +196,14 @@ def find_shape(payload: ShapeOrder, order: Order) -> PartShape:
 
 
 def shape_size(shape: PartShape | None) -> int:
-    """Returns about how many bytes a shape takes."""
+    """Return about how many bytes a shape takes."""
     if shape is None:
         return 0
     return shape.positions.nbytes + shape.normals.nbytes + shape.triangles.nbytes + len(shape.kept)
 
 
 def strokes_answer(chains: Iterable[Chain]) -> list[list[list[float]]]:
-    """Describes chains as lists of x, y in mm and bulge, as many as are shown."""
+    """Describe chains as lists of x, y in mm and bulge, as many as are shown."""
     strokes, room = [], MOST_STROKES
     for chain in chains:
         room -= len(chain.bulges)
@@ -216,7 +216,7 @@ def strokes_answer(chains: Iterable[Chain]) -> list[list[list[float]]]:
 
 
 def survey_answer(seen: Survey, part: dict[str, Any] | None, refusal: str) -> dict[str, Any]:
-    """Describes what a file holds and leaves open; strokes and outlines are chains of x, y in mm, bulge.
+    """Describe what a file holds and leaves open; strokes and outlines are chains of x, y in mm, bulge.
 
     ``heights`` is what other heights of the pegs offer of a solid, and ``solids`` are those of the file with
     their names.

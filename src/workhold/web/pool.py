@@ -82,7 +82,7 @@ class PoolTask:
         self.outcome = asyncio.get_running_loop().create_future()
 
     def settle(self, value: Any = None, error: Exception | None = None) -> None:
-        """Sets the outcome, unless the task has one or was cancelled."""
+        """Set the outcome, unless the task has one or was cancelled."""
         if self.outcome.done():
             return
         if error is None:
@@ -102,7 +102,7 @@ class PoolWorker:
 
     @classmethod
     def started(cls, kind: str, memory_bytes: int) -> PoolWorker:
-        """Starts a process, and a thread of the server that receives its messages."""
+        """Start a process, and a thread of the server that receives its messages."""
         context = get_context("spawn")
         ours, theirs = context.Pipe()
         process = context.Process(target=work, args=(theirs, kind, memory_bytes), daemon=True)
@@ -115,7 +115,7 @@ class PoolWorker:
         return worker
 
     def listen(self, loop: asyncio.AbstractEventLoop) -> None:
-        """Receives messages until the pipe ends; runs in a thread of its own."""
+        """Receive messages until the pipe ends; runs in a thread of its own."""
         try:
             while True:
                 message = self.connection.recv()
@@ -128,12 +128,12 @@ class PoolWorker:
                 loop.call_soon_threadsafe(self.gone.set)
 
     async def send(self, message: Any) -> None:
-        """Sends a message; one to a worker that has ended is lost."""
+        """Send a message; one to a worker that has ended is lost."""
         with suppress(OSError, ValueError):
             await asyncio.to_thread(self.connection.send, message)
 
     async def end(self) -> None:
-        """Ends the process at once and closes its pipe."""
+        """End the process at once and closes its pipe."""
         self.process.kill()
         await asyncio.to_thread(self.process.join, 5.0)
         with suppress(OSError):
@@ -143,7 +143,7 @@ class PoolWorker:
 
 @contextmanager
 def deaf_to_interrupts() -> Iterator[None]:
-    """Makes processes that are started within the block ignore Ctrl-C, which is for the server."""
+    """Make processes that are started within the block ignore Ctrl-C, which is for the server."""
     try:
         before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     except ValueError:
@@ -186,7 +186,7 @@ class Pool:
         self.slots = [asyncio.create_task(self.keep(slot)) for slot in range(self.size)]
 
     async def close(self) -> None:
-        """Ends the workers and gives up the tasks that wait."""
+        """End the workers and gives up the tasks that wait."""
         for slot in self.slots:
             slot.cancel()
         await asyncio.gather(*self.slots, return_exceptions=True)
@@ -195,18 +195,18 @@ class Pool:
         self.give_up("The server was stopped.")
 
     def refuse_more(self, client: str) -> None:
-        """Refuses a further task of a client (BusyError) when too many wait, of this client or of all."""
+        """Refuse a further task of a client (BusyError) when too many wait, of this client or of all."""
         of_client = sum(task.client == client for task in self.waiting)
         if len(self.waiting) >= self.most_waiting or of_client >= self.most_waiting - self.most_waiting // 4:
             raise BusyError("The server is busy: try again in a moment.")
 
     def give_up(self, sentence: str) -> None:
-        """Fails all tasks that wait."""
+        """Fail all tasks that wait."""
         while self.waiting:
             self.waiting.pop().settle(error=FailedError(sentence))
 
     async def run(self, task: PoolTask) -> Any:
-        """Runs a task when its client has its turn; a caller that is cancelled cancels the task.
+        """Run a task when its client has its turn; a caller that is cancelled cancels the task.
 
         Raises
         ------
@@ -229,14 +229,14 @@ class Pool:
             raise
 
     def cancel(self, task: PoolTask) -> None:
-        """Asks a task to stop; one that waits is over at once."""
+        """Ask a task to stop; one that waits is over at once."""
         task.stop.set()
         if task in self.waiting:
             self.waiting.remove(task)
             task.settle(error=StoppedError())
 
     def turn(self) -> PoolTask | None:
-        """Chooses the next task: of the client with the fewest workers, then of the one whose last turn is
+        """Choose the next task: of the client with the fewest workers, then of the one whose last turn is
         oldest.
 
         One worker of several is kept from any single client, so that the next one need not wait for its
@@ -249,7 +249,7 @@ class Pool:
         )
 
     async def next_task(self) -> PoolTask:
-        """Waits for the next task, and counts a worker as its client's from then on."""
+        """Wait for the next task, and counts a worker as its client's from then on."""
         while (task := self.turn()) is None:
             self.bell.clear()
             await self.bell.wait()
@@ -268,7 +268,7 @@ class Pool:
         self.bell.set()
 
     async def keep(self, slot: int) -> None:
-        """Keeps a worker in a slot and gives it tasks."""
+        """Keep a worker in a slot and gives it tasks."""
         failed = 0
         while True:
             worker = self.workers[slot] = PoolWorker.started(self.kind, self.memory_bytes)
@@ -287,7 +287,7 @@ class Pool:
                 await asyncio.shield(worker.end())
 
     async def serve(self, worker: PoolWorker) -> None:
-        """Gives tasks to a worker until it has ended."""
+        """Give tasks to a worker until it has ended."""
         while not worker.gone.is_set():
             task = await first(self.next_task(), worker.gone.wait())
             if task is None:
@@ -349,7 +349,7 @@ class Pool:
 
 
 async def first(*waits: Any, timeout: float | None = None) -> Any:
-    """Waits until one of some coroutines is done or the time is up; returns the first's value, else None."""
+    """Wait until one of some coroutines is done or the time is up; return the first's value, else None."""
     tasks = [asyncio.ensure_future(wait) for wait in waits]
     try:
         await asyncio.wait(tasks, timeout=timeout, return_when=asyncio.FIRST_COMPLETED)

@@ -123,7 +123,7 @@ class ReadProgramForm(Form):
 
 
 def read_sent_program(form: ProgramForm, thickness: float | None) -> ReadProgram:
-    """Reads a program that was sent; its errors name the files as their user does."""
+    """Read a program that was sent; its errors name the files as their user does."""
     from workhold.files.program.reader import read_program_with_calls
 
     with written(form) as (path, tools):
@@ -140,7 +140,7 @@ def read_sent_program(form: ProgramForm, thickness: float | None) -> ReadProgram
 
 @contextmanager
 def written(form: ProgramForm) -> Iterator[tuple[Path, Path | None]]:
-    """Writes a program and its table for the duration of the block."""
+    """Write a program and its table for the duration of the block."""
     with TemporaryDirectory(prefix="workhold-") as folder:
         path, tools = Path(folder) / "program.nc", None
         path.write_text(form.text, encoding="utf-8", newline="")
@@ -159,14 +159,14 @@ def written(form: ProgramForm) -> Iterator[tuple[Path, Path | None]]:
 
 
 def named(sentence: str, names: Mapping[str, str]) -> str:
-    """A sentence with the names of files as their user knows them."""
+    """Return a sentence with the names of files as their user knows them."""
     for path, name in names.items():
         sentence = sentence.replace(path, name)
     return sentence
 
 
 def look_at_program(question: ReadProgramForm, order: Order) -> dict[str, Any]:
-    """Describes what was understood of a program: its tools, box, notes, and the paths to draw.
+    """Describe what was understood of a program: its tools, box, notes, and the paths to draw.
 
     Heights are above the part's lower side. The paths are SVG path data in tenths of mm, y downward. Each has
     the place of its tool in their order, its kind, and for cutting moves its level of height from 0.
@@ -229,7 +229,7 @@ def paths_answer(program: Program) -> Iterator[dict[str, Any]]:
 
 
 def passing_answer(result: Any, index: int) -> dict[str, Any] | None:
-    """Where the tools of a result's program come nearest to a fixture; None where none does."""
+    """Return where the tools of a result's program come nearest to a fixture; None where none does."""
     from workhold.statics.program_clearance import passing_of
 
     near = passing_of(result, index)

@@ -114,7 +114,7 @@ def of_address(adapter: TypeAdapter[Asked], name: str, text: str) -> Asked:
 
 
 def sentence_of(error: dict[str, Any]) -> str:
-    """One thing that pydantic finds wrong with a request, as a sentence."""
+    """Return one thing that pydantic finds wrong with a request, as a sentence."""
     loc = [str(part) for part in error.get("loc", ()) if part not in TAGS]
     if error.get("type") == "json_invalid":
         return "The request is not valid JSON: send one object."
@@ -128,7 +128,7 @@ def sentence_of(error: dict[str, Any]) -> str:
 
 
 def check_body(payload: tuple[type[Form], bytes, int], order: Order) -> None:
-    """Refuses a request of too many values or segments, or that its form does not take."""
+    """Refuse a request of too many values or segments, or that its form does not take."""
     form, body, most_segments = payload
     try:
         data = json.loads(body)
@@ -148,7 +148,7 @@ def check_body(payload: tuple[type[Form], bytes, int], order: Order) -> None:
 
 
 def count_values(data: Any) -> int:
-    """How many values there are in a request, those that hold others too."""
+    """Return how many values there are in a request, those that hold others too."""
     count, waiting = 0, [data]
     while waiting:
         one = waiting.pop()
@@ -161,7 +161,7 @@ def count_values(data: Any) -> int:
 
 
 def most_vertices_in(data: Any) -> int:
-    """How many vertices the largest part of a request has, as far as it has the shape of one."""
+    """Return how many vertices the largest part of a request has, as far as it has the shape of one."""
     if not isinstance(data, dict):
         return 0
     several = data.get("workpieces")
@@ -214,7 +214,7 @@ class WorkpieceForm(Form):
     outlines: Annotated[dict[Name, OwnOutlineForm], Field(max_length=MOST_RANGES)] = Field(default={})
 
     def workpiece(self, most_segments: int) -> Workpiece:
-        """The part; refuses loops that cannot be used, and too many segments."""
+        """Return the part; refuse loops that cannot be used, and too many segments."""
         solid = None if self.solid is None else SolidOutline(**self.solid.model_dump())
         workpiece = checked_part(self.name, self.loops, most_segments, self.departure, solid)
         if not self.outlines:
@@ -233,7 +233,7 @@ def checked_part(
     departure: float = 0.0,
     solid: SolidOutline | None = None,
 ) -> Workpiece:
-    """A part of loops in mm, with how far they may be from what was drawn.
+    """Return a part of loops in mm, with how far they may be from what was drawn.
 
     Refuses more segments than this server takes.
     """
@@ -252,7 +252,7 @@ def refuse_many(count: int, most: int) -> None:
 
 @contextmanager
 def numbers_too_large() -> Iterator[None]:
-    """Says of numbers with which arithmetic fails that they are too large or too small."""
+    """Say of numbers with which arithmetic fails that they are too large or too small."""
     try:
         yield
     except (ArithmeticError, ValueError) as error:
@@ -267,7 +267,7 @@ SeveralHeights = TypeAdapter(Annotated[dict[Name, Point], Field(max_length=MOST_
 
 
 def asked_heights(text: str | None) -> dict[str, tuple[float, float]] | None:
-    """The heights of carriers in an address, JSON by role in mm; None where none are given.
+    """Return the heights of carriers in an address, JSON by role in mm; None where none are given.
 
     Refuses heights of which the lower does not come first.
     """
@@ -340,5 +340,5 @@ class FirstSideForm(Form):
 
 
 def asked_of(form: type[AskedForm], name: str, text: str | None) -> AskedForm | None:
-    """A value of an address that is JSON of a form; None where none is given."""
+    """Return a value of an address that is JSON of a form; None where none is given."""
     return None if text is None else of_address(TypeAdapter(form), name, text)

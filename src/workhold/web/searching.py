@@ -152,7 +152,7 @@ class Reporter:
 
 
 def best_of(query: Query, order: Order, report: Callable[[str, Result], None]) -> Result:
-    """The best fixtures of a query; incomplete where that takes long, or the order is cancelled."""
+    """Return the best fixtures of a query; incomplete where that takes long, or the order is cancelled."""
     from workhold.search.design import answer
 
     with soon_enough(order) as enough:
@@ -186,7 +186,7 @@ def soon_enough(order: Order) -> Iterator[Event]:
 
 
 def with_best_first(result: Result, best: Result) -> Result:
-    """A search that was stopped, with the best of all before what else it found.
+    """Return a search that was stopped, with the best of all before what else it found.
 
     It is not complete all the same.
     """
@@ -203,6 +203,6 @@ def with_best_first(result: Result, best: Result) -> Result:
 
 
 def mark_of(table: FixtureTable, index: int) -> tuple[object, ...]:
-    """What a fixture of a table is known by: arrangement, holes, faces, and how the part lies."""
+    """Return what a fixture of a table is known by: arrangement, holes, faces, and how the part lies."""
     whole = (table.arrangement[index], *table.column[index], *table.row[index], *table.face[index])
     return (*map(int, whole), round(float(table.theta[index]) / SAME_POSE))

@@ -43,7 +43,7 @@ class Selection:
     unfit: bool = True
 
     def entries(self, result: Result) -> Entries:
-        """Chooses fixtures of a result, in order, each with how many that are like it are left out."""
+        """Choose fixtures of a result, in order, each with how many that are like it are left out."""
         found = self.indices(result.table, result.toolkit)
         chosen, bad = found, unfit(result.table.quality, result.query.tolerance)
         if not (self.unfit or bad.all()):
@@ -57,7 +57,7 @@ class Selection:
         return Entries(chosen, like, int(bad[found].sum()) if not (self.unfit or bad.all()) else 0)
 
     def indices(self, table: FixtureTable, toolkit: Toolkit) -> NDArray[np.intp]:
-        """Returns the indices of the chosen fixtures of a table, in order.
+        """Return the indices of the chosen fixtures of a table, in order.
 
         Raises
         ------
@@ -90,7 +90,7 @@ class Selection:
 
 
 def angle_range(text: str) -> tuple[float, float]:
-    """Reads a range of angles in degrees such as ``-10..10``."""
+    """Read a range of angles in degrees such as ``-10..10``."""
     low, dots, high = text.partition("..")
     try:
         ends = float(low), float(high)

@@ -60,7 +60,7 @@ class PatientProtocol(H11Protocol):
         self.watch()
 
     def data_received(self, data: bytes) -> None:
-        """Passes data on, and starts or stops the timer."""
+        """Pass data on, and starts or stops the timer."""
         super().data_received(data)
         self.watch()
 
@@ -74,7 +74,7 @@ class PatientProtocol(H11Protocol):
         super().connection_lost(exc)
 
     def watch(self) -> None:
-        """Runs the timer while a request has begun and its first lines are not complete."""
+        """Run the timer while a request has begun and its first lines are not complete."""
         awaited = self.cycle is None or self.cycle.response_complete
         if awaited and self.header_timer is None:
             self.header_timer = self.loop.call_later(HEADER_SECONDS, self.give_up)
@@ -83,7 +83,7 @@ class PatientProtocol(H11Protocol):
             self.header_timer = None
 
     def give_up(self) -> None:
-        """Closes a connection without a request."""
+        """Close a connection without a request."""
         self.header_timer = None
         if self.cycle is None or self.cycle.response_complete:
             self.transport.close()
@@ -101,13 +101,13 @@ class Server(uvicorn.Server):
         self.stopped_by: int | None = None
 
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:
-        """Stops in order on the first signal, and without a wait on the second."""
+        """Stop in order on the first signal, and without a wait on the second."""
         self.force_exit = self.should_exit
         self.should_exit = True
         self.stopped_by = sig
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        """Ends streams and workers first, and soon lets go of clients who still send."""
+        """End streams and workers first, and soon lets go of clients who still send."""
         state: ServerState | None = getattr(self.config.app.state, "server", None)  # type: ignore[union-attr]
         if state is not None:
             await state.close()
@@ -118,13 +118,13 @@ class Server(uvicorn.Server):
             late.cancel()
 
     async def let_go(self) -> None:
-        """Closes the connections that are left after a moment."""
+        """Close the connections that are left after a moment."""
         await asyncio.sleep(LAST_SECONDS)
         for connection in list(self.server_state.connections):
             connection.transport.abort()
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        """Starts, and reports that the server listens."""
+        """Start, and reports that the server listens."""
         await super().startup(sockets)
         if self.started and not self.should_exit:
             self.listening()
@@ -141,7 +141,7 @@ def run_server(
     prepare: Callable[[], None],
     origins: Collection[str],
 ) -> None:
-    """Serves until interrupted.
+    """Serve until interrupted.
 
     Parameters
     ----------
@@ -182,7 +182,7 @@ def make_server(
     token: str | None = None,
     origins: Origins | None = None,
 ) -> Server:
-    """Makes a server that does not run yet; parameters as for :func:`run_server`.
+    """Make a server that does not run yet; parameters as for :func:`run_server`.
 
     ``listening`` is called once the server takes requests.
     """
@@ -204,7 +204,7 @@ def make_server(
 
 
 def bound_socket(host: str, port: int) -> socket.socket:
-    """Opens a socket that listens at an address.
+    """Open a socket that listens at an address.
 
     Refuses an address that there is not, or at which another program listens.
     """
@@ -231,7 +231,7 @@ def bound_socket(host: str, port: int) -> socket.socket:
 
 
 def is_everywhere(host: str) -> bool:
-    """Whether a host means every address of the machine."""
+    """Return whether a host means every address of the machine."""
     try:
         return ip_address(host).is_unspecified
     except ValueError:
@@ -239,7 +239,7 @@ def is_everywhere(host: str) -> bool:
 
 
 def is_for_others(host: str) -> bool:
-    """Whether a server that listens at a host can be reached from other machines.
+    """Return whether a server that listens at a host can be reached from other machines.
 
     >>> is_for_others("0.0.0.0"), is_for_others("localhost"), is_for_others("127.0.0.9")
     (True, False, False)
@@ -258,7 +258,7 @@ def hosts_of(host: str, more: Collection[str]) -> Hosts:
 
 
 def address_words(host: str) -> str:
-    """Writes a host as it stands in an address that can be opened."""
+    """Write a host as it stands in an address that can be opened."""
     if is_everywhere(host):
         return "127.0.0.1"
     return f"[{host}]" if ":" in host else host

@@ -52,7 +52,7 @@ class StaticFile:
 
 
 def static_files() -> dict[str, StaticFile]:
-    """Reads the files of the page, by their paths below ``static``, such as ``space/orbit.js``."""
+    """Read the files of the page, by their paths below ``static``, such as ``space/orbit.js``."""
     return dict(found(files("workhold.web") / "static", ""))
 
 
@@ -106,7 +106,7 @@ class ServerState:
             await self.close()
 
     async def close(self) -> None:
-        """Ends streams of events, and the workers with what they do; once more does no harm."""
+        """End streams of events, and the workers with what they do; once more does no harm."""
         self.is_closing.set()
         self.jobs.wake_watchers()
         await asyncio.gather(self.searchers.close(), self.desks.close())
@@ -164,7 +164,7 @@ class CheckedRoute(APIRoute):
     """
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
-        """What answers a request of this route."""
+        """Return what answers a request of this route."""
         handler, form = super().get_route_handler(), self.form()
 
         async def checked(request: Request) -> Response:
@@ -177,12 +177,12 @@ class CheckedRoute(APIRoute):
         return checked
 
     def form(self) -> type[Form] | None:
-        """The shape of its requests; None where they have no body, or bytes of a file."""
+        """Return the shape of its requests; None where they have no body, or bytes of a file."""
         kinds = get_type_hints(self.endpoint).values()
         return next((kind for kind in kinds if isinstance(kind, type) and issubclass(kind, Form)), None)
 
 
 async def hung_up(request: Request) -> None:
-    """Waits until a client whose request has come whole is gone."""
+    """Wait until a client whose request has come whole is gone."""
     while (await request.receive())["type"] != "http.disconnect":
         pass

@@ -52,7 +52,7 @@ class SupportsOrder:
 
 
 def find_supports(payload: SupportsOrder, order: Order) -> dict[str, Any]:
-    """Finds the best sets of three supports, and describes them with what shows from the side."""
+    """Find the best sets of three supports, and describes them with what shows from the side."""
     return supports_answer(found_supports(payload), payload.form.unit)
 
 
@@ -69,7 +69,7 @@ def found_supports(asked: SupportsOrder) -> Supports:
 
 
 def chosen_supports(asked: SupportsOrder, number: int) -> ChosenSupports | None:
-    """Finds the supports that are asked for, and chooses the set of a number from 1; None where none hold.
+    """Find the supports that are asked for, and chooses the set of a number from 1; None where none hold.
 
     Refuses a number of which there is no set.
     """
@@ -78,7 +78,7 @@ def chosen_supports(asked: SupportsOrder, number: int) -> ChosenSupports | None:
 
 
 def supports_answer(found: Supports, unit: str) -> dict[str, Any]:
-    """Describes the best sets; places are in mm in the toolkit's frame.
+    """Describe the best sets; places are in mm in the toolkit's frame.
 
     ``positions`` is how many holes may hold a support, ``count`` how many sets there are, null where not all
     were looked at. ``bands`` are the heights at which each peg may press. ``notes`` are sentences in
@@ -103,7 +103,7 @@ def supports_answer(found: Supports, unit: str) -> dict[str, Any]:
 
 
 def set_answer(found: Supports, triple: Triple) -> dict[str, Any]:
-    """Describes one set of three; forces are null without loads.
+    """Describe one set of three; forces are null without loads.
 
     ``travel`` is what the jaws are opened to where the set asks for more than the fixture alone, else null.
     ``nearest`` is the point of the triangle's border that is nearest to the clamp. ``built`` has the holes of
@@ -137,7 +137,7 @@ def set_answer(found: Supports, triple: Triple) -> dict[str, Any]:
 
 
 def standing_holes(found: Supports, triple: Triple) -> tuple[list[str], list[str]]:
-    """The holes of pegs, and of supports, as the page names them: in the middle of the plate."""
+    """Return the holes of pegs, and of supports, as the page names them: in the middle of the plate."""
     query = found.query
     move = middle_move(found.fixture, query.toolkit, query.workpiece)
     pegs = [peg.hole for peg in moved_on(found.fixture, query.toolkit, move).pegs]
@@ -161,7 +161,7 @@ def built_answer(found: Supports, triple: Triple) -> dict[str, list[str]] | None
 
 
 def nearest_of_border(corners: np.ndarray, point: np.ndarray) -> tuple[float, float]:
-    """The point of a triangle's border (3, 2) that is nearest to a point (2,)."""
+    """Return the point of a triangle's border (3, 2) that is nearest to a point (2,)."""
     starts, ways = corners, np.roll(corners, -1, axis=0) - corners
     shares = ((point - starts) * ways).sum(axis=1) / (ways**2).sum(axis=1)
     feet = starts + np.clip(shares, 0.0, 1.0)[:, None] * ways
@@ -178,7 +178,7 @@ def notes_of(found: Supports, unit: str) -> list[str]:
 
 
 def boxes_of(found: Supports, triple: Triple, sizes: BodySizes) -> Iterator[dict[str, Any]]:
-    """Lists the boxes of all bodies of a fixture with a set of supports; none where pegs have no body."""
+    """List the boxes of all bodies of a fixture with a set of supports; none where pegs have no body."""
     try:
         bodies = bodies_on_supports(found, triple, found.fixture, triple.supports, sizes)
     except InputError:

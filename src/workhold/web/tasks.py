@@ -84,7 +84,7 @@ def explanation(payload: AskedQueries, order: Order) -> Explanation:
 
 
 def check_job(payload: tuple[JobForm | ExploreForm | FamilyForm, int], order: Order) -> AskedQueries:
-    """Makes the queries of a request, and checks what can be checked before the search."""
+    """Make the queries of a request, and checks what can be checked before the search."""
     from workhold.contact.problem import Problem
     from workhold.search.seated import refuse_unasked
 
@@ -167,5 +167,5 @@ TASKS: Tasks = {
 
 
 def work(connection: Connection, kind: str, memory_bytes: int) -> None:
-    """Runs a worker of a kind, see :func:`warm_up` and :func:`workhold.web.worker.worker_main`."""
+    """Run a worker of a kind, see :func:`warm_up` and :func:`workhold.web.worker.worker_main`."""
     worker_main(connection, memory_bytes, TASKS, partial(warm_up, kind))

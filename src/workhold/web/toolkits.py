@@ -156,7 +156,7 @@ def page_kind(loaded: LoadedToolkit) -> str:
 
 
 def toolkit_answer(loaded: LoadedToolkit) -> dict[str, Any]:
-    """Describes a preset; its kind is one of those that the page has fields for."""
+    """Describe a preset; its kind is one of those that the page has fields for."""
     given = toolkit_fields(loaded.toolkit)
     return {
         "name": loaded.name,

@@ -61,7 +61,7 @@ Tasks = Mapping[str, Callable[[Any, Order], Any]]
 def worker_main(
     connection: Connection, memory_bytes: int, tasks: Tasks, warm_up: Callable[[], object]
 ) -> None:
-    """Runs tasks until the pipe ends; the process's main function.
+    """Run tasks until the pipe ends; the process's main function.
 
     Parameters
     ----------
@@ -106,33 +106,33 @@ folders: list[str] = []
 
 
 def own_folder() -> None:
-    """Makes a folder for what tasks of this process write for a time, if one can be made."""
+    """Make a folder for what tasks of this process write for a time, if one can be made."""
     with suppress(OSError):
         folders.append(tempfile.mkdtemp(prefix=folder_prefix(os.getpid())))
         tempfile.tempdir = folders[0]
 
 
 def folder_prefix(process: int) -> str:
-    """What the name of a worker's folder begins with, by the number of its process."""
+    """Return what the name of a worker's folder begins with, by the number of its process."""
     return f"workhold-worker-{process}-"
 
 
 def discard_folders(process: int | None) -> None:
-    """Removes the folder of a worker that has ended, with all that its tasks have left there."""
+    """Remove the folder of a worker that has ended, with all that its tasks have left there."""
     for path in Path(tempfile.gettempdir()).glob(f"{folder_prefix(process or 0)}*"):
         shutil.rmtree(path, ignore_errors=True)
 
 
 @cache
 def trimming() -> Any:
-    """The function of the C library that gives freed memory back; None where it has none."""
+    """Return the function of the C library that gives freed memory back; None where it has none."""
     with suppress(OSError, AttributeError, TypeError):
         return ctypes.CDLL(None).malloc_trim
     return None
 
 
 def return_memory() -> None:
-    """Gives freed memory back to the system, which takes milliseconds.
+    """Give freed memory back to the system, which takes milliseconds.
 
     The C library keeps most of what large results took: small pieces in between keep whole blocks from going
     back by themselves.
@@ -144,7 +144,7 @@ def return_memory() -> None:
 
 
 def said_of(error: Exception, memory_bytes: int) -> str:
-    """Returns a sentence for the client of a task that failed; standard error gets the traceback."""
+    """Return a sentence for the client of a task that failed; standard error gets the traceback."""
     if lacks_memory(error):
         return f"This needs more than the {memory_bytes >> 20} MiB of memory the server gives."
     traceback.print_exception(error, file=sys.stderr)
@@ -155,7 +155,7 @@ def said_of(error: Exception, memory_bytes: int) -> str:
 
 
 def listen(connection: Connection, orders: SimpleQueue[tuple[int, str, float, Any, Event]]) -> None:
-    """Receives messages from the server; ends the process when the server has ended."""
+    """Receive messages from the server; end the process when the server has ended."""
     newest, cancel = 0, Event()
     while True:
         try:
