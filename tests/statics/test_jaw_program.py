@@ -9,7 +9,7 @@ from workhold.model.jaw_hold import Patch
 from workhold.model.moves import Moves
 from workhold.model.program import Program
 from workhold.statics.friction import Grip, MotionProgram
-from workhold.statics.jaw_program import GAP, CuttingPieces, worst_of_program
+from workhold.statics.jaw_program import GAP, CuttingPieces, PressedPart, worst_of_program
 
 WIDE, DEEP, GRIP, HIGH, SAFETY = 100.0, 60.0, 18.0, 25.0, 2.0
 
@@ -134,6 +134,17 @@ def test_drill_that_presses_on_the_parallels_asks_for_its_torque_alone():
     row = np.zeros((1, 6))
     row[0, 5] = 3000.0 * SAFETY / grip.length
     assert need.force >= MotionProgram(grip).least_forces(row)[0] * (1 - 1e-9) > 0
+
+
+def test_corners_have_both_torques_and_both_ends_of_the_axial_force():
+    grip = block()
+    program = program_of([(50, 30, 25), (50, 30, 5)], force=0.0, torque=3000.0, axial=(-100.0, 500.0))
+    part = PressedPart(
+        CuttingPieces.from_program(program, HIGH), grip, MotionProgram(grip), 0.0, (0.0, 0.0), SAFETY
+    )
+    rows = part.loads(np.array([0]), 0.0, 0.0)
+    assert set(np.round(rows[:, 5] * grip.length)) == {-6000.0, 6000.0}
+    assert set(rows[:, 2]) == {200.0, -1000.0}
 
 
 def test_loads_in_one_cone_are_answered_by_one_motion():
