@@ -10,8 +10,6 @@ from attrs import evolve
 
 from jaw_examples import ELL, TRIANGLE, held, rectangle, vise
 from slow_program import OFF, THICKNESS, low_points, program_of, random_program
-from workhold import InputError
-from workhold.model.cutting_forces import CuttingForces
 from workhold.search.explaining import explain
 from workhold.verification import verify
 
@@ -125,10 +123,3 @@ def facing_all():
     """A border around the part, low."""
     ring = [(0.0, 0.0, 3.0), (70.0, 0.0, 3.0), (70.0, 40.0, 3.0), (0.0, 40.0, 3.0), (0.0, 0.0, 3.0)]
     return program_of([(1, True, a, b, 0.0) for a, b in pairwise(ring)])
-
-
-def test_forces_of_a_program_are_refused():
-    program = cut_along(0.0, 6.0)
-    pushing = CuttingForces([100.0], [0.0], [[0.0, 0.0]], [1.0])
-    with pytest.raises(InputError, match="give the worst of them as loads"):
-        held(rectangle(70, 40), thickness=THICKNESS, program=evolve(program, forces=pushing))
