@@ -15,7 +15,7 @@ from workhold.errors import InputError
 from workhold.model.straps import StrapHardware
 from workhold.model.support_request import SpatialLoad
 from workhold.statics.patches import PressedPolygon
-from workhold.supports.straps import StrapQuestion, StrapSearch, usual_request
+from workhold.supports.straps import SetSearch, StrapQuestion, StrapSearch, usual_request
 
 THICK, TIP = 25.0, 6.0
 BLOCK = Workpiece.from_points("block", [(0, 0), (100, 0), (100, 60), (0, 60)])
@@ -203,6 +203,20 @@ def test_three_straps_are_the_best_of_all(block):
     assert search.best().clamp_needed <= min(
         need for one in sets[::step] if (need := search.needs(one)[0]) is not None
     ) * (1 + 1e-6)
+
+
+def test_no_part_of_the_best_set_is_ruled_out_by_a_bound(block):
+    loads = [SpatialLoad(points=[(80, 50), (10, 5)], force=200, directions=30, axial=-90)]
+    search = search_of(block, loads, count=3, reach=(20.0, 20.0), zones=(workhold.circle_zone(50, 30, 26),))
+    sets = SetSearch(search)
+    chosen = sets.least(3)
+    assert chosen is not None
+    sets.least_force *= 1.001
+    for size in (1, 2):
+        for taken in combinations(chosen, size):
+            assert sets.lowest_bound(taken, 3 - size)
+    sets.least_force = 1e-6
+    assert not sets.lowest_bound(chosen[:2], 1)
 
 
 def test_twice_the_load_asks_for_twice_the_force_and_friction_helps(block):
