@@ -153,3 +153,12 @@ def test_loads_in_one_cone_are_answered_by_one_motion():
     each = np.array([need if need is not None else np.inf for need in grip.forces_needed(loads)])
     together = MotionProgram(grip).least_forces(loads)
     assert together == pytest.approx(each, rel=1e-8, abs=1e-6)
+
+
+def test_what_suffices_does_not_stand_for_the_least():
+    rng, grip = np.random.default_rng(5), block()
+    loads = grip.wrenches(rng.uniform(0, 1, (40, 3)) * [WIDE, DEEP, HIGH], rng.normal(size=(40, 3)) * 300)
+    each, motions = MotionProgram(grip).least_forces(loads), MotionProgram(grip)
+    enough = motions.least_forces(loads, 1.2 * each.max())
+    assert (enough >= each * (1 - 1e-9)).all() and (enough <= 1.2 * each.max()).all()
+    assert motions.least_forces(loads) == pytest.approx(each, rel=1e-8, abs=1e-6)
