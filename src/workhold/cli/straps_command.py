@@ -82,6 +82,7 @@ def straps(
     Example: workhold straps part.json 1 --thickness 25 --count 2 --load "force=300 at=50,30"
     """
     from workhold.supports.straps import find_straps
+    from workhold.supports.words_of_straps import list_warnings
 
     rank, shown = asked_rank(number), length_unit(unit)
     result = result_with(result_file, rank)
@@ -93,7 +94,7 @@ def straps(
         print_json(rank=rank, **describe(found, fixture, asked))
     else:
         print_tables(*tabulate(found, fixture, rank, asked, printed))
-    for said in warn(found, asked, printed):
+    for said in list_warnings(found, asked, printed):
         print_remark(said)
     if cancel.is_set():
         raise typer.Exit(INTERRUPTED)
@@ -103,6 +104,7 @@ def read_question(words: StrapWords, result: Any, unit: Unit) -> StrapQuestion:
     """Read what was typed."""
     from workhold.model.friction import SAFETY, coefficients_of
     from workhold.model.straps import StrapHardware
+    from workhold.model.support_request import SpatialLoad
     from workhold.supports.straps import NO_LOADS, StrapQuestion, usual_request
 
     count, tip = (
@@ -116,8 +118,6 @@ def read_question(words: StrapWords, result: Any, unit: Unit) -> StrapQuestion:
     high = asked_thickness(True, words.thickness, result.workpiece, unit)
     assert high is not None
     zones = [read_zone("--keep-out-above", text, unit) for text in words.keep_out_above or ()]
-    from workhold.model.support_request import SpatialLoad
-
     loads = (
         [spatial_load(text, high, unit) for text in words.load]
         if words.load
@@ -176,10 +176,3 @@ def tabulate(
             needs.add_row(str(number), load.name, text)
         out += ["", reckoned_with(asked), needs]
     return out
-
-
-def warn(found: StrappedHold, asked: StrapQuestion, unit: Unit) -> list[str]:
-    """Sentences about what does not fit."""
-    from workhold.supports.words_of_straps import list_warnings
-
-    return list_warnings(found, asked, unit)

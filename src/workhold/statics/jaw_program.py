@@ -121,12 +121,12 @@ def straightened(start: Array, end: Array, bulge: Array) -> tuple[IntArray, Arra
     which = np.repeat(np.arange(len(start)), counts)
     place = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts)
     step = (turn / counts)[which]
-    heading = np.arctan2(chord[:, 1], chord[:, 0])[which] - turn[which] / 2 + place * step
+    before = np.arctan2(chord[:, 1], chord[:, 0])[which] - turn[which] / 2
+    heading = before + place * step
     # The point of an arc after an angle a is 2 r sin(a / 2) from its start, along half that angle.
     size = np.hypot(chord[:, 0], chord[:, 1])
     with np.errstate(divide="ignore", invalid="ignore"):
         radius = np.where(round_, size / (2.0 * np.sin(np.abs(turn) / 2)), 0.0)[which]
-    before = np.arctan2(chord[:, 1], chord[:, 0])[which] - turn[which] / 2
 
     def after(number: Array) -> Array:
         """Return the points (N, 3) of the moves after so many of their steps."""

@@ -8,6 +8,7 @@ of pressures can act is the kern, the hull of where those of the edges do (the m
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from functools import cached_property
 from itertools import pairwise
@@ -44,8 +45,36 @@ class Cells:
     area: Array
 
 
+class PressedFace(ABC):
+    """A flat face with the pressures that it can bear, whatever its outline."""
+
+    @property
+    @abstractmethod
+    def corners(self) -> list[Point]:
+        """The corners of its convex hull, counter-clockwise; two where it is one upright line."""
+
+    @property
+    @abstractmethod
+    def integrals(self) -> Array:
+        """The integrals (3, 3) over the face of the products of 1, u and v."""
+
+    @cached_property
+    def edges(self) -> Array:
+        """The pressures (R, 3), a, b and c of each, that are the edges of the cone, each with unit force."""
+        return pressure_edges(self.corners, self.integrals[0])
+
+    @cached_property
+    def centres(self) -> Array:
+        """Where the resultants (R, 2) of these pressures act; their hull is the kern."""
+        return np.asarray((self.edges @ self.integrals)[:, 1:])
+
+    def pressure(self, points: Array) -> Array:
+        """The pressures (R, N) of the edges at points (N, 2), none below 0."""
+        return np.maximum(self.edges @ np.column_stack([np.ones(len(points)), points]).T, 0.0)
+
+
 @frozen(eq=False)
-class PressedPatch:
+class PressedPatch(PressedFace):
     """A patch with the pressures that it can bear."""
 
     patch: Patch
@@ -71,16 +100,6 @@ class PressedPatch:
         return total
 
     @cached_property
-    def edges(self) -> Array:
-        """The pressures (R, 3), a, b and c of each, that are the edges of the cone, each with unit force."""
-        return pressure_edges(self.corners, self.integrals[0])
-
-    @cached_property
-    def centres(self) -> Array:
-        """Where the resultants (R, 2) of these pressures act; their hull is the kern."""
-        return np.asarray((self.edges @ self.integrals)[:, 1:])
-
-    @cached_property
     def cells(self) -> Cells:
         centres, areas = list[tuple[float, float]](), list[float]()
         for x0, x1, z0, z1 in self.rectangles:
@@ -93,17 +112,13 @@ class PressedPatch:
                     areas.append(area)
         return Cells(np.array(centres), np.array(areas))
 
-    def pressure(self, points: Array) -> Array:
-        """The pressures (R, N) of the edges at points (N, 2), none below 0."""
-        return np.maximum(self.edges @ np.column_stack([np.ones(len(points)), points]).T, 0.0)
-
     def largest_pressure(self) -> Array:
         """The pressures (R, K) of the edges at the corners of the hull."""
         return self.pressure(np.array(self.corners))
 
 
 @frozen(eq=False)
-class PressedPolygon:
+class PressedPolygon(PressedFace):
     """A flat face of any outline with the pressures that it can bear, such as the foot of a part on a plate.
 
     Parameters
@@ -124,16 +139,6 @@ class PressedPolygon:
         return sum((polygon_integrals(loop) for loop in self.loops), np.zeros((3, 3)))
 
     @cached_property
-    def edges(self) -> Array:
-        """The pressures (R, 3) that are the edges of the cone, as of :class:`PressedPatch`."""
-        return pressure_edges(self.corners, self.integrals[0])
-
-    @cached_property
-    def centres(self) -> Array:
-        """Where the resultants (R, 2) of these pressures act; their hull is the kern."""
-        return np.asarray((self.edges @ self.integrals)[:, 1:])
-
-    @cached_property
     def cells(self) -> Cells:
         """What squares of a grid have of the face, some 50 of them; their centres are those of area."""
         points = np.vstack(self.loops)
@@ -151,10 +156,6 @@ class PressedPolygon:
                 centres.append(total[0, 1:] / total[0, 0])
                 areas.append(float(total[0, 0]))
         return Cells(np.array(centres), np.array(areas))
-
-    def pressure(self, points: Array) -> Array:
-        """The pressures (R, N) of the edges at points (N, 2), none below 0."""
-        return np.maximum(self.edges @ np.column_stack([np.ones(len(points)), points]).T, 0.0)
 
 
 def pressure_edges(corners: Sequence[Point], integral: Array) -> Array:
