@@ -51,7 +51,7 @@ def algebra_result(part: str, pitch: float, columns: int, peg_radius: float) -> 
     vars(engine)["orientations"] = orientations
     workpiece, vise = loaded(part, pitch, columns, peg_radius)
     start, before = perf_counter(), process_time()
-    result = engine.answer_by_algebra(Query(workpiece, vise))
+    result = engine.find_fixtures_by_algebra(Query(workpiece, vise))
     seconds, processor = perf_counter() - start, process_time() - before
     vars(engine)["orientations"] = solve
     return result, {

@@ -30,7 +30,7 @@ def main(cad: Path | None) -> None:
     """Write parts and manifest."""
     parts = list(benchmark_parts(cad))
     if cad is None:
-        parts += kept_parts()
+        parts += keep_clear_parts()
     (HOME / "parts").mkdir(parents=True, exist_ok=True)
     workpieces = {part.workpiece.name: written(part) for part in parts}
     by_name = {part.workpiece.name: part.workpiece for part in parts}
@@ -70,7 +70,7 @@ def broken(text: str) -> str:
     return f'{{{head},\n"workpieces": {{\n{parts}\n}},\n"sets": [\n{sets}\n]}}'
 
 
-def kept_parts() -> list[BenchmarkPart]:
+def keep_clear_parts() -> list[BenchmarkPart]:
     """The workpieces of the package that are not made here."""
     known: dict[str, Any] = json.loads((HOME / "manifest.json").read_text(encoding="utf-8"))["workpieces"]
     kept = [

@@ -36,12 +36,12 @@ COLUMNS = (
 Array = NDArray[np.float64]
 
 
-def random_contacts(part: str, peg_radius: float, count: int) -> tuple[Array, Array, float]:
+def make_random_contacts(part: str, peg_radius: float, count: int) -> tuple[Array, Array, float]:
     """Points (count, 4, 2) about the part's centre and outward normals (count, 4, 2) of quadruples; the part's half size."""
-    from workhold.contact.features import contact_features
+    from workhold.contact.features import list_contact_features
 
     workpiece, _ = loaded(part, 4 * peg_radius, 1, peg_radius)
-    features = [feature.segment for feature in contact_features(workpiece, peg_radius)]
+    features = [feature.segment for feature in list_contact_features(workpiece, peg_radius)]
     random = np.random.default_rng(1996)
     chosen = random.integers(0, len(features), 4 * count)
     places = random.uniform(-1.0, 1.0, 4 * count) * np.array([features[k].half_extent for k in chosen])
@@ -71,7 +71,7 @@ def floor_seconds(part: str, peg_radius: float, tests: int) -> dict[str, Any]:
             k = k + 1 if k + 1 < len(points) else 0
         return count
 
-    points, normals, length = random_contacts(part, peg_radius, STORED)
+    points, normals, length = make_random_contacts(part, peg_radius, STORED)
     out = np.empty(4)
     closing(points, normals, length, 1, out)
     fastest, found = inf, 0

@@ -182,7 +182,7 @@ def rule_of_arrangement(
     )
     if not wall and len(stops) > 2:
         third = third_side(part, stops, lengths, base)
-    facing = np.stack([-(contact_normals(query, part, k) * lowest).sum(-1) for k in moving], -1)
+    facing = np.stack([-(find_contact_normals(query, part, k) * lowest).sum(-1) for k in moving], -1)
     opposite = np.round(facing.max(axis=1), 6)
     keys = np.stack([base, apart, third, opposite], -1)
     usable = base > 0
@@ -230,7 +230,7 @@ def faces_of(query: Query) -> tuple[Array, Array]:
     return lengths, normals
 
 
-def contact_normals(query: Query, part: FixtureTable, peg: int) -> Array:
+def find_contact_normals(query: Query, part: FixtureTable, peg: int) -> Array:
     """Outward unit normals (N, 2) at the contact of a peg, in the part's frame."""
     known = Touched.of(query.workpiece, query.toolkit)
     pose = np.column_stack([part.theta, part.position])

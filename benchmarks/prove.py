@@ -27,7 +27,7 @@ import workhold  # noqa: E402
 from fixture_sets import Judge, Listed, listed, missing, vise_of  # noqa: E402
 from strategies import random_outline  # noqa: E402
 from workhold import Query, Result, Vise, Workpiece  # noqa: E402
-from workhold.algebra import answer_by_algebra  # noqa: E402
+from workhold.algebra import find_fixtures_by_algebra  # noqa: E402
 from workhold.algebra.table_two import table_two  # noqa: E402
 from workhold.files.part.finding import builtin_parts  # noqa: E402
 from workhold.model.notes import MoreSystems, UndecidedSystem  # noqa: E402
@@ -99,7 +99,7 @@ def compare(case: Case) -> Outcome:
     start = perf_counter()
     curves = workhold.design(workpiece, vise, threads=1)
     middle = perf_counter()
-    algebra = answer_by_algebra(Query(workpiece, vise))
+    algebra = find_fixtures_by_algebra(Query(workpiece, vise))
     seconds = middle - start, perf_counter() - middle
     judge = Judge(workpiece, vise)
     ours, theirs = listed(curves), listed(algebra)

@@ -23,7 +23,7 @@ from OCP.IntCurvesFace import IntCurvesFace_ShapeIntersector
 from OCP.TopAbs import TopAbs_State
 
 from workhold.files.step.heights import HeightOutline
-from workhold.geometry.loop import faces_of_loop, loop_segments
+from workhold.geometry.loop import list_loop_faces, loop_segments
 from workhold.geometry.segment import Arc, Segment
 from workhold.model.solid import Band
 
@@ -63,7 +63,7 @@ def listed(outline: HeightOutline) -> list[tuple[float, ...]]:
     found, bands = list[tuple[float, ...]](), iter(outline.bands)
     for loop in outline.vertices:
         own = list(islice(bands, len(loop)))
-        for face in faces_of_loop(loop_segments(loop), 0, own):
+        for face in list_loop_faces(loop_segments(loop), 0, own):
             band = own[face.segments[0]] or (-1.0, -1.0)
             # Half a circle is one face or two, by rounding.
             sweep = face.segment.half_extent if isinstance(face.segment, Arc) else 0.0

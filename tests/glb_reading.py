@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from workhold.files.glb import bodies_glb
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.bodies import BodySizes, fixture_bodies
+from workhold.model.bodies import BodySizes, list_fixture_bodies
 from workhold.model.fixture import Fixture
 from workhold.model.workpiece import Workpiece
 
@@ -128,5 +128,5 @@ def fixture_glb(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, sizes: BodySizes | None = None
 ) -> bytes:
     """The bytes of a fixture's GLB file; the usual heights if no sizes are given."""
-    bodies = fixture_bodies(fixture, workpiece, toolkit, sizes)
+    bodies = list_fixture_bodies(fixture, workpiece, toolkit, sizes)
     return bodies_glb(bodies, f"{bodies[0].name} set-up")

@@ -8,7 +8,7 @@ from typing import Any
 from attrs import evolve
 
 from workhold import Workpiece
-from workhold.model.own_outlines import own_name
+from workhold.model.own_outlines import name_outline
 from workhold.model.solid import SolidOutline
 
 __all__ = ["BASE", "FOOT", "HEIGHT", "ROOF", "STEM", "stepped", "with_own"]
@@ -40,7 +40,7 @@ def with_own(part: Workpiece, own: Mapping[str, tuple[tuple[float, float], Any]]
     outlines = []
     for role, ((low, high), loop) in own.items():
         solid = solid_of(len(loop), low, high, bare.get(role, ()))
-        outlines.append((role, Workpiece.from_loops(own_name((low, high)), [loop], solid=solid)))
+        outlines.append((role, Workpiece.from_loops(name_outline((low, high)), [loop], solid=solid)))
     return evolve(part, outlines=tuple(outlines))
 
 

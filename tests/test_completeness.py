@@ -14,12 +14,12 @@ import numpy as np
 import pytest
 
 from workhold import Query, Result, Vise, Workpiece, answer, load, verify
-from workhold.algebra import answer_by_algebra
+from workhold.algebra import find_fixtures_by_algebra
 from workhold.completeness import other_entries
 from workhold.files.result.writer import notes_entry, write_result
 from workhold.model.notes import KeptBest, Stopped
 from workhold.model.search_report import Proof, Undecided
-from workhold.search.seated import seated_answer
+from workhold.search.seated import answer_with_seating
 from workhold.verification import Verification
 
 VISE = Vise(pitch=8, columns=1, peg_radius=3)
@@ -131,7 +131,10 @@ def test_the_best_of_the_algebra_are_chosen_by_their_seating_again() -> None:
     """The search of their query is that of the algebra, and orders the first by their seating, too."""
     wedge, vise = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]]), Vise(20, 2, 3)
     query = Query(wedge, vise, seating=8, best=3)
-    made, plain = seated_answer(query, answer_by_algebra), answer_by_algebra(query.without_seating)
+    made, plain = (
+        answer_with_seating(query, find_fixtures_by_algebra),
+        find_fixtures_by_algebra(query.without_seating),
+    )
     assert len(made) == 3 and [f.pose for f in made] != [f.pose for f in plain[:3]]
     outcome = verify(made, complete=True)
     assert outcome.holds and outcome.is_compared

@@ -151,11 +151,11 @@ def test_an_arc_with_a_sagitta_stays_one() -> None:
 
 
 def test_the_algebra_tells_when_it_is_asked_too_much(monkeypatch: pytest.MonkeyPatch) -> None:
-    from workhold.algebra import answer_by_algebra, candidates
+    from workhold.algebra import candidates, find_fixtures_by_algebra
 
     monkeypatch.setattr(candidates, "MOST_PEG_PAIRS", 10)
     with pytest.raises(InputError, match="more than 10 ways"):
-        answer_by_algebra(
+        find_fixtures_by_algebra(
             Query(Workpiece.from_loops("plate", [PLATE]), Vise(pitch=10, columns=2, peg_radius=2))
         )
 

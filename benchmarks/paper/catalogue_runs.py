@@ -19,7 +19,7 @@ from attrs import frozen
 from catalogue import catalogue
 from report import child_environment
 
-__all__ = ["Run", "killed_and_resumed", "records_of", "run_batch", "write_parts"]
+__all__ = ["Run", "killed_and_resumed", "make_records", "run_batch", "write_parts"]
 
 TOOLKITS = ("gripper-one-column", "fence-20mm")
 BEST = 3
@@ -107,7 +107,7 @@ def end(process: subprocess.Popen[str]) -> None:
     process.wait()
 
 
-def records_of(out: Path) -> dict[str, tuple[int, str]]:
+def make_records(out: Path) -> dict[str, tuple[int, str]]:
     """Size and hash of every record, by its path."""
     found = {}
     for path in sorted(out.glob("work/*/*.json")):

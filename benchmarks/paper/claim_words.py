@@ -6,7 +6,7 @@ from attrs import frozen
 
 from paper.document import Figures, Inline, Line, Marked
 
-__all__ = ["USUAL", "Claim", "claims", "worst_of"]
+__all__ = ["USUAL", "Claim", "claims", "find_largest_force"]
 
 # Which of the tolerances of a real root is the one that a program would try.
 USUAL = 3
@@ -177,7 +177,7 @@ def finite(figures: Figures) -> Claim:
     )
 
 
-def worst_of(figures: Figures) -> int:
+def find_largest_force(figures: Figures) -> int:
     """The row of which the usual tolerance loses the largest share."""
     rows = figures.value("doubles")
     return max(range(len(rows)), key=lambda k: rows[k]["lost"][USUAL]["share"])
@@ -186,7 +186,7 @@ def worst_of(figures: Figures) -> int:
 def complete(figures: Figures) -> Claim:
     """What complete needs in floating point."""
     rows = figures.value("doubles")
-    worst = worst_of(figures)
+    worst = find_largest_force(figures)
     loosest = len(rows[worst]["lost"]) - 1
     left = max(range(len(rows)), key=lambda k: rows[k]["lost"][loosest]["share"])
     return Claim(

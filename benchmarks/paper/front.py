@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from paper.claim_words import USUAL, worst_of
+from paper.claim_words import USUAL, find_largest_force
 from paper.document import Block, Figures, Heading, Inline, Line, Listing, Marked, Paragraph
 
 __all__ = ["TITLE", "after", "before"]
@@ -69,7 +69,7 @@ def abstract(every: Mapping[str, Figures]) -> Line:
         ]
     claims = every.get("claims")
     if claims is not None and claims.value("doubles"):
-        usual = f"doubles/{worst_of(claims)}/lost/{USUAL}"
+        usual = f"doubles/{find_largest_force(claims)}/lost/{USUAL}"
         out += [
             " Roots in double precision that count as real within ",
             claims.power(f"{usual}/tolerance"),

@@ -13,7 +13,7 @@ from typing import Any
 
 from batch_estimate import PRESETS, measured_runs
 from batch_simulation import SEED, finished
-from paper.catalogue_runs import BEST, TOOLKITS, killed_and_resumed, records_of, run_batch, write_parts
+from paper.catalogue_runs import BEST, TOOLKITS, killed_and_resumed, make_records, run_batch, write_parts
 from paper.document import Block, Figures, Heading, Inline, Marked, Paragraph, Table
 from report import kept_figures, measured
 
@@ -61,7 +61,7 @@ def run_catalogue(data: dict[str, Any], folder: Path, count: int) -> Iterator[tu
     yield 0.0, "one worker"
     parts = write_parts(folder / "parts", count)
     alone = run_batch(parts, folder / "one", 1)
-    records = records_of(folder / "one")
+    records = make_records(folder / "one")
     jobs = count * len(TOOLKITS)
     data |= {"parts": count, "jobs": jobs, "best": BEST, "records": len(records)}
     data["one"] = {"seconds": alone.seconds, "processor": alone.processor}
@@ -73,7 +73,7 @@ def run_catalogue(data: dict[str, Any], folder: Path, count: int) -> Iterator[tu
     data["load"] = os.getloadavg()[0]
     yield 0.65, "two workers, killed and resumed"
     data["killed"] = killed_and_resumed(parts, folder / "killed", len(records))
-    others = {name: records_of(folder / name) for name in ("two", "killed")}
+    others = {name: make_records(folder / name) for name in ("two", "killed")}
     data["same_two"], data["same_killed"] = others["two"] == records, others["killed"] == records
     data["unlike"] = sum(
         found.get(path) != told for found in others.values() for path, told in records.items()

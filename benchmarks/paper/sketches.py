@@ -7,7 +7,7 @@ from typing import Any
 
 import workhold
 from paper.document import Block, Figures, Heading, Inline, Marked, Paragraph, Picture, Table
-from workhold.contact.features import contact_features
+from workhold.contact.features import list_contact_features
 from workhold.drawing.bench import bench_of, draw_bench, outline_path
 from workhold.drawing.scene import BLACK, GREY, Box, Scene, View
 
@@ -97,7 +97,7 @@ def grown_features(name: str, peg_radius: float) -> str:
     bounds = Box(*part.bounds).grown(2 * peg_radius)
     view = View.fitting(bounds, Box(EDGE, EDGE, CARD[0] - EDGE, CARD[1] - EDGE))
     scene.path(outline_path(part.loop_segments, view), BLACK, 1.6, "#fff7d1", fill_rule="evenodd")
-    for feature in contact_features(part, peg_radius):
+    for feature in list_contact_features(part, peg_radius):
         scene.path(outline_path([[feature.segment]], view).rstrip("Z"), "#b3122a", 1.6)
         middle = view(feature.segment.at(0.0))
         scene.circle(middle, peg_radius * view.scale, "none", GREY, 0.8)

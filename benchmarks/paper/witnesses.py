@@ -102,7 +102,7 @@ def found_by_naive_roots(result: Any, tolerance: float) -> Any:
     kept = vars(engine)["orientations"]
     vars(engine)["orientations"] = naive_roots(tolerance)
     try:
-        return engine.answer_by_algebra(result.query)
+        return engine.find_fixtures_by_algebra(result.query)
     finally:
         vars(engine)["orientations"] = kept
 

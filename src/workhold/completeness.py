@@ -93,10 +93,10 @@ def completed(
     # The best of a part of the fixtures need not be among the best of all.
     query = listing.query if listing.complete else evolve(listing.query, best=None)
     if is_by_algebra(listing.statistics):
-        from workhold.algebra.engine import answer_by_algebra
-        from workhold.search.seated import seated_answer
+        from workhold.algebra.engine import find_fixtures_by_algebra
+        from workhold.search.seated import answer_with_seating
 
-        result = seated_answer(query, answer_by_algebra, **watching)
+        result = answer_with_seating(query, find_fixtures_by_algebra, **watching)
     else:
         from workhold.search.design import answer
 

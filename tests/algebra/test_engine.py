@@ -13,7 +13,7 @@ import pytest
 from fixture_sets import Judge, assert_same, listed, vise_of
 from strategies import star, straightened
 from workhold import Query, Result, Vise, Workpiece, design
-from workhold.algebra import answer_by_algebra
+from workhold.algebra import find_fixtures_by_algebra
 
 COMPLETE = Path(__file__).parent.parent / "data" / "complete"
 QUARTER = tan(pi / 8)
@@ -21,7 +21,7 @@ QUARTER = tan(pi / 8)
 
 def assert_engines_agree(workpiece: Workpiece, vise: Vise) -> int:
     """Both engines list the same fixtures, nothing is left undecided; how many fixtures that is."""
-    ours = answer_by_algebra(Query(workpiece, vise))
+    ours = find_fixtures_by_algebra(Query(workpiece, vise))
     assert_search_agrees(ours)
     return len(ours)
 
@@ -58,7 +58,7 @@ def test_complete_sets(name: str) -> None:
     workpiece = Workpiece.from_loops(name, truth["workpiece"]["loops"])
     vise = vise_of(truth)
     judge = Judge(workpiece, vise)
-    ours = answer_by_algebra(Query(workpiece, vise))
+    ours = find_fixtures_by_algebra(Query(workpiece, vise))
     have = [judge.identity(fixture) for fixture in listed(ours)]
     for fixture in truth["fixtures"]:
         key, theta, _ = judge.identity(
@@ -157,7 +157,10 @@ def test_three_equal_arcs_that_all_slide() -> None:
 def test_concentric_arcs_and_a_whole_circle() -> None:
     """Three normals through one point never close: a disc has no fixture, a disc with a flat has."""
     vise = Vise(pitch=10.0, columns=2, peg_radius=2.0)
-    assert len(answer_by_algebra(Query(Workpiece.from_loops("disc", [[[-20, 0, 1], [20, 0, 1]]]), vise))) == 0
+    assert (
+        len(find_fixtures_by_algebra(Query(Workpiece.from_loops("disc", [[[-20, 0, 1], [20, 0, 1]]]), vise)))
+        == 0
+    )
     assert assert_engines_agree(Workpiece.from_loops("half", [[[-20, 0, 0], [20, 0, 1]]]), vise) > 0
 
 
@@ -165,17 +168,17 @@ def test_concentric_arcs_and_a_whole_circle() -> None:
 def test_options() -> None:
     """One type alone, a margin at the ends, and a cancelled search."""
     part, vise = rounded(30.0, 20.0, 6.0, 0.2), Vise(pitch=10.0, columns=2, peg_radius=2.0)
-    ours = answer_by_algebra(Query(part, vise, "II", contact_margin=1.0))
+    ours = find_fixtures_by_algebra(Query(part, vise, "II", contact_margin=1.0))
     theirs = design(part, vise, types=("II",), contact_margin=1.0)
     assert ours.counts == theirs.counts
     cancel = Event()
     cancel.set()
-    assert not answer_by_algebra(Query(part, vise), cancel=cancel).complete
+    assert not find_fixtures_by_algebra(Query(part, vise), cancel=cancel).complete
 
 
 @pytest.mark.thorough
 def test_double_contacts_are_no_fixtures() -> None:
     """Two pegs exactly as far apart as the tips of a pill touch it doubly: their lines of action are one, nothing closes."""
     pill = Workpiece.from_loops("pill", [[[0, -8, 0], [30, -8, 1], [30, 8, 0], [0, 8, 1]]])
-    ours = answer_by_algebra(Query(pill, Vise(pitch=10.0, columns=2, peg_radius=2.0), "II"))
+    ours = find_fixtures_by_algebra(Query(pill, Vise(pitch=10.0, columns=2, peg_radius=2.0), "II"))
     assert ours.counts == {"I": 0, "II": 44}

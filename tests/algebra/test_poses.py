@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from workhold.algebra.candidates import SECTORS
-from workhold.algebra.exact import exact_resultant, exact_roots
-from workhold.algebra.poses import companion_roots, orientations, poses_at
+from workhold.algebra.exact import compute_exact_resultant, find_exact_roots
+from workhold.algebra.poses import find_companion_roots, find_poses_at, orientations
 from workhold.algebra.resultants import PAPER_DEGREES, TRUE_DEGREES, coefficients
-from workhold.algebra.table_two import random_contacts, table_two
+from workhold.algebra.table_two import make_random_contacts, table_two
 
 
 @pytest.mark.thorough
@@ -19,12 +19,12 @@ from workhold.algebra.table_two import random_contacts, table_two
 def test_no_real_root_is_lost_to_rounding(case: tuple[int, int]) -> None:
     """Every real root isolated in ball arithmetic is met again, to the last digits, by a pose from double precision."""
     count = 60
-    contacts = random_contacts(case, count, 5)
+    contacts = make_random_contacts(case, count, 5)
     owner, psi, undecided = orientations(contacts, case, np.ones((count, SECTORS), np.bool_))
     assert len(undecided) == 0
-    poses = poses_at(contacts, case, owner, psi)
+    poses = find_poses_at(contacts, case, owner, psi)
     for k in range(count):
-        roots = exact_roots(contacts.take(np.array([k])), case)
+        roots = find_exact_roots(contacts.take(np.array([k])), case)
         assert roots is not None
         real = np.angle(roots[np.abs(np.abs(roots) - 1.0) < 1e-9])
         assert len(real) > 0
@@ -53,10 +53,10 @@ def test_every_real_root_is_a_pose() -> None:
 @pytest.mark.parametrize("case", [case for case in PAPER_DEGREES if case[0] > 0])
 def test_ball_arithmetic_and_double_precision_agree(case: tuple[int, int]) -> None:
     """The resultant written out over balls has the same degree and roots as the one evaluated in doubles."""
-    contacts = random_contacts(case, 1, 11)
-    exact = exact_roots(contacts, case)
+    contacts = make_random_contacts(case, 1, 11)
+    exact = find_exact_roots(contacts, case)
     assert exact is not None
-    assert len(exact) == TRUE_DEGREES[case] == exact_resultant(contacts, case).degree()
-    double = companion_roots(coefficients(contacts, case)[0])[0]
+    assert len(exact) == TRUE_DEGREES[case] == compute_exact_resultant(contacts, case).degree()
+    double = find_companion_roots(coefficients(contacts, case)[0])[0]
     for root in exact:
         assert np.abs(double - root).min() <= 1e-3 * (1.0 + abs(root))

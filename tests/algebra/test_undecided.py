@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from workhold import Query, Vise, Workpiece
-from workhold.algebra import answer_by_algebra, engine
+from workhold.algebra import engine, find_fixtures_by_algebra
 from workhold.algebra.candidates import SECTORS, Systems
-from workhold.algebra.engine import MOST_NAMED, undecided_notes
+from workhold.algebra.engine import MOST_NAMED, write_undecided_notes
 from workhold.algebra.sliding_pairs import two_and_two_sliding_pairs
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]])
@@ -26,7 +26,7 @@ def systems(feature: list[int], column: list[int], row: list[int], count: int = 
 def test_faces_and_holes_are_named() -> None:
     faces = np.array([0, 0, 3, 7])
     found = [systems([1, 2, 3], [0, 1, 0], [0, 0, 2]), systems([0, 1, 2, 3], [0, -1, 0, 1], [0, 2, -3, -3])]
-    assert list(map(str, undecided_notes(found, faces))) == [
+    assert list(map(str, write_undecided_notes(found, faces))) == [
         "Undecided: pegs in left column +0, row +0 on face 0; left column +1, row +0 on face 3; "
         "left column +0, row +2 on face 7.",
         "Undecided: pegs in left column +0, row +0 on face 0; left column -1, row +2 on face 0; "
@@ -35,14 +35,16 @@ def test_faces_and_holes_are_named() -> None:
 
 
 def test_a_long_list_is_cut() -> None:
-    notes = list(undecided_notes([systems([0, 1, 2], [0, 0, 0], [0, 1, 2], MOST_NAMED + 7)], np.arange(3)))
+    notes = list(
+        write_undecided_notes([systems([0, 1, 2], [0, 0, 0], [0, 1, 2], MOST_NAMED + 7)], np.arange(3))
+    )
     assert len(notes) == MOST_NAMED + 1
     assert str(notes[-1]) == "Undecided: 7 more systems of pegs and faces."
 
 
 @pytest.mark.thorough
 def test_a_result_without_doubt_has_no_note() -> None:
-    result = answer_by_algebra(Query(WEDGE, VISE))
+    result = find_fixtures_by_algebra(Query(WEDGE, VISE))
     assert result.statistics["undecided"] == 0
     assert result.notes == ()
 
@@ -56,7 +58,7 @@ def test_a_resultant_that_vanishes_is_named(monkeypatch: pytest.MonkeyPatch) -> 
 
     monkeypatch.setitem(engine.GENERATORS, (2, 2), (only_that, two_and_two_sliding_pairs))
     monkeypatch.setattr(engine, "alike", lambda contacts: np.zeros(len(contacts.rows), np.bool_))
-    result = answer_by_algebra(Query(WEDGE, VISE, "I"))
+    result = find_fixtures_by_algebra(Query(WEDGE, VISE, "I"))
     assert result.statistics["undecided"] == 1
     assert str(result.notes[-1]).startswith(
         "Undecided: pegs in left column +0, row +0 on face 0; left column +0, row +1 on"

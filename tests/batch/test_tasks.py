@@ -55,7 +55,7 @@ def test_of_very_many_fixtures_the_best_are_sought(
     """They are the first of all, and how many there are is told about."""
     assert isinstance(COARSE.query, Query)
     counted = done(Answering("name", "title", part, COARSE.query, 3)).record
-    monkeypatch.setattr(estimate, "estimated_fixtures", lambda *asked, **more: 4_240_000)
+    monkeypatch.setattr(estimate, "estimate_fixtures", lambda *asked, **more: 4_240_000)
     sought = done(Answering("name", "title", part, COARSE.query, 3)).record
     assert counted is not None and sought is not None
     all_counted, best = plain_record(counted), plain_record(sought)

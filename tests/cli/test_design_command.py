@@ -373,7 +373,7 @@ def test_of_very_many_fixtures_the_best_are_listed(
 ) -> None:
     """How many there are, and how large a file of all would be, is said before; two hundred thousand are not many."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(estimate, "estimated_fixtures", lambda *asked: 249_600)
+    monkeypatch.setattr(estimate, "estimate_fixtures", lambda *asked: 249_600)
     outcome = run("design", "widget", *VISE, *arguments)
     assert told in outcome.stderr and bool(told) == (
         "about" in outcome.stderr or "opposites" in outcome.stderr
@@ -381,7 +381,7 @@ def test_of_very_many_fixtures_the_best_are_listed(
     assert outcome.exit_code == (2 if "error" in outcome.stderr else 0)
     if outcome.exit_code == 0:
         assert searched["asked"].best == best
-    monkeypatch.setattr(estimate, "estimated_fixtures", lambda *asked: 200_000)
+    monkeypatch.setattr(estimate, "estimate_fixtures", lambda *asked: 200_000)
     if best != 4 and "--best" not in arguments:
         outcome = run("design", "widget", *VISE, *arguments, "--force")
         assert outcome.exit_code == 0 and "about" not in outcome.stderr and searched["asked"].best is None
@@ -392,7 +392,7 @@ def test_a_file_that_is_too_large_as_text_is_refused_beforehand(
 ) -> None:
     """The remedy works: columns carry them."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(estimate, "estimated_fixtures", lambda *asked: 4_000_000)
+    monkeypatch.setattr(estimate, "estimate_fixtures", lambda *asked: 4_000_000)
     outcome = run("design", "widget", *VISE, "--out", "r.json", "--all")
     assert outcome.exit_code == 2 and "3,840 MB in r.json" in outcome.stderr and "900 MB" in outcome.stderr
     assert searched["asked"] is None and not Path("r.json").exists()
@@ -408,5 +408,5 @@ def test_json_says_how_many_there_are_about(
     run: Any, searched: dict[str, Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """For programs that cannot read remarks."""
-    monkeypatch.setattr(estimate, "estimated_fixtures", lambda *asked: 249_600)
+    monkeypatch.setattr(estimate, "estimate_fixtures", lambda *asked: 249_600)
     assert json.loads(run("design", "widget", *VISE, "--json").stdout)["estimated"] == 249_600

@@ -13,7 +13,7 @@ import workhold
 from workhold import Plate, Workpiece
 from workhold.drawing.sheet_writing import lift_of
 from workhold.fixels.support_hardware import SupportPads, TopClamp
-from workhold.model.support_bodies import supported_sizes
+from workhold.model.support_bodies import size_supported_bodies
 from workhold.model.support_triples import ChosenSupports
 
 Run = Callable[..., Outcome]
@@ -49,7 +49,10 @@ def test_a_result_keeps_them_and_supports_sheet_and_bodies_use_them(
     assert run("verify", out).exit_code == 0
     found = result[0].supports(12)
     assert (found.request.pad_radius, found.request.inside, found.request.reach) == (3, 6, CLAMP.reach)
-    assert supported_sizes(found).floor == -12 and supported_sizes(found, support_height=7).floor == -7
+    assert (
+        size_supported_bodies(found).floor == -12
+        and size_supported_bodies(found, support_height=7).floor == -7
+    )
     chosen = ChosenSupports.of(found)
     assert (lift_of(chosen, None), lift_of(chosen, 7.0), lift_of(None, None)) == (12, 7, 0)
     sheet = tmp_path / "sheet.svg"

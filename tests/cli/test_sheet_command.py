@@ -19,7 +19,7 @@ from svg_reading import by_class
 
 import workhold
 from workhold import Query, Result, __version__, save
-from workhold.model.fixture_table import FixtureTable, unknown_quality
+from workhold.model.fixture_table import FixtureTable, make_unknown_quality
 
 
 def diamond_result() -> Result:
@@ -35,7 +35,7 @@ def diamond_result() -> Result:
         position=np.array([[fixture.pose.x, fixture.pose.y]]),
         jaw_separation=np.array([fixture.travel]),
         force=np.array([[peg.force for peg in fixture.pegs]]),
-        quality=unknown_quality(null_vector.min(axis=1)),
+        quality=make_unknown_quality(null_vector.min(axis=1)),
     )
     counts = {"I": 2, "II": 0}
     return Result(Query(workpiece, vise), table.take(np.array([0, 0])), counts, counts)

@@ -255,7 +255,7 @@ def test_a_fixture_like_an_earlier_one_may_be_the_first_on_supports(monkeypatch:
             asked.append(fixture.listing.row + 1)
             yield SimpleNamespace(triples=["three"] if asked[-1] == rank else [], stopped=False)
 
-    monkeypatch.setattr("workhold.supports.asking.supports_one_by_one", found)
+    monkeypatch.setattr("workhold.supports.asking.yield_supports", found)
     monkeypatch.setattr("workhold.model.support_triples.ChosenSupports.of", lambda found: found)
     monkeypatch.setattr("workhold.presenting.papers.write_paper", lambda *_: None)
     assert first_sheet(result, "a.pdf", "-", 20.0, MILLIMETRE, None) == rank

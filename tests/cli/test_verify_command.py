@@ -16,10 +16,10 @@ import pytest
 
 from fakes import fake_result
 from workhold import Query, Result, Tolerance, Vise, Workpiece, design, save
-from workhold.model.fixture_table import FixtureTable, unknown_quality
+from workhold.model.fixture_table import FixtureTable, make_unknown_quality
 from workhold.model.search_report import Proof
 from workhold.statics.effective_error import EffectiveErrors
-from workhold.statics.quality import quality_of
+from workhold.statics.quality import measure_quality
 
 
 @pytest.fixture(scope="module")
@@ -87,7 +87,7 @@ def test_only_the_first_are_listed(run: Any, tmp_path: Path) -> None:
     assert "is refuted: " not in run("verify", tmp_path / "r.json", "--list", 0).stdout
 
 
-def on_the_edge(hair: float) -> Result:
+def find_miss_of_exact_test(hair: float) -> Result:
     """One Type II fixture whose second peg touches its face ``hair`` mm from the convex corner at (5, -hair).
 
     Pegs of radius 5 in whole millimetres touch faces of slope 3/4 and two upright ones: every contact is exact, and the
@@ -108,9 +108,9 @@ def on_the_edge(hair: float) -> Result:
         position=np.array([[0.0, 20.0]]),
         jaw_separation=np.array([40.0]),
         force=force,
-        quality=unknown_quality((force / force.sum()).min(axis=1)),
+        quality=make_unknown_quality((force / force.sum()).min(axis=1)),
     )
-    table = attrs.evolve(table, quality=quality_of(table, part, vise, Tolerance(), ()))
+    table = attrs.evolve(table, quality=measure_quality(table, part, vise, Tolerance(), ()))
     counts, proof = {"I": 0, "II": 1}, Proof(96, 1, 0, 1, 0)
     work = ("chord_curves", "sliding_pairs", "curve_pairs", "crossings_sought", "contacts_examined")
     statistics = {"features": 9} | dict.fromkeys(work, 0)
@@ -125,7 +125,7 @@ def on_the_edge(hair: float) -> Result:
 def test_undecided_fixtures_are_no_fault(run: Any, tmp_path: Path, hair: float, verdict: str) -> None:
     """A contact must lie more than 1e-9 mm from a corner. One that lies exactly there, on the very edge of the rule, is
     neither proven nor refuted at any precision; a little to either side it is decided."""
-    save(on_the_edge(hair), tmp_path / "r.json")
+    save(find_miss_of_exact_test(hair), tmp_path / "r.json")
     outcome = run("verify", tmp_path / "r.json")
     counts = {"proven": 0, "refuted": 0, "undecided": 0} | {verdict: 1}
     words = ", ".join(f"{count} {name}" for name, count in counts.items())

@@ -13,13 +13,13 @@ from exact_chords import exactly
 from strategies import outlines, vises
 from workhold import Query, Restrictions, Vise, Workpiece, load, polygon_zone
 from workhold.contact import features
-from workhold.contact.features import allowed_features, contact_features, end_slacks, feature_rows
+from workhold.contact.features import allowed_features, end_slacks, list_contact_features, make_feature_rows
 from workhold.contact.problem import Problem
 from workhold.geometry.segment import Arc, segment_rows
 from workhold.kernels.base.distance import outline_distance, outline_distances, segment_distance
-from workhold.model.own_outlines import outline_diameter, segments_diameter
-from workhold.proof.ball_contacts import contact_value, from_origin
-from workhold.statics.contact_matrix import outward_normals
+from workhold.model.own_outlines import measure_outline_diameter, measure_segments_diameter
+from workhold.proof.ball_contacts import compute_contact_value, from_origin
+from workhold.statics.contact_matrix import compute_outward_normals
 from workhold.verification.ball_geometry import BallOutline
 
 
@@ -29,7 +29,7 @@ def test_a_peg_on_a_feature_touches_its_face_and_nothing_else(part, vise):
     """At every point of a feature the face is at distance rho, along the feature's normal, and no face is nearer."""
     outline = segment_rows(part.segments)
     faces = {face.number: face for face in part.faces}
-    for feature in contact_features(part, vise.peg_radius):
+    for feature in list_contact_features(part, vise.peg_radius):
         face = faces[feature.face].segment
         row = segment_rows([face])[0]
         for t in np.linspace(-1, 1, 9) * feature.segment.half_extent:
@@ -44,17 +44,17 @@ def test_a_peg_on_a_feature_touches_its_face_and_nothing_else(part, vise):
 @given(outlines(), vises())
 def test_features_are_ordered_by_face_and_carry_outward_normals(part, vise):
     """Faces ascend; a feature is of its face's kind; its row gives the same normals as the segment."""
-    features = contact_features(part, vise.peg_radius)
+    features = list_contact_features(part, vise.peg_radius)
     assert [f.face for f in features] == sorted(f.face for f in features)
     faces = {face.number: face.segment for face in part.faces}
-    rows = feature_rows(features)
+    rows = make_feature_rows(features)
     for feature, row in zip(features, rows, strict=True):
         face = faces[feature.face]
         assert type(feature.segment) is type(face)
         if isinstance(face, Arc):
             assert feature.segment.radius == pytest.approx(face.radius + face.sign * vise.peg_radius)
         t = 0.4 * feature.segment.half_extent
-        normal = outward_normals(row, np.array(feature.segment.at(t)))
+        normal = compute_outward_normals(row, np.array(feature.segment.at(t)))
         assert normal == pytest.approx(feature.segment.normal(t), abs=1e-9)
 
 
@@ -62,12 +62,12 @@ def test_features_are_ordered_by_face_and_carry_outward_normals(part, vise):
 @settings(max_examples=80)
 @given(outlines())
 def test_the_diameter_is_the_largest_distance_of_a_sampling(part):
-    """outline_diameter is at least every sampled distance and no more than the finest one plus the sampling's error."""
+    """The diameter is at least every sampled distance and no more than the finest one plus the sampling's error."""
     points = np.array(
         [s.at(t * s.half_extent) for s in part.loop_segments[0] for t in np.linspace(-1, 1, 81)]
     )
     farthest = np.hypot(*(points[:, None] - points[None]).transpose(2, 0, 1)).max()
-    diameter = outline_diameter(part)
+    diameter = measure_outline_diameter(part)
     longest = max(s.length for s in part.loop_segments[0])
     assert farthest - 1e-9 <= diameter <= farthest + longest / 80 * 0.2 + 1e-9
 
@@ -77,14 +77,16 @@ def test_the_diameter_is_the_largest_distance_of_a_sampling(part):
 def test_the_diameter_is_that_of_the_two_faces_farthest_apart(part):
     """To the last digit the largest over all pairs, whatever pairs are passed over."""
     outer = [face.segment for face in part.faces if face.number < len(part.loops[0])]
-    assert outline_diameter(part) == max(segments_diameter(a, b) for a in outer for b in outer)
+    assert measure_outline_diameter(part) == max(
+        measure_segments_diameter(a, b) for a in outer for b in outer
+    )
 
 
 def test_known_diameters():
     """A disc's is 2 R, an obround's its length, a rectangle's its diagonal, a half disc's 2 R."""
 
     def diameter(*loops):
-        return outline_diameter(Workpiece.from_loops("part", loops))
+        return measure_outline_diameter(Workpiece.from_loops("part", loops))
 
     assert diameter([[-5, 3, 1], [5, 3, 1]]) == pytest.approx(10)
     assert diameter([[0, 0, 0], [30, 0, 1], [30, 10, 0], [0, 10, 1]]) == pytest.approx(40)
@@ -97,13 +99,13 @@ def test_known_diameters():
 def test_tangent_joints_forgive_rounding_and_corners_do_not():
     """Ends of features joined tangentially have a positive slack, all others a negative one; a whole circle has none."""
     obround = Workpiece.from_loops("obround", [[[0, 0, 0], [30, 0, 1], [30, 10, 0], [0, 10, 1]]])
-    assert (end_slacks(contact_features(obround, 2.0)) > 0).all()
+    assert (end_slacks(list_contact_features(obround, 2.0)) > 0).all()
     square = Workpiece.from_loops("square", [[[0, 0, 0], [30, 0, 0], [30, 30, 0], [0, 30, 0]]])
-    assert (end_slacks(contact_features(square, 2.0)) < 0).all()
+    assert (end_slacks(list_contact_features(square, 2.0)) < 0).all()
     # With rho = 0 features join at corners, but not tangentially.
-    assert (end_slacks(contact_features(square, 0.0)) < 0).all()
+    assert (end_slacks(list_contact_features(square, 0.0)) < 0).all()
     half = Workpiece.from_loops("half", [[[0, 0, 0], [30, 0, 0], [30, 10, 1], [0, 10, 0]]])
-    features = contact_features(half, 2.0)
+    features = list_contact_features(half, 2.0)
     slack = end_slacks(features)
     for feature, (low, high) in zip(features, slack, strict=True):
         ends = [
@@ -116,7 +118,7 @@ def test_tangent_joints_forgive_rounding_and_corners_do_not():
 
 def test_ends_are_compared_alike_however_many_at_a_time(monkeypatch):
     """All at once, one by one, or five by five."""
-    locus = contact_features(load("widget"), 3.0)
+    locus = list_contact_features(load("widget"), 3.0)
     slack = end_slacks(locus)
     assert (slack > 0).any() and (slack < 0).any()
     for together in (1, 10 * len(locus)):
@@ -129,7 +131,7 @@ def test_a_peg_too_fat_for_every_corner_leaves_no_feature_there():
     plate = [[0, 0, 0], [60, 0, 0], [60, 60, 0], [0, 60, 0]]
     for radius, expected in ((2.0, []), (3.0, []), (5.0, [2.0])):
         part = Workpiece.from_loops("plate", [plate, [[30 - radius, 30, 1], [30 + radius, 30, 1]]])
-        inside = [f.segment for f in contact_features(part, 3.0) if f.face >= 4]
+        inside = [f.segment for f in list_contact_features(part, 3.0) if f.face >= 4]
         assert [s.radius for s in inside] == pytest.approx(expected)
         assert all(s.is_full and s.sign == -1.0 for s in inside)
 
@@ -148,7 +150,7 @@ def test_a_hollow_that_the_peg_fills_has_no_feature(excess: float, count: int) -
         [0, 60, 0],
     ]
     part = Workpiece.from_loops("angle", [angle, [[40 - radius, 10, 1], [40 + radius, 10, 1]]])
-    arcs = [f.segment for f in contact_features(part, 5.0) if isinstance(f.segment, Arc)]
+    arcs = [f.segment for f in list_contact_features(part, 5.0) if isinstance(f.segment, Arc)]
     assert len(arcs) == 2 * count
     assert [arc.radius for arc in arcs] == pytest.approx([excess] * len(arcs), abs=1e-9)
 
@@ -163,7 +165,7 @@ def test_a_joint_is_tangent_to_within_a_few_digits_of_a_bulge(turn, tangent):
         "half", [[[0, 0, 0], [30, 0, 0], [30, 10, tan(pi / 4 + turn / 2)], [0, 10, 0]]]
     )
     # Point pegs: their features end at the corners themselves.
-    assert (end_slacks(contact_features(half, 0.0)) > 0).any() == tangent
+    assert (end_slacks(list_contact_features(half, 0.0)) > 0).any() == tangent
     with exactly():
         outline = BallOutline.of(half)
     assert outline.smooth_ends(2, has_flat=False) == (tangent, tangent)
@@ -188,7 +190,11 @@ def test_a_shallow_arc_stays_where_it_is_drawn_however_far_its_centre_is(
         assert outline_distances(place[None], row[None])[0] < size
         with exactly():
             assert (
-                abs(contact_value(row.tolist(), from_origin(row.tolist(), (arb(place[0]), arb(place[1])))))
+                abs(
+                    compute_contact_value(
+                        row.tolist(), from_origin(row.tolist(), (arb(place[0]), arb(place[1])))
+                    )
+                )
                 < size
             )
 
@@ -196,8 +202,8 @@ def test_a_shallow_arc_stays_where_it_is_drawn_however_far_its_centre_is(
 def test_the_axis_of_a_line_counts_with_its_length() -> None:
     """Rounding makes it other than 1, and the distance from the line is none the less in mm."""
     row = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 0.0, 1.0, 0.0, 0.0]
-    assert contact_value(row, from_origin(row, (arb(1.0 + 4.0), arb(2.0 - 3.0)))).contains(5)
-    assert contact_value(row, from_origin(row, (arb(1.0 - 8.0), arb(2.0 + 6.0)))).contains(-10)
+    assert compute_contact_value(row, from_origin(row, (arb(1.0 + 4.0), arb(2.0 - 3.0)))).contains(5)
+    assert compute_contact_value(row, from_origin(row, (arb(1.0 - 8.0), arb(2.0 + 6.0)))).contains(-10)
 
 
 @pytest.mark.parametrize(("margin", "beyond"), [(0.0, 0.0), (20.0, 20.0), (50.0, 43.0)])
@@ -206,7 +212,7 @@ def test_a_zone_may_be_touched_and_the_margin_counts_from_the_ends_of_the_uncut_
 ) -> None:
     """A box cuts the feature of a side from 0 to 60 at 17 and 33: a peg may stand there if it is so far from 0 and 60."""
     square = Workpiece.from_loops("square", [[[0, 0, 0], [60, 0, 0], [60, 60, 0], [0, 60, 0]]])
-    locus = contact_features(square, 3.0)
+    locus = list_contact_features(square, 3.0)
     box = polygon_zone([(20, -10), (30, -10), (30, -2), (20, -2)])
     left = allowed_features(locus, square, Restrictions(zones=(box,)), 3.0)
     slack = end_slacks(left, margin, locus)[:2]

@@ -9,13 +9,13 @@ import pytest
 from attrs import evolve, frozen
 
 from workhold import Query, Result, Vise, Workpiece, design
-from workhold.contact.features import end_distances
+from workhold.contact.features import measure_end_distances
 from workhold.contact.problem import Frame, Problem
 from workhold.errors import InputError
 from workhold.fixels.carrier import Holes
 from workhold.fixels.toolkit import Carrier, Travel
 from workhold.model.quality import END_DISTANCE
-from workhold.statics.quality import quality_of
+from workhold.statics.quality import measure_quality
 
 PART = Workpiece.from_loops(
     "part",
@@ -154,7 +154,7 @@ def test_pegs_of_two_radii_touch_features_of_their_own() -> None:
     turn = np.exp(-1j * thin.table.theta)[:, None]
     place = (pegs_of(thin) - (thin.table.position @ (1, 1j))[:, None]) * turn - complex(*PART.center)
     moves = thin.toolkit.peg_carriers(thin.table.arrangement)
-    ends = quality_of(thin.table, PART, thin.toolkit)[:, END_DISTANCE]
+    ends = measure_quality(thin.table, PART, thin.toolkit)[:, END_DISTANCE]
     for k in range(len(thin)):
         own = []
         for peg in range(4):
@@ -165,5 +165,7 @@ def test_pegs_of_two_radii_touch_features_of_their_own() -> None:
                 np.where(rows[:, 0] == 0.0, np.abs(off.imag), np.abs(np.abs(off) - rows[:, 6])).min() < 1e-6
             )
             point = np.array([place[k, peg].real, place[k, peg].imag])
-            own.append(end_distances(rows[:, :10], np.broadcast_to(point, (len(rows), 2))).min(axis=1).max())
+            own.append(
+                measure_end_distances(rows[:, :10], np.broadcast_to(point, (len(rows), 2))).min(axis=1).max()
+            )
         assert ends[k] == pytest.approx(min(own), abs=1e-9)

@@ -7,8 +7,13 @@ from math import cos, hypot, inf, sin
 import numpy as np
 import pytest
 
-from workhold.contact.swept import Swept, span_boxes, span_rows
-from workhold.geometry.segment import Segment, bounding_box, distance_to_segment, segment_from_bulge
+from workhold.contact.swept import Swept, bound_spans, make_span_rows
+from workhold.geometry.segment import (
+    Segment,
+    bounding_box,
+    make_segment_from_bulge,
+    measure_distance_to_segment,
+)
 from workhold.model.program import PathVertex, SweptPiece
 
 
@@ -33,7 +38,7 @@ def segment_of(one: SweptPiece) -> Segment | None:
     if len(one.path) == 1:
         return None
     (x, y, bulge), (to_x, to_y, _) = one.path
-    return segment_from_bulge((x, y), (to_x, to_y), bulge)
+    return make_segment_from_bulge((x, y), (to_x, to_y), bulge)
 
 
 def slow_reach(pieces: list[SweptPiece], x: float, y: float) -> float:
@@ -42,7 +47,7 @@ def slow_reach(pieces: list[SweptPiece], x: float, y: float) -> float:
     for one in pieces:
         segment = segment_of(one)
         px, py, _ = one.path[0]
-        off = hypot(x - px, y - py) if segment is None else distance_to_segment((x, y), segment)
+        off = hypot(x - px, y - py) if segment is None else measure_distance_to_segment((x, y), segment)
         out = min(out, off - one.radius)
     return out
 
@@ -93,8 +98,8 @@ def test_the_least_height_over_a_line_is_that_of_a_walk() -> None:
 def test_rows_and_boxes_of_spans_are_those_of_segments() -> None:
     pieces = [one for one in random_pieces(5, 100) if len(one.path) > 1]
     spans = np.array([(*one.path[0][:2], *one.path[1][:2], one.path[0][2], one.radius) for one in pieces])
-    rows = span_rows(spans)
-    for row, box, one in zip(rows, span_boxes(rows), pieces, strict=True):
+    rows = make_span_rows(spans)
+    for row, box, one in zip(rows, bound_spans(rows), pieces, strict=True):
         segment = segment_of(one)
         assert segment is not None
         np.testing.assert_allclose(

@@ -9,8 +9,8 @@ import pytest
 
 from workhold.contact.features import ContactFeature, passed_by
 from workhold.contact.swept import Swept
-from workhold.contact.trimming import LEAST_PART, covered_parts, left_of, most_in_the_way
-from workhold.geometry.segment import Arc, Line, Segment, segment_from_bulge
+from workhold.contact.trimming import LEAST_PART, find_covered_parts, find_line_most_in_the_way, left_of
+from workhold.geometry.segment import Arc, Line, Segment, make_segment_from_bulge
 from workhold.model.program import SweptPiece
 
 BEYOND = 0.5
@@ -36,7 +36,7 @@ def random_case(seed: int) -> tuple[Segment, Swept]:
         pieces.append(piece(k + 1, path, float(random.choice([0.2, 1.0, 2.0]))))
     start, end = (tuple(point) for point in random.uniform(-15, 15, (2, 2)).tolist())
     bulge = float(random.choice([0.0, 0.3, -0.9, 2.0, 1e-3, -1e-2]))
-    feature: Segment = segment_from_bulge(start, end, bulge)
+    feature: Segment = make_segment_from_bulge(start, end, bulge)
     if random.random() < 0.2:
         feature = Arc((1.0, -2.0), float(random.uniform(1, 9)), 1.0, pi, 1.0)
     return feature, Swept.of(tuple(pieces))
@@ -62,7 +62,7 @@ def test_what_is_left_is_what_a_walk_finds_clear(seed: int) -> None:
         inside = (points[:, 0] > x0) & (points[:, 0] < x1) & (points[:, 1] > y0) & (points[:, 1] < y1)
         reach[inside] = -1.0
     kept = np.zeros(len(places), np.bool_)
-    for part in left_of(feature, covered_parts(feature, swept, BEYOND)[0]):
+    for part in left_of(feature, find_covered_parts(feature, swept, BEYOND)[0]):
         low, high = parameter_range(part, feature)
         kept |= (places >= low - 1e-9) & (places <= high + 1e-9)
     marginal = np.abs(reach - BEYOND) < 1e-6
@@ -81,7 +81,7 @@ def test_a_place_exactly_at_the_distance_stays_and_the_feature_is_cut_from_the_w
 def test_a_sliver_between_two_passes_is_no_place() -> None:
     feature = Line((0.0, 0.0), (40.0, 0.0))
     passes = [piece(k, ((5.0 + k, 0.0, 0.0),), 0.5 - 1e-9) for k in range(31)]
-    left = left_of(feature, covered_parts(feature, Swept.of(tuple(passes)), 0.0)[0])
+    left = left_of(feature, find_covered_parts(feature, Swept.of(tuple(passes)), 0.0)[0])
     assert [part.middle for part in left] == [pytest.approx((2.25, 0.0)), pytest.approx((37.75, 0.0))]
     assert LEAST_PART < 2e-6
 
@@ -89,5 +89,5 @@ def test_a_sliver_between_two_passes_is_no_place() -> None:
 def test_the_line_that_is_most_in_the_way_is_the_one_that_covers_most() -> None:
     features = [Line((0.0, 0.0), (20.0, 0.0))]
     swept = Swept.of((piece(3, ((1.0, 0.0, 0.0),), 1.0), piece(5, ((12.0, 0.0, 0.0),), 4.0)))
-    assert most_in_the_way(features, swept, 0.5) == 5
-    assert most_in_the_way(features, Swept.of(()), 0.5) is None
+    assert find_line_most_in_the_way(features, swept, 0.5) == 5
+    assert find_line_most_in_the_way(features, Swept.of(()), 0.5) is None

@@ -8,7 +8,7 @@ from drawing_examples import PART_AREA, example, hole_area
 from svg_reading import NAMESPACE, area, by_class, matrix, texts
 
 from workhold import Workpiece
-from workhold.contact.features import contact_features
+from workhold.contact.features import list_contact_features
 from workhold.drawing import draw_features
 
 
@@ -73,5 +73,5 @@ def test_contact_features_are_drawn_on_request() -> None:
     """One dashed path for each contact feature; none without a peg radius."""
     _, workpiece, vise = example()
     (group,) = by_class(draw_features(workpiece, peg_radius=vise.peg_radius), "contact-features")
-    assert len(list(group)) == len(contact_features(workpiece, vise.peg_radius))
+    assert len(list(group)) == len(list_contact_features(workpiece, vise.peg_radius))
     assert not by_class(draw_features(workpiece), "contact-features")

@@ -19,7 +19,7 @@ from workhold.drawing.pdf import svg_to_pdf
 from workhold.drawing.scene import Box, View
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.moves import Moves
-from workhold.statics.program_clearance import passing_of
+from workhold.statics.program_clearance import find_nearest_passing
 
 EXAMPLES = Path(__file__).parent.parent.parent / "examples"
 VISE = Vise(pitch=20, columns=2, peg_radius=4)
@@ -77,7 +77,7 @@ def test_path_lies_where_the_pose_puts_the_part(result: Result) -> None:
 @pytest.mark.thorough
 def test_nearest_move_is_marked_at_its_distance(result: Result) -> None:
     """The marked place is off what it passes by the clearance, the tool's radius and the peg's."""
-    path, near = planned_path(result, 0), passing_of(result, 0)
+    path, near = planned_path(result, 0), find_nearest_passing(result, 0)
     assert path is not None and near is not None
     svg = draw_fixture(result[0], result.workpiece, result.toolkit, path=path)
     (mark,) = by_class(svg, "nearest-place")

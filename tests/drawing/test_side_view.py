@@ -32,7 +32,7 @@ from workhold.drawing.sheet_facts import result_details
 from workhold.drawing.sheet_writing import heights_of
 from workhold.drawing.side_view import WAYS, apart, side_view
 from workhold.errors import InputError
-from workhold.model.dowel_lengths import dowel_for
+from workhold.model.dowel_lengths import find_shortest_dowel
 from workhold.units import INCH, MILLIMETRE, Unit
 
 Box = tuple[float, float, float, float]
@@ -118,7 +118,7 @@ def test_pegs_stand_from_the_plate_to_their_height(name: str) -> None:
     radii = {round(2 * one.peg_radius, 2) for one in result.toolkit.plates}
     assert widths == radii
     diameter = result.toolkit.peg_diameter
-    dowel = dowel_for(diameter, 9.0)
+    dowel = find_shortest_dowel(diameter, 9.0)
     deep = 1.5 * diameter if dowel is None else dowel.depth
     for _, low, _, high in boxes(page, "peg-foot"):
         assert (low, high) == pytest.approx((-lifted - deep, -lifted), abs=2e-3)
@@ -144,7 +144,7 @@ def test_every_height_is_in_the_pdf(unit: object, size: str) -> None:
     scale = 1.0 if unit is MILLIMETRE else 25.4
     result = result_of("plate")
     words = printed(sheet(result, unit=unit, plate_thickness=15.0))
-    dowel = dowel_for(result.toolkit.peg_diameter, PEG_HEIGHT)
+    dowel = find_shortest_dowel(result.toolkit.peg_diameter, PEG_HEIGHT)
     assert dowel is not None
 
     def told(length: float) -> str:

@@ -15,7 +15,7 @@ from workhold.drawing.hardware_table import hardware_of
 from workhold.drawing.scene import LengthUnit
 from workhold.drawing.supports_drawn import counting_words
 from workhold.drawing.upper_side import side_up_words
-from workhold.model.dowel_lengths import dowel_for, standouts
+from workhold.model.dowel_lengths import find_shortest_dowel, standouts
 from workhold.model.first_side import FirstSide
 from workhold.model.setup import part_zero
 from workhold.model.solid import SolidOutline
@@ -197,7 +197,7 @@ def test_pegs_as_high_as_the_part_may_be_as_short_as_they_press(name: str, high:
     tall = evolve(SOLID, solid=evolve(SOLID.solid, peg_height=HEIGHT, bands=bands))
     text = printed(sheet(design(tall, TOOLKITS[name], best=1)))
     peg = TOOLKITS[name].plates[0].peg
-    shorter = dowel_for(TOOLKITS[name].peg_diameter, high)
+    shorter = find_shortest_dowel(TOOLKITS[name].peg_diameter, high)
     dowels = "shorter ones" if shorter is None else f"dowels of {shorter.name}"
     words = f"No {peg} is pressed above {high:.3f} mm, so {dowels} are long enough too."
     assert (words in text) is said and ("are long enough too" in text) is said
@@ -292,7 +292,7 @@ def test_the_drawer_names_the_dowel_that_would_do() -> None:
     """Of a part whose thickness is known and pegs' height is not: what stands beside the pegs stands there, too."""
     result = result_of("plate", False)
     diameter = result.toolkit.peg_diameter
-    would_do = dowel_for(
+    would_do = find_shortest_dowel(
         diameter, max(one for one in standouts(diameter) if one <= min(2 * diameter, HEIGHT))
     )
     assert would_do is not None

@@ -73,7 +73,7 @@ def settings(held: Held) -> list[tuple[str, float]]:
     return [setting_of(tip, held) for tip in tips] or [("S", held.fixture.travel)]
 
 
-def ways_in(words: str) -> set[str]:
+def count_ways(words: str) -> set[str]:
     """All ways that are told of in some words."""
     return set(re.findall("|".join(WORDS.values()), words.replace(OTHER_WAYS, "")))
 
@@ -126,7 +126,7 @@ def test_a_picture_tells_the_fixture(held: Held) -> None:
     """Title, settings, pose, margin and every row of the table; no way is named but those in which its clamps push."""
     fixture, words = held.fixture, texts(picture(HELD.index(held)))
     assert collisions(picture(HELD.index(held))) == []
-    assert ways_in(" ".join(words)) == expected_ways(held)
+    assert count_ways(" ".join(words)) == expected_ways(held)
     rows = [
         [
             name.removeprefix("clamp ") if "line" in held.made else name,
@@ -219,7 +219,7 @@ def numbers(path: str) -> list[tuple[float, float]]:
 def test_a_sheet_tells_what_stands_where(held: Held) -> None:
     """Every peg with its hole, face, place and forces; what is set, how it is measured, and which way clamps push."""
     fixture, words = held.fixture, sheet(HELD.index(held))
-    assert ways_in(words) == expected_ways(held)
+    assert count_ways(words) == expected_ways(held)
     tips = tips_of(fixture)
     rows = []
     for name, peg in zip(peg_names(held), fixture.pegs, strict=True):
@@ -341,7 +341,7 @@ def test_the_terminal_tells_the_fixture(
     print_tables(*tables, *load_tables(cases, fixture, toolkit))
     said = capsys.readouterr().out
     lines = [re.split(r"\s{2,}", line.strip()) for line in said.splitlines()]
-    assert ways_in(said) == expected_ways(held)
+    assert count_ways(said) == expected_ways(held)
     title = fixture.type if fixture.direction is None else f"{fixture.type} {fixture.direction}"
     assert [f"Fixture 3 of 70, type {title}"] in lines
     pose = fixture.pose

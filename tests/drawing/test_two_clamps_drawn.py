@@ -18,7 +18,7 @@ from workhold.files.dxf.writer import setup_dxf
 from workhold.files.result.fixture_text import pin_list
 from workhold.listing.identity import entries
 from workhold.model.clamps import order_words
-from workhold.model.setup import settings_of
+from workhold.model.setup import list_length_settings
 from workhold.model.shown import shown
 from workhold.statics.loads import load_cases
 from workhold.units import MILLIMETRE
@@ -53,7 +53,7 @@ def test_each_clamp_has_its_own_length(pair: str, bolted: bool) -> None:
     """Two settings, each from its clamp's hole to its tip; both are drawn with their words, and none hides another."""
     result = held(pair, bolted)
     fixture, plate = result[0], result.toolkit
-    settings, seen = settings_of(fixture, plate), shown(fixture, plate, RECTANGLE)
+    settings, seen = list_length_settings(fixture, plate), shown(fixture, plate, RECTANGLE)
     assert [setting.tip for setting in settings] == list(fixture.pegs[3:])
     assert [one.setting for one in seen.measured] == list(settings) and len(seen.clamps) == 2
     for setting, clamp in zip(settings, seen.clamps, strict=True):
@@ -106,7 +106,7 @@ def test_files_have_both_clamps() -> None:
     result = held()
     fixture, plate = result[0], result.toolkit
     drawing = setup_dxf(fixture, RECTANGLE, plate).decode()
-    for setting in settings_of(fixture, plate):
+    for setting in list_length_settings(fixture, plate):
         assert f"{setting.sign} = {setting.length:.6g} mm" in drawing
     assert all(peg.hole in drawing for peg in fixture.pegs)
     assert pin_list(fixture, plate, MILLIMETRE, None, None).count("\n") == 4
@@ -123,7 +123,7 @@ def test_the_terminal_tells_pairs_seats_and_order() -> None:
     assert [f"clamp {place}" for place in row["clamps"].split()] == [peg.hole for peg in fixture.pegs[3:]]
     assert fixture.pair is not None and row["best of"] == str(fixture.pair.count)
     assert row["stroke mm"].split() == [
-        f"{setting.length:.1f}" for setting in settings_of(fixture, result.toolkit)
+        f"{setting.length:.1f}" for setting in list_length_settings(fixture, result.toolkit)
     ]
     assert max(map(len, table.fitted(80).lines[:2])) <= 80 and "clamp freedom deg" in headings
     assert f"the best of {result.pairs} pairs of clamps at each seat" in counts_sentence(result)

@@ -12,7 +12,7 @@ from held_any_way import AHEAD, HELD, Held
 from svg_reading import NAMESPACE, matrix, to_model
 
 from workhold.drawing.bench import bench_of
-from workhold.model.setup import settings_of
+from workhold.model.setup import list_length_settings
 from workhold.presenting.zoomed_picture import draw_small, draw_zoomed
 
 SIZE = (640.0, 480.0)
@@ -94,7 +94,7 @@ def test_words_are_in_the_picture_and_none_lies_on_another(held: Held) -> None:
 def test_lengths_to_set_are_measured_between_what_stands_and_what_moves(held: Held) -> None:
     """The line is as long as the length is, and only its second end moves; its distance from the drawing is kept."""
     root = picture_of(held)
-    scale, told = matrix(root)[0], settings_of(held.fixture, held.toolkit)
+    scale, told = matrix(root)[0], list_length_settings(held.fixture, held.toolkit)
     travels = of_class(root, "travel")
     assert len(travels) == len(told)
     for travel, setting in zip(travels, told, strict=True):
@@ -112,7 +112,7 @@ def test_lengths_to_set_are_measured_between_what_stands_and_what_moves(held: He
 def test_a_clamp_goes_no_farther_back_than_to_its_least_stroke() -> None:
     """One that does not reach its tip from its hole shows its line alone, and no length to set."""
     (held,) = (one for one in HELD if one.made == "plate, bolted, clamp -x")
-    (stroke,) = settings_of(held.fixture, held.toolkit)
+    (stroke,) = list_length_settings(held.fixture, held.toolkit)
     for travel, bolts in (
         ((5.0, stroke.length + 1), 1),
         ((stroke.length + 1, 60.0), 0),

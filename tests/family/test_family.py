@@ -20,7 +20,7 @@ from workhold.family.patterns import holes_of, shifted, turned
 from workhold.family.plan import Holding
 from workhold.fixels.toolkit import Toolkit
 from workhold.listing.ranking import measured
-from workhold.model.fixture_table import FixtureTable, fixture_at
+from workhold.model.fixture_table import FixtureTable, make_fixture_of_row
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES, LOCATION_ERROR
 from workhold.statics.effective_error import EffectiveErrors
 from workhold.statics.judging import unfit
@@ -66,7 +66,7 @@ def prove(family: Family) -> None:
         assert len(plan.setups) == plan.point.setups
         for setup in plan.setups:
             for one in setup.holdings:
-                fixture = fixture_at(as_listed(one), family.toolkit, 0, one.member.query.workpiece)
+                fixture = make_fixture_of_row(as_listed(one), family.toolkit, 0, one.member.query.workpiece)
                 ruling = judges[id(one.member)].rule_on(fixture)
                 assert ruling.verdict == "proven", ruling.reason
                 low, high = EffectiveJudge(one.member.query, None).error(fixture)

@@ -12,7 +12,7 @@ from family_parts import shop_parts
 from workhold import Fence, OpeningVise, Plate, Query, Result, Vise, Workpiece, answer
 from workhold.family.patterns import half_turn, holes_of, moved_onto, pattern_words, shifted, turned
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.fixture_table import fixture_at
+from workhold.model.fixture_table import make_fixture_of_row
 from workhold.verification import Judge
 
 ELL, BRACKET = shop_parts(2)
@@ -94,7 +94,7 @@ def test_a_shifted_fixture_is_one_of_the_same_pattern(results: dict[str, Result]
     for mine, theirs in ((back.position, one.position), (back.jaw_separation, one.jaw_separation)):
         assert mine == pytest.approx(theirs, abs=1e-9)
     # Where everything lies after the move is where it lay, moved.
-    before, after = (fixture_at(table, toolkit, 0, result.workpiece) for table in (one, moved))
+    before, after = (make_fixture_of_row(table, toolkit, 0, result.workpiece) for table in (one, moved))
     pitch = toolkit.carriers[0].pitch
     for peg, other in zip(before.pegs, after.pegs, strict=True):
         assert (other.x - peg.x, other.y - peg.y) == pytest.approx(
@@ -123,7 +123,7 @@ def test_half_a_turn_gives_a_fixture_whose_half_turn_is_the_first(
     assert again.jaw_separation == pytest.approx(table.jaw_separation, abs=1e-9)
     judge = Judge(result.query)
     for row in range(len(after)):
-        fixture = fixture_at(after, toolkit, row, result.workpiece)
+        fixture = make_fixture_of_row(after, toolkit, row, result.workpiece)
         # Of a vise the location error alone is another one: another jaw stands still.
         left_out = ("location_error", "penalty", "warnings") if isinstance(toolkit, Vise) else ()
         told = {key: value for key, value in fixture.quality.items() if key not in left_out}

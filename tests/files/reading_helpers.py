@@ -10,14 +10,14 @@ import ezdxf
 
 from workhold import Workpiece
 from workhold.files.part.load import Loaded, read_workpiece
-from workhold.geometry.loop import signed_area
+from workhold.geometry.loop import compute_signed_area
 
 RECTANGLE = [(0, 0), (60, 0), (60, 40), (0, 40)]
 
 
 def area(workpiece: Workpiece) -> float:
     """Material area in mm²."""
-    return sum(signed_area(segments) for segments in workpiece.loop_segments)
+    return sum(compute_signed_area(segments) for segments in workpiece.loop_segments)
 
 
 def perimeter(workpiece: Workpiece) -> float:

@@ -15,8 +15,8 @@ import workhold
 from workhold import Fence, Plate, Workpiece, circle_zone, polygon_zone
 from workhold.errors import InputError
 from workhold.files.supports_file import read_supports, write_supports
-from workhold.model.requirements import zone_of
-from workhold.model.support_request import SupportRequest, usual_head
+from workhold.model.requirements import make_zone
+from workhold.model.support_request import SupportRequest, compute_usual_head
 from workhold.model.support_triples import Supports, Triple
 from workhold.supports.listing import supports_of
 
@@ -71,7 +71,7 @@ def test_zones_are_circles_polygons_or_loops(tmp_path: Path) -> None:
     zones = (
         circle_zone(300, 200, 12.5),
         polygon_zone([(200, 0), (220, 0), (210, 20)]),
-        zone_of([[200, 100, 0.5], [240, 100, 0.5]]),
+        make_zone([[200, 100, 0.5], [240, 100, 0.5]]),
     )
     found = supports(top_zones=zones, bottom_zones=zones[::-1])
     entry = written(found, tmp_path / "s.json")
@@ -92,7 +92,7 @@ def test_zones_are_circles_polygons_or_loops(tmp_path: Path) -> None:
         ({}, {}),
         ({"tip_margin": 1.5}, {"tip_margin": 1.5}),
         ({"head_radius": 7.25}, {"head_radius": 7.25}),
-        ({"head_radius": usual_head(4)}, {}),
+        ({"head_radius": compute_usual_head(4)}, {}),
     ],
 )
 def test_what_is_around_the_tip_is_kept_where_it_is_not_usual(

@@ -10,7 +10,7 @@ from workhold import Fence, Fixture, FlatJaw, OpeningVise, Peg, Plate, Pose, Vis
 from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, ROUND_PIN, WALL_END
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Pair
-from workhold.model.setup import contact_names, settings_of
+from workhold.model.setup import list_length_settings, name_contacts
 
 VISE = Vise(pitch=10, columns=2, peg_radius=3)
 PLATE = Plate(pitch=20, peg_radius=3, directions=("-x", "-y"))
@@ -103,9 +103,9 @@ def test_where_places_are_measured_from() -> None:
 def test_the_words_of_what_is_set() -> None:
     """A clamp in a hole has a stroke, one on a line the place of its tip; jaws have an opening."""
     tip = Peg("clamp -y", 2, 0, 40.0, 66.0, 1, 1.0, "clamp C1")
-    (stroke,) = settings_of(Fixture("clamp", (tip,), ONE, 14.0, {}, "-y"), BOLTED)
-    (place,) = settings_of(Fixture("edge", (tip,), ONE, 14.0, {}, "-y"), FENCE)
-    (opening,) = settings_of(Fixture("I", (), ONE, 24.0, {}), VISE)
+    (stroke,) = list_length_settings(Fixture("clamp", (tip,), ONE, 14.0, {}, "-y"), BOLTED)
+    (place,) = list_length_settings(Fixture("edge", (tip,), ONE, 14.0, {}, "-y"), FENCE)
+    (opening,) = list_length_settings(Fixture("I", (), ONE, 24.0, {}), VISE)
     assert [one.place for one in (stroke, place, opening)] == ["C1", "column C", ""]
     assert [one.short for one in (stroke, place, opening)] == ["stroke", "tip y", "S"]
     assert (stroke.label, place.label) == ("Clamp bolted in", "Clamp along")
@@ -121,6 +121,6 @@ def test_the_only_clamp_needs_no_hole_to_be_named_by() -> None:
     pair = Pair((0.0, 0.0), (0.0, 1.0), (), 1)
     one = Fixture("clamp", (locator, tips[0]), ONE, 0.0, {}, "-x")
     both = Fixture("clamp2", (locator, *tips), ONE, 0.0, {}, "-x -y", pair)
-    assert contact_names(one, PLATE) == ["B3", "clamp"]
-    assert contact_names(both, PLATE) == ["B3", "clamp row 2", "clamp column C"]
+    assert name_contacts(one, PLATE) == ["B3", "clamp"]
+    assert name_contacts(both, PLATE) == ["B3", "clamp row 2", "clamp column C"]
     assert (one.travels, both.travels) == ((0.0,), (0.0, 0.0))

@@ -10,14 +10,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from strategies import outlines
-from workhold.geometry.loop import loop_segments, reversed_vertices, signed_area
+from workhold.geometry.loop import compute_signed_area, loop_segments, reverse_vertices
 from workhold.geometry.segment import (
     Arc,
     Line,
-    carrier_intersections,
-    common_points,
+    find_carrier_crossings,
+    find_common_points,
     holds,
-    segment_from_bulge,
+    make_segment_from_bulge,
 )
 
 places = st.tuples(st.floats(-50, 50), st.floats(-50, 50)).map(lambda p: (round(p[0], 2), round(p[1], 2)))
@@ -38,7 +38,7 @@ def polygon_area(segments, steps: int) -> float:
 def test_area_is_the_limit_of_inscribed_polygons(part):
     """The shoelace sum plus circular segments is the limit of polygon areas, which converge with the square of the step."""
     for segments in part.loop_segments:
-        area = signed_area(segments)
+        area = compute_signed_area(segments)
         errors = [abs(polygon_area(segments, n) - area) for n in (50, 100, 200)]
         assert errors[2] <= 1e-3 * abs(area) + 1e-9
         assert errors[2] <= errors[0] / 12 + 1e-9 * abs(area)
@@ -48,11 +48,11 @@ def test_area_is_the_limit_of_inscribed_polygons(part):
 def test_a_reversed_loop_has_the_same_points_and_the_opposite_area(part):
     """Reversing keeps the first vertex and the point set, negates the area, and is its own inverse."""
     for vertices in part.loops:
-        back = reversed_vertices(vertices)
+        back = reverse_vertices(vertices)
         assert back[0, :2] == pytest.approx(vertices[0, :2])
-        assert np.array_equal(reversed_vertices(back), vertices)
+        assert np.array_equal(reverse_vertices(back), vertices)
         forward, reverse = loop_segments(vertices), loop_segments(back)
-        assert signed_area(reverse) == pytest.approx(-signed_area(forward))
+        assert compute_signed_area(reverse) == pytest.approx(-compute_signed_area(forward))
         assert sum(s.length for s in reverse) == pytest.approx(sum(s.length for s in forward))
         for s, t in zip(forward, reversed(reverse), strict=True):
             assert s.at(0.0) == pytest.approx(t.at(0.0), abs=1e-9)
@@ -64,9 +64,9 @@ def test_known_areas():
     rectangle = loop_segments(np.array([[0, 0, 0], [20, 0, 0], [20, 10, 0], [0, 10, 0.0]]))
     disc = loop_segments(np.array([[-5, 0, 1], [5, 0, 1.0]]))
     obround = loop_segments(np.array([[0, 0, 0], [20, 0, 1], [20, 10, 0], [0, 10, 1.0]]))
-    assert signed_area(rectangle) == pytest.approx(200)
-    assert signed_area(disc) == pytest.approx(25 * pi)
-    assert signed_area(obround) == pytest.approx(200 + 25 * pi)
+    assert compute_signed_area(rectangle) == pytest.approx(200)
+    assert compute_signed_area(disc) == pytest.approx(25 * pi)
+    assert compute_signed_area(obround) == pytest.approx(200 + 25 * pi)
 
 
 @pytest.mark.thorough
@@ -78,8 +78,8 @@ def test_intersections_of_carriers_lie_on_both(p, q, bulge, r, s, other_bulge):
     """Every common point of two carriers has distance 0 from both; lines meet once, circles and lines at most twice."""
     if max(abs(p[0] - q[0]), abs(p[1] - q[1])) < 0.1 or max(abs(r[0] - s[0]), abs(r[1] - s[1])) < 0.1:
         return
-    a, b = segment_from_bulge(p, q, bulge), segment_from_bulge(r, s, other_bulge)
-    points = carrier_intersections(a, b)
+    a, b = make_segment_from_bulge(p, q, bulge), make_segment_from_bulge(r, s, other_bulge)
+    points = find_carrier_crossings(a, b)
     assert len(points) <= 2
     for x, y in points:
         for segment in (a, b):
@@ -94,7 +94,7 @@ def test_intersections_of_carriers_lie_on_both(p, q, bulge, r, s, other_bulge):
         sides = [np.sign(np.cross([*a.tangent, 0], [t[0] - p[0], t[1] - p[1], 0])[2]) for t in (r, s)]
         other = [np.sign(np.cross([*b.tangent, 0], [t[0] - r[0], t[1] - r[1], 0])[2]) for t in (p, q)]
         if sides[0] * sides[1] < 0 and other[0] * other[1] < 0:
-            assert len(common_points(a, b, 1e-7)) == 1
+            assert len(find_common_points(a, b, 1e-7)) == 1
 
 
 @pytest.mark.thorough
@@ -128,5 +128,5 @@ def test_arcs_meet_where_a_sampling_says_so():
         ):
             continue
         met += sum(inside)
-        assert len(common_points(a, b, 1e-9)) == sum(inside)
+        assert len(find_common_points(a, b, 1e-9)) == sum(inside)
     assert met > 50

@@ -11,14 +11,14 @@ import pytest
 from numpy.typing import NDArray
 
 from workhold.conventions import READING
-from workhold.geometry.loop import faces_of_loop, loop_segments
-from workhold.geometry.merged_runs import MergedLoop, merged_chords, on_one_circle
+from workhold.geometry.loop import list_loop_faces, loop_segments
+from workhold.geometry.merged_runs import MergedLoop, merge_chords, put_arcs_on_one_circle
 
 
 def merged(rows: Sequence[Sequence[float]], fit: float | None = None) -> MergedLoop:
     """What is made of a loop of points, or of vertices with bulges."""
     vertices = np.array([(*row, 0.0)[:3] for row in rows])
-    return merged_chords(vertices, fit)
+    return merge_chords(vertices, fit)
 
 
 def slot(ends: int, sides: int = 1, digits: int = 6) -> NDArray[np.float64]:
@@ -128,11 +128,11 @@ def test_what_is_to_stay_stays() -> None:
     """Biarcs of a true curve are not taken together, whatever their neighbours do."""
     rows = np.array([(50 * cos(k * pi / 360), 50 * sin(k * pi / 360), 0.0) for k in range(720)])
     kept = [100 <= k < 110 for k in range(720)]
-    loop = merged_chords(rows, None, kept)
+    loop = merge_chords(rows, None, kept)
     assert set(range(100, 110)) <= set(loop.firsts)
     # What is left is 355 degrees, which one bulge would hold badly.
     assert len(loop.vertices) == 12
-    assert merged_chords(rows, None, [True] * 720).merged == 0
+    assert merge_chords(rows, None, [True] * 720).merged == 0
 
 
 def test_noise_is_left_alone() -> None:
@@ -188,32 +188,32 @@ def test_a_whole_circle_is_one_face_and_stays_so(count: int, sign: float) -> Non
     loop = arcs(count, 0.4 * READING, 0.7)
     if sign < 0:
         loop = np.column_stack([loop[::-1, :2], -np.roll(loop[::-1, 2], -1)])
-    out, changed = on_one_circle(loop, loop_segments(loop))
+    out, changed = put_arcs_on_one_circle(loop, loop_segments(loop))
     assert changed == count
     assert away(loop, out) <= 2 * READING
-    assert len(faces_of_loop(loop_segments(out), 0)) == 1
-    again, changed = on_one_circle(out, loop_segments(out))
+    assert len(list_loop_faces(loop_segments(out), 0)) == 1
+    again, changed = put_arcs_on_one_circle(out, loop_segments(out))
     assert changed == 0 and (again == out).all()
 
 
 def test_an_arc_in_pieces_keeps_its_ends() -> None:
     loop = arcs(16, READING, 0.3)[:7]
     loop[-1, 2] = 0.0
-    out, changed = on_one_circle(loop, loop_segments(loop))
+    out, changed = put_arcs_on_one_circle(loop, loop_segments(loop))
     assert changed == 6
     assert (out[[0, 6], :2] == loop[[0, 6], :2]).all()
-    assert [len(face.segments) for face in faces_of_loop(loop_segments(out), 0)] == [6, 1]
+    assert [len(face.segments) for face in list_loop_faces(loop_segments(out), 0)] == [6, 1]
 
 
 @pytest.mark.parametrize("off", [5e-6, 1e-4, 1e-2])
 def test_arcs_that_a_drawing_keeps_apart_stay(off: float) -> None:
     loop = arcs(16, off, 0.3)
-    out, changed = on_one_circle(loop, loop_segments(loop))
+    out, changed = put_arcs_on_one_circle(loop, loop_segments(loop))
     assert changed == 0 and (out == loop).all()
 
 
 def test_arcs_of_two_circles_that_join_smoothly_stay() -> None:
     """Half a circle of radius 20 and, tangent to it, half one of radius 20.001 mm, joined by a short line."""
     loop = np.array([[20.0, 0.0, 1.0], [-20.0, 0.0, 1.0], [20.002, 0.0, 0.0]])
-    out, changed = on_one_circle(loop, loop_segments(loop))
+    out, changed = put_arcs_on_one_circle(loop, loop_segments(loop))
     assert changed == 0 and (out == loop).all()

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from strategies import outlines
 from workhold import Workpiece
-from workhold.geometry.offset import raw_offset, trimmed_offsets
+from workhold.geometry.offset import list_trimmed_offsets, offset_segment
 from workhold.geometry.segment import Arc, segment_rows
 from workhold.kernels.base.distance import is_inside, outline_distances
 
@@ -28,7 +28,7 @@ def test_every_kept_point_is_at_exactly_the_radius(part, radius):
     """dist(p, outline) = r to 1e-9 for p on a kept piece, and p is outside the material."""
     segments = [face.segment for face in part.faces]
     rows = segment_rows(segments)
-    for _, piece in trimmed_offsets(segments, radius):
+    for _, piece in list_trimmed_offsets(segments, radius):
         points = points_of(piece, 25)
         assert np.abs(outline_distances(points, rows) - radius).max() < 2e-9
         if radius > 1e-3:
@@ -42,9 +42,9 @@ def test_every_point_at_the_radius_is_kept(part, radius):
     """A point of a raw offset that is no nearer than r to the outline lies on a kept piece of the same face."""
     segments = [face.segment for face in part.faces]
     rows = segment_rows(segments)
-    kept = trimmed_offsets(segments, radius)
+    kept = list_trimmed_offsets(segments, radius)
     for index, segment in enumerate(segments):
-        raw = raw_offset(segment, radius)
+        raw = offset_segment(segment, radius)
         if raw is None:
             continue
         parameters = np.linspace(-0.9999, 0.9999, 60) * raw.half_extent
@@ -62,7 +62,7 @@ def test_every_point_at_the_radius_is_kept(part, radius):
 def test_a_point_peg_sees_every_face_whole(part):
     """With r = 0 the trimmed offset is the outline itself."""
     segments = [face.segment for face in part.faces]
-    kept = trimmed_offsets(segments, 0.0)
+    kept = list_trimmed_offsets(segments, 0.0)
     assert [k for k, _ in kept] == list(range(len(segments)))
     for (_, piece), segment in zip(kept, segments, strict=True):
         assert piece.length == pytest.approx(segment.length, abs=1e-6)
@@ -73,10 +73,10 @@ def test_a_concave_arc_as_small_as_the_peg_vanishes():
     notched = [[0, 0, 0], [60, 0, 0], [60, 30, 0], [34, 30, -1], [26, 30, 0], [0, 30, 0]]
     segments = Workpiece.from_loops("notched", [notched]).segments
     for radius in (0.0, 1.0, 3.9):
-        arcs = [piece for _, piece in trimmed_offsets(segments, radius) if isinstance(piece, Arc)]
+        arcs = [piece for _, piece in list_trimmed_offsets(segments, radius) if isinstance(piece, Arc)]
         assert len(arcs) == 1 and arcs[0].radius == pytest.approx(4 - radius) and arcs[0].sign == -1.0
     for radius in (4.0, 4.1, 9.0):
-        assert not any(isinstance(piece, Arc) for _, piece in trimmed_offsets(segments, radius))
+        assert not any(isinstance(piece, Arc) for _, piece in list_trimmed_offsets(segments, radius))
 
 
 def test_a_boss_near_a_long_edge_splits_its_offset():
@@ -91,7 +91,7 @@ def test_a_boss_near_a_long_edge_splits_its_offset():
     ]  # fmt: skip
     part = Workpiece.from_loops("tooth", [outline])
     floor = next(k for k, s in enumerate(part.segments) if {s.start, s.end} == {(0.0, 0.0), (100.0, 0.0)})
-    pieces = [piece for k, piece in trimmed_offsets(part.segments, 3.0) if k == floor]
+    pieces = [piece for k, piece in list_trimmed_offsets(part.segments, 3.0) if k == floor]
     reach = 5 + 8**0.5
     spans = sorted(tuple(sorted((p.start[0], p.end[0]))) for p in pieces)
     assert np.array(spans) == pytest.approx(np.array([[0, 50 - reach], [50 + reach, 97]]))
@@ -102,7 +102,7 @@ def test_inner_corners_cut_and_outer_corners_do_not():
     part = Workpiece.from_loops(
         "L", [[[0, 0, 0], [40, 0, 0], [40, 20, 0], [20, 20, 0], [20, 50, 0], [0, 50, 0]]]
     )
-    lengths = {k: piece.length for k, piece in trimmed_offsets(part.segments, 3.0)}
+    lengths = {k: piece.length for k, piece in list_trimmed_offsets(part.segments, 3.0)}
     assert lengths == pytest.approx({0: 40, 1: 20, 2: 17, 3: 27, 4: 20, 5: 50})
 
 
@@ -119,5 +119,5 @@ def test_a_slot_as_narrow_as_the_peg_hides_its_walls():
         [0, 40, 0],
     ]
     part = Workpiece.from_loops("slot", [slot])
-    assert {k for k, _ in trimmed_offsets(part.segments, 2.9)} == set(range(8))
-    assert {k for k, _ in trimmed_offsets(part.segments, 3.1)} == {0, 1, 2, 6, 7}
+    assert {k for k, _ in list_trimmed_offsets(part.segments, 2.9)} == set(range(8))
+    assert {k for k, _ in list_trimmed_offsets(part.segments, 3.1)} == {0, 1, 2, 6, 7}

@@ -17,10 +17,10 @@ from workhold.geometry.segment import (
     Arc,
     Line,
     bounding_box,
-    circle_circle,
-    common_points,
+    cross_carrying_circles,
+    find_common_points,
     holds,
-    segment_from_bulge,
+    make_segment_from_bulge,
     segment_rows,
 )
 
@@ -32,7 +32,7 @@ bulges = st.one_of(st.floats(0.01, 20), st.floats(-20, -0.01))
 def test_a_bulge_is_the_tangent_of_a_quarter_of_the_sweep(start, end, bulge):
     """The arc runs from start to end, turns by 4 atan(bulge) (counter-clockwise if positive), at constant radius."""
     assume(start != end)
-    arc = segment_from_bulge(start, end, bulge)
+    arc = make_segment_from_bulge(start, end, bulge)
     assert isinstance(arc, Arc)
     size = 1e-9 * (1 + arc.radius)
     assert arc.start == pytest.approx(start, abs=size) and arc.end == pytest.approx(end, abs=size)
@@ -48,7 +48,7 @@ def test_a_bulge_is_the_tangent_of_a_quarter_of_the_sweep(start, end, bulge):
 def test_parameter_is_the_inverse_of_at(start, end, bulge, part):
     """parameter(at(t)) = t for |t| <= half_extent, and moving along the normal keeps t."""
     assume(start != end)
-    segment = segment_from_bulge(start, end, bulge)
+    segment = make_segment_from_bulge(start, end, bulge)
     t = part * segment.half_extent * 0.999999
     scale = 1.0 if isinstance(segment, Line) else segment.radius
     assert segment.parameter(segment.at(t)) == pytest.approx(t, abs=1e-9 * (1 + 200 / scale))
@@ -62,7 +62,7 @@ def test_parameter_is_the_inverse_of_at(start, end, bulge, part):
 def test_the_normal_points_to_the_right(start, end, bulge):
     """With material on the left, the outward normal is the running direction turned right by a quarter turn."""
     assume(start != end)
-    segment = segment_from_bulge(start, end, bulge)
+    segment = make_segment_from_bulge(start, end, bulge)
     step = 1e-6 * segment.half_extent
     forward = 1.0 if isinstance(segment, Line) else segment.sign
     (x0, y0), (x1, y1) = segment.at(-forward * step), segment.at(forward * step)
@@ -75,7 +75,7 @@ def test_the_normal_points_to_the_right(start, end, bulge):
 def test_a_part_is_the_segment_between_two_parameters(start, end, bulge, one, two):
     """part(low, high) runs over exactly the points at(low) ... at(high)."""
     assume(start != end and abs(one - two) > 1e-3)
-    segment = segment_from_bulge(start, end, bulge)
+    segment = make_segment_from_bulge(start, end, bulge)
     low, high = (t * segment.half_extent for t in sorted((one, two)))
     part = segment.part(low, high)
     near = 1e-9 * (200 + getattr(segment, "radius", 0.0))
@@ -92,7 +92,7 @@ def test_a_part_is_the_segment_between_two_parameters(start, end, bulge, one, tw
 def test_the_bounding_box_is_the_range_of_the_points(start, end, bulge):
     """No point of the segment lies outside its box, and each side of the box is reached."""
     assume(start != end)
-    segment = segment_from_bulge(start, end, bulge)
+    segment = make_segment_from_bulge(start, end, bulge)
     points = [segment.at(segment.half_extent * k / 500) for k in range(-500, 501)]
     x0, y0, x1, y1 = bounding_box(segment)
     xs, ys = [p[0] for p in points], [p[1] for p in points]
@@ -103,15 +103,15 @@ def test_the_bounding_box_is_the_range_of_the_points(start, end, bulge):
 
 def test_known_arcs():
     """Bulge 1 is a half circle, tan(pi / 8) a quarter, 1 + sqrt 2 three quarters; a tiny bulge is a line."""
-    half = segment_from_bulge((0, 0), (2, 0), 1.0)
+    half = make_segment_from_bulge((0, 0), (2, 0), 1.0)
     assert (half.center, half.radius, half.half_sweep) == (pytest.approx((1, 0)), 1.0, pytest.approx(pi / 2))
     assert half.at(0.0) == pytest.approx((1, -1))
-    quarter = segment_from_bulge((1, 0), (0, 1), tan(pi / 8))
+    quarter = make_segment_from_bulge((1, 0), (0, 1), tan(pi / 8))
     assert (quarter.center, quarter.radius) == (pytest.approx((0, 0)), pytest.approx(1.0))
-    big = segment_from_bulge((1, 0), (0, -1), tan(3 * pi / 8))
+    big = make_segment_from_bulge((1, 0), (0, -1), tan(3 * pi / 8))
     assert (big.center, big.radius, big.sign) == (pytest.approx((0, 0)), pytest.approx(1.0), 1.0)
     assert big.at(0.0) == pytest.approx((cos(3 * pi / 4), sin(3 * pi / 4)))
-    assert segment_from_bulge((0, 0), (1, 0), 1e-13) == Line((0, 0), (1, 0))
+    assert make_segment_from_bulge((0, 0), (1, 0), 1e-13) == Line((0, 0), (1, 0))
 
 
 def test_rows_hold_the_segments():
@@ -144,7 +144,7 @@ def test_a_shallow_arc_is_where_it_is_drawn(points, size, sign, by):
     """Its circle, which may be centred kilometres away, goes through its ends and its middle to the last digit or so, and
     so does that of the arc moved out, and of a part of it."""
     start, end, bulge = points[:2], points[2:], sign * 10**size
-    arc = segment_from_bulge(start, end, bulge)
+    arc = make_segment_from_bulge(start, end, bulge)
     dx, dy = end[0] - start[0], end[1] - start[1]
     middle = ((start[0] + end[0]) / 2 + bulge * dy / 2, (start[1] + end[1]) / 2 - bulge * dx / 2)
     assert arc.at(0.0) == pytest.approx(middle, abs=1e-13)
@@ -255,13 +255,13 @@ def test_a_segment_that_lies_in_another_meets_it_at_both_its_ends() -> None:
     wide, narrow = Arc((0.0, 0.0), 5.0, 1.0, 1.2, 1.0), Arc((0.0, 0.0), 5.0, 0.9, 0.3, -1.0)
     for whole, part in ((outer, inner), (wide, narrow)):
         for pair in ((whole, part), (part, whole)):
-            assert {(round(x, 9), round(y, 9)) for x, y in common_points(*pair, 1e-7)} == {
+            assert {(round(x, 9), round(y, 9)) for x, y in find_common_points(*pair, 1e-7)} == {
                 (round(x, 9), round(y, 9)) for x, y in (part.start, part.end)
             }
-    assert common_points(outer, Line((0.0, 1.1), (10.0, 1.1)), 1e-7) == []
+    assert find_common_points(outer, Line((0.0, 1.1), (10.0, 1.1)), 1e-7) == []
     apart = Arc((0.0, 0.0), 5.0, 1.0 + pi, 0.3, 1.0)
-    assert common_points(narrow, apart, 1e-7) == []
-    assert common_points(narrow, Line((cos(0.9), sin(0.9)), (9 * cos(0.9), 9 * sin(0.9))), 1e-7) == [
+    assert find_common_points(narrow, apart, 1e-7) == []
+    assert find_common_points(narrow, Line((cos(0.9), sin(0.9)), (9 * cos(0.9), 9 * sin(0.9))), 1e-7) == [
         pytest.approx((5 * cos(0.9), 5 * sin(0.9)))
     ]
 
@@ -270,10 +270,10 @@ def test_circles_that_touch_have_one_common_point_and_one_inside_another_none() 
     """Whichever of them comes first; a touch from inside lies beyond the centre of the smaller one."""
     wide, narrow = ((0.0, 0.0), 5.0), ((2.0, 0.0), 3.0)
     for one, two in ((wide, narrow), (narrow, wide)):
-        assert circle_circle(*one, *two) == [pytest.approx((5.0, 0.0))]
-        assert circle_circle(*one, two[0], two[1] + 1e-6 * (1 if two is wide else -1)) == []
-    assert circle_circle(*wide, (8.0, 0.0), 3.0) == [pytest.approx((5.0, 0.0))]
-    assert circle_circle(*wide, (8.0 + 1e-6, 0.0), 3.0) == []
+        assert cross_carrying_circles(*one, *two) == [pytest.approx((5.0, 0.0))]
+        assert cross_carrying_circles(*one, two[0], two[1] + 1e-6 * (1 if two is wide else -1)) == []
+    assert cross_carrying_circles(*wide, (8.0, 0.0), 3.0) == [pytest.approx((5.0, 0.0))]
+    assert cross_carrying_circles(*wide, (8.0 + 1e-6, 0.0), 3.0) == []
 
 
 def test_a_tolerance_at_the_end_of_an_arc_is_a_length() -> None:

@@ -11,9 +11,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from workhold.errors import InputError
-from workhold.geometry.loop import loop_segments, signed_area
+from workhold.geometry.loop import compute_signed_area, loop_segments
 from workhold.geometry.segment import Arc, Line, Point, Segment
-from workhold.geometry.subdivision import BorderPiece, Inside, border_loops, border_pieces, subdivide
+from workhold.geometry.subdivision import (
+    BorderPiece,
+    Inside,
+    find_border_pieces,
+    join_border_loops,
+    subdivide,
+)
 
 Box = tuple[float, float, float, float]
 Circle = tuple[float, float, float]
@@ -40,7 +46,7 @@ def each(inside: Callable[[Point], bool]) -> Inside:
 def area(loops: list[list[BorderPiece]]) -> float:
     """The area that loops enclose, holes taken away."""
     vertices = [np.array([(*piece.start, piece.bulge) for piece in loop]) for loop in loops]
-    return sum(signed_area(loop_segments(loop)) for loop in vertices)
+    return sum(compute_signed_area(loop_segments(loop)) for loop in vertices)
 
 
 def union_loops(boxes: list[Box], circles: list[Circle]) -> list[list[BorderPiece]]:
@@ -53,7 +59,7 @@ def union_loops(boxes: list[Box], circles: list[Circle]) -> list[list[BorderPiec
         )
 
     segments = [side for box in boxes for side in sides(box)] + [round_side(circle) for circle in circles]
-    return border_loops(border_pieces(subdivide(segments), each(inside)))
+    return join_border_loops(find_border_pieces(subdivide(segments), each(inside)))
 
 
 WHOLE = st.integers(0, 12)
@@ -134,11 +140,11 @@ def test_a_short_piece_of_a_border_is_not_passed_over(first: int) -> None:
     """Though the one behind it begins within a gap as well."""
     corners = [(0.0, 0.0), (10 - 5e-5, 0.0), (10.0, 5e-5), (10.0, 10.0), (0.0, 10.0)]
     segments = [Line(corners[k - 1], corners[k]) for k in range(5)]
-    pieces = border_pieces(
+    pieces = find_border_pieces(
         subdivide(segments),
         each(lambda at: 0 < at[0] < 10 and 0 < at[1] < 10 and at[0] - at[1] < 10 - 5e-5),
     )
-    (loop,) = border_loops([*pieces[first:], *pieces[:first]])
+    (loop,) = join_border_loops([*pieces[first:], *pieces[:first]])
     assert len(loop) == 5
 
 
@@ -154,7 +160,7 @@ def test_of_twins_the_outer_one_is_the_border() -> None:
         def inside(at: Point) -> bool:
             return (abs(at[0]) < 5 and -5 < at[1] < 1 - over) or hypot(*at) < 1
 
-        (loop,) = border_loops(border_pieces(carriers, each(inside)))
+        (loop,) = join_border_loops(find_border_pieces(carriers, each(inside)))
         kinds = [type(piece.carrier.segment) for piece in loop]
         assert kinds.count(Arc) == 1 and len(loop) == 6
         assert all(
@@ -166,9 +172,9 @@ def test_of_twins_the_outer_one_is_the_border() -> None:
 def test_border_that_does_not_close() -> None:
     """A border of which a piece is missing is refused with the place."""
     open_sides = sides((0, 0, 4, 4))[:3]
-    pieces = border_pieces(subdivide(open_sides), each(lambda p: 0 < p[0] < 4 and 0 < p[1] < 4))
+    pieces = find_border_pieces(subdivide(open_sides), each(lambda p: 0 < p[0] < 4 and 0 < p[1] < 4))
     with pytest.raises(InputError, match=r"the outline does not close at \("):
-        border_loops(pieces)
+        join_border_loops(pieces)
 
 
 @pytest.mark.parametrize("apart", [2e-5, 6e-5])
@@ -179,10 +185,10 @@ def test_cuts_beside_a_corner_leave_one_loop(side: int, apart: float) -> None:
     cut = square[side]
     points = [cut.at(sign * (cut.half_extent - apart)) for sign in (-1.0, 1.0)]
     carriers = subdivide(square, [(cut, point) for point in points])
-    pieces = border_pieces(carriers, each(lambda p: 0 < p[0] < 4 and 0 < p[1] < 4))
+    pieces = find_border_pieces(carriers, each(lambda p: 0 < p[0] < 4 and 0 < p[1] < 4))
     assert len(pieces) == 6
     for first in range(6):
-        loops = border_loops([*pieces[first:], *pieces[:first]])
+        loops = join_border_loops([*pieces[first:], *pieces[:first]])
         assert len(loops) == 1
         assert area(loops) == pytest.approx(16, abs=1e-3)
 
@@ -223,6 +229,6 @@ def test_a_circle_that_nearly_touches_a_polygon(corners: int, gap: float) -> Non
         (lambda at: in_polygon(at) and in_circle(at), both),
         (lambda at: in_polygon(at) or in_circle(at), of_polygon + of_circle - both),
     ):
-        loops = border_loops(border_pieces(carriers, each(inside)))
+        loops = join_border_loops(find_border_pieces(carriers, each(inside)))
         assert len(loops) == 1
         assert area(loops) == pytest.approx(float(expected), abs=2e-4)

@@ -11,12 +11,12 @@ from hypothesis import given, settings
 import workhold
 from strategies import outlines
 from workhold import Workpiece
-from workhold.geometry.symmetry import rotations_onto_itself
+from workhold.geometry.symmetry import find_rotations_onto_itself
 
 
 def group(*loops):
     """Rotations of a workpiece of some loops."""
-    return rotations_onto_itself([face.segment for face in Workpiece.from_loops("part", loops).faces])
+    return find_rotations_onto_itself([face.segment for face in Workpiece.from_loops("part", loops).faces])
 
 
 def circle(x, y, radius):
@@ -70,7 +70,7 @@ def test_parallelograms_turn_but_kites_do_not():
 def test_built_in_parts(name, order):
     """The handles turn onto themselves as their names say, the widget does not."""
     part = workhold.load(name)
-    assert len(rotations_onto_itself([face.segment for face in part.faces])) == order
+    assert len(find_rotations_onto_itself([face.segment for face in part.faces])) == order
 
 
 @settings(max_examples=60)
@@ -78,7 +78,7 @@ def test_built_in_parts(name, order):
 def test_images_are_permutations_that_form_a_group(part):
     """The identity comes first; images are permutations; rotations compose to rotations; images are where they say."""
     segments = [face.segment for face in part.faces]
-    rotations = rotations_onto_itself(segments)
+    rotations = find_rotations_onto_itself(segments)
     assert rotations[0].angle == 0.0 and rotations[0].image.tolist() == list(range(len(segments)))
     known = {tuple(r.image) for r in rotations}
     for one in rotations:

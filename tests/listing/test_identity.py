@@ -11,7 +11,7 @@ from attrs import evolve, fields
 from workhold import Fence, Plate, Query, Vise, Workpiece, answer, design, load
 from workhold.conventions import SAME_POSE
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.symmetry import rotated, symmetries
+from workhold.geometry.symmetry import rotate_vectors, symmetries
 from workhold.listing.identity import (
     Identity,
     SetCount,
@@ -81,7 +81,7 @@ def test_half_a_turn_of_everything_makes_a_fixture_of_opposed_clamps_the_same() 
     table, identity = answer(query).table, Identity(query.toolkit, query.workpiece)
     table = table.take(np.flatnonzero(table.arrangement == 0))
     turned, order = (
-        rotated(table.position[:, 0], table.position[:, 1], np.full(len(table), pi)),
+        rotate_vectors(table.position[:, 0], table.position[:, 1], np.full(len(table), pi)),
         [2, 1, 0, 4, 3],
     )
     halfway = evolve(

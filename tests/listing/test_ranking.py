@@ -22,8 +22,8 @@ from workhold.model.quality import (
     LOCATION_ERROR,
     PREFERENCES,
     WRENCH_RADIUS,
-    asked_ranking,
-    chosen_ranking,
+    read_asked_ranking,
+    resolve_ranking,
 )
 
 # So loose that no fixture is unfit by its location error.
@@ -96,9 +96,9 @@ def test_the_best_marked_are_the_first_ranked(errors: list[float], most: int, da
 
 def test_names_are_read_as_people_write_them() -> None:
     """With hyphens, underscores or spaces, in any mixture of capitals."""
-    assert chosen_ranking(["Location-Error", "wrench radius"], []) == ("location_error", "wrench_radius")
-    assert chosen_ranking(None, []) == DEFAULT_RANKING
-    assert "load_reaction" in chosen_ranking(None, [Load(moment=1.0)])
+    assert resolve_ranking(["Location-Error", "wrench radius"], []) == ("location_error", "wrench_radius")
+    assert resolve_ranking(None, []) == DEFAULT_RANKING
+    assert "load_reaction" in resolve_ranking(None, [Load(moment=1.0)])
     assert FIGURES[WRENCH_RADIUS].option == "wrench-radius"
 
 
@@ -114,7 +114,7 @@ def test_names_are_read_as_people_write_them() -> None:
 def test_names_that_cannot_be_ranked_by(names: list[str], words: str) -> None:
     """One sentence with the remedy."""
     with pytest.raises(InputError, match=words):
-        chosen_ranking(names, [])
+        resolve_ranking(names, [])
 
 
 @given(st.lists(st.tuples(st.floats(0.001, 3.0), st.floats(0.0, 0.25)), min_size=1, max_size=12), st.data())
@@ -145,13 +145,13 @@ def test_fixtures_with_a_warning_never_stand_before_those_without(
 
 def test_a_preference_is_an_order_and_not_two() -> None:
     """With loads it asks for the load reaction instead of the clamp amplification."""
-    assert asked_ranking(None, " Square ", []) == PREFERENCES["square"]
-    assert asked_ranking(None, None, []) is None
-    assert "load_reaction" in asked_ranking(None, "strong", [Load(moment=1.0)])
+    assert read_asked_ranking(None, " Square ", []) == PREFERENCES["square"]
+    assert read_asked_ranking(None, None, []) is None
+    assert "load_reaction" in read_asked_ranking(None, "strong", [Load(moment=1.0)])
     with pytest.raises(InputError, match="choose square, strong, precise, roomy"):
-        asked_ranking(None, "pretty", [])
+        read_asked_ranking(None, "pretty", [])
     with pytest.raises(InputError, match="two orders"):
-        asked_ranking(["closure-margin"], "square", [])
+        read_asked_ranking(["closure-margin"], "square", [])
 
 
 def test_steps_are_counted_in_whole_numbers() -> None:

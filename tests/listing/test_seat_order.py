@@ -18,7 +18,7 @@ from toolkit_results import NOTCHED, part
 from workhold import Load, Plate, Query, Restrictions, Result, Tolerance, answer, verify
 from workhold.conventions import SAME_PLACE, SAME_POSE
 from workhold.files.result.writer import notes_entry
-from workhold.geometry.symmetry import rotated
+from workhold.geometry.symmetry import rotate_vectors
 from workhold.kernels.chord.intervals import share_one_line
 from workhold.kernels.contact import record
 from workhold.kernels.contact.seats import ASIDE
@@ -238,7 +238,7 @@ def test_no_contact_stands_for_two_seats(monkeypatch: pytest.MonkeyPatch) -> Non
         other = records[0][first].copy()
         # The first turns the part about the middle of the plate, so that its place stays.
         other[record.PSI] += turn
-        x, y = rotated(other[record.TAIL_X], other[record.TAIL_Y], turn)
+        x, y = rotate_vectors(other[record.TAIL_X], other[record.TAIL_Y], turn)
         other[record.TAIL_X], other[record.TAIL_Y] = x + move, y
         more = [np.vstack([records[0], other]), *records[1:]]
         groups = seat_order.ordered_groups([PackedContacts.of([part]) for part in more], problems, query)

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from workhold import Fixture, Peg, Pose
-from workhold.model.clamps import clamp_names, clamp_shares, freedom_words, order_words
+from workhold.model.clamps import compute_clamp_shares, describe_clamp_freedom, name_clamps, order_words
 from workhold.model.fixture import Pair
 
 LOCATOR = Peg("plate", 0, 0, 0.0, 0.0, 1, 0.3)
@@ -61,19 +61,23 @@ def test_other_fixtures_have_no_order() -> None:
 )
 def test_the_shares_are_in_the_working_ratio(low: float, high: float, ratio: float) -> None:
     """They make up the whole, in the ratio that is the middle of the range as an angle."""
-    first, second = clamp_shares(held(low, high))
+    first, second = compute_clamp_shares(held(low, high))
     assert first + second == pytest.approx(1.0) and second / first == pytest.approx(ratio)
 
 
 def test_two_clamps_are_told_apart() -> None:
     """By their places, on one line by their directions too, and where those are one by their faces."""
-    assert clamp_names(held(0.0, 1.0)) == ("clamp E2", "clamp C5")
+    assert name_clamps(held(0.0, 1.0)) == ("clamp E2", "clamp C5")
     opposed = held(0.0, 1.0, ("-x", "row 2", 1), ("+x", "row 2", 3))
-    assert clamp_names(opposed) == ("clamp row 2 −x", "clamp row 2 +x")
+    assert name_clamps(opposed) == ("clamp row 2 −x", "clamp row 2 +x")
     doubled = held(0.0, 1.0, ("-x", "row 2", 1), ("-x", "row 2", 3))
-    assert clamp_names(doubled) == ("clamp row 2 on face 1", "clamp row 2 on face 3")
+    assert name_clamps(doubled) == ("clamp row 2 on face 1", "clamp row 2 on face 3")
 
 
 def test_how_exact_the_forces_have_to_be() -> None:
     """Ninety degrees are any forces; half of them and more a hand keeps; less takes a torque wrench."""
-    assert [freedom_words(value).split(" ")[0] for value in (90.0, 45.0, 44.9)] == ["the", "no", "both"]
+    assert [describe_clamp_freedom(value).split(" ")[0] for value in (90.0, 45.0, 44.9)] == [
+        "the",
+        "no",
+        "both",
+    ]

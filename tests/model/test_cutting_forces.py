@@ -12,7 +12,7 @@ import pytest
 
 from workhold import InputError, Program
 from workhold.model.cutting_forces import CuttingForces, forces_on, teeth_together
-from workhold.model.cutting_tool import MATERIALS, SOURCE, CuttingData, Cylinder, Tool, material_named
+from workhold.model.cutting_tool import MATERIALS, SOURCE, CuttingData, Cylinder, Tool, find_material
 from workhold.model.moves import Moves
 
 # A rapid move, a line, a ramp down, a hole down and up at the feed.
@@ -26,7 +26,7 @@ def moves_of(feed: float = 600.0, spindle: float = 3000.0) -> Moves:
     return Moves.of_rows(rows)
 
 
-def forces_of(own: dict[str, Any], job: dict[str, Any] | None = None, **how: Any) -> CuttingForces:
+def solve_contact_forces(own: dict[str, Any], job: dict[str, Any] | None = None, **how: Any) -> CuttingForces:
     """The forces of a tool of 10 mm, called a drill so that it drills straight down."""
     tool = Tool(1, [Cylinder(0, 40, 5)], 10, cutting=CuttingData(**own), kind="drill")
     found = forces_on(moves_of(**how), {1: tool}, CuttingData(**(job or {})))
@@ -35,32 +35,32 @@ def forces_of(own: dict[str, Any], job: dict[str, Any] | None = None, **how: Any
 
 
 def test_a_given_force_acts_where_the_tool_cuts() -> None:
-    found = forces_of({"cutting_force": 500, "cut_depth": 3, "helix_angle": 45})
+    found = solve_contact_forces({"cutting_force": 500, "cut_depth": 3, "helix_angle": 45})
     assert found.force.tolist() == [0, 500, 500, 0, 0]
     assert found.torque.tolist() == [0, 2500, 2500, 2500, 0]
     assert found.height.tolist() == [0, 1.5, 1.5, 0, 0]
     # A helix of 45 degrees pulls as much as it pushes; a ramp presses down, and a drill with 1.4 times it.
     assert found.axial == pytest.approx(np.array([[0, 0], [-500, 0], [-500, 500], [0, 700], [0, 0]]))
-    assert forces_of({"cutting_force": 500}).axial[1, 0] == pytest.approx(-500 * tan(radians(30)))
+    assert solve_contact_forces({"cutting_force": 500}).axial[1, 0] == pytest.approx(-500 * tan(radians(30)))
 
 
 def test_power_and_speed_make_a_force() -> None:
     # 60 000 * 2.2 kW / (pi * 0.01 m * 3000 / min).
-    assert forces_of({"power": 2.2}).force[1] == pytest.approx(60000 * 2.2 / (pi * 0.01 * 3000))
+    assert solve_contact_forces({"power": 2.2}).force[1] == pytest.approx(60000 * 2.2 / (pi * 0.01 * 3000))
 
 
 def test_kienzle_by_hand() -> None:
     # 600 / (3000 * 4) = 0.05 mm a tooth; a quarter of the diameter is 60 degrees, in which one of 4 teeth cuts.
     own = {"teeth": 4, "cut_depth": 2, "cut_width": 2.5, "material": "steel"}
     chip = 0.05 * sin(radians(60))
-    assert forces_of(own).force[1] == pytest.approx(1500 * chip ** (1 - 0.22) * 2, rel=1e-9)
+    assert solve_contact_forces(own).force[1] == pytest.approx(1500 * chip ** (1 - 0.22) * 2, rel=1e-9)
     # Of a slot two of 4 teeth cut at once, at 45 degrees each they add up to most.
-    full = forces_of(own | {"cut_width": None})
+    full = solve_contact_forces(own | {"cut_width": None})
     assert full.force[1] == pytest.approx(2 * 1500 * (0.05 * sqrt(0.5)) ** 0.78 * 2, rel=1e-9)
     # A drill with two lips and a point of 118 degrees: f D kc / 4.
     thick = 0.2 / 2 * sin(radians(59))
     kc = 1500 * thick**-0.22
-    hole = forces_of({}, {"material": "steel", "teeth": 4, "cut_depth": 2})
+    hole = solve_contact_forces({}, {"material": "steel", "teeth": 4, "cut_depth": 2})
     assert hole.torque[3] == pytest.approx(0.2 * 10 * kc / 4 * 5, rel=1e-9)
     assert hole.axial[3].tolist() == pytest.approx([0, 1.4 * 0.2 * 10 * kc / 4])
 
@@ -77,7 +77,7 @@ def test_teeth_add_up_to_most_where_a_walk_says(teeth: int, angle: float) -> Non
 
 
 def test_what_a_tool_says_goes_before_what_the_job_says() -> None:
-    found = forces_of({"cutting_force": 80}, {"material": "steel"})
+    found = solve_contact_forces({"cutting_force": 80}, {"material": "steel"})
     assert found.force[1] == 80
     assert found.reasons[1] == "as given."
     assert forces_on(moves_of(), {1: Tool(1, [Cylinder(0, 9, 5)], 10)}, CuttingData(teeth=3)) is None
@@ -105,7 +105,7 @@ def test_what_a_tool_says_goes_before_what_the_job_says() -> None:
 )
 def test_what_is_lacking_is_named(own: Any, job: Any, how: Any, said: str) -> None:
     with pytest.raises(InputError, match=said):
-        forces_of(own, job, **how)
+        solve_contact_forces(own, job, **how)
 
 
 def test_a_tool_without_any_is_named() -> None:
@@ -118,8 +118,8 @@ def test_a_tool_without_any_is_named() -> None:
 def test_every_material_has_its_source_and_a_name_of_its_own() -> None:
     assert len({one.name for one in MATERIALS}) == len(MATERIALS) >= 12
     assert all(one.source == SOURCE and "group" in one.words for one in MATERIALS)
-    assert material_named(" ALUMINUM ") is material_named("aluminium")
-    assert material_named("Cast Iron").kc < material_named("titanium").kc
+    assert find_material(" ALUMINUM ") is find_material("aluminium")
+    assert find_material("Cast Iron").kc < find_material("titanium").kc
 
 
 TABLE = """unit = "inch"

@@ -12,7 +12,7 @@ import pytest
 
 from workhold import Program, Query, Vise, Workpiece, answer
 from workhold.model.cutting_forces import CUT_KINDS, CuttingForces
-from workhold.statics.program_forces import cutting_need_of
+from workhold.statics.program_forces import find_cutting_need
 
 PLATE = Workpiece.from_points("plate", [(0, 0), (120, 0), (120, 70), (0, 70)])
 VISE = Vise(pitch=10, columns=3, peg_radius=3)
@@ -29,7 +29,7 @@ def asked(path: Path, tools: str, text: str, material: str, stock: dict[str, flo
     return Query(PLATE, VISE, program=program, peg_height=8, best=1)
 
 
-def forces_of(query: Query) -> tuple[CuttingForces, list[int]]:
+def solve_contact_forces(query: Query) -> tuple[CuttingForces, list[int]]:
     """The forces of its program, and the lines of its moves."""
     assert query.program is not None and query.program.forces is not None
     return query.program.forces, query.program.moves.line.tolist()
@@ -37,7 +37,7 @@ def forces_of(query: Query) -> tuple[CuttingForces, list[int]]:
 
 def kinds_by_line(query: Query) -> dict[int, str]:
     """What the program does, by the line that does it."""
-    forces, lines = forces_of(query)
+    forces, lines = solve_contact_forces(query)
     return {lines[k]: CUT_KINDS[forces.kind[k]] for k in range(len(lines)) if forces.kind[k]}
 
 
@@ -50,7 +50,7 @@ def test_a_drilled_hole(tmp_path: Path) -> None:
     tools = '[tool.1]\ndiameter = 8.5\ntype = "drill"\n'
     text = "G21 G90\nT1 M6\nS1200 M3\nG0 X60 Y35 Z20\nG81 X60. Y35. Z-18. R2. F180\nG80\nM30\n"
     query = asked(tmp_path, tools, text, "steel", {"side": 0, "top": 0})
-    forces, lines = forces_of(query)
+    forces, lines = solve_contact_forces(query)
     assert kinds_by_line(query) == {5: "drilling"}
     (move,) = set(forces.stretches.move.tolist())
     assert lines[move] == 5
@@ -70,7 +70,7 @@ def test_a_face_mill_that_comes_down_in_air(tmp_path: Path) -> None:
     tools = "[tool.2]\ndiameter = 40\nteeth = 5\ncut_depth = 2\n"
     text = "G21 G90\nT2 M6\nS800 M3\nG0 X-30. Y35. Z5.\nG1 Z-2. F200\nG1 X150. F600\nG0 Z5.\nM30\n"
     query = asked(tmp_path, tools, text, "steel")
-    forces, _ = forces_of(query)
+    forces, _ = solve_contact_forces(query)
     assert kinds_by_line(query) == {6: "milling"}
     (move,) = set(forces.stretches.move.tolist())
     assert forces.force[move] == pytest.approx(1230.0, abs=1.5)
@@ -80,7 +80,7 @@ def test_a_face_mill_that_comes_down_in_air(tmp_path: Path) -> None:
     ]
     # Nothing presses down with more than the helix pulls: the plunge is in air.
     assert forces.axial.max() == 0.0
-    need = cutting_need_of(answer(query), 0)
+    need = find_cutting_need(answer(query), 0)
     assert need is not None and need.jaw.line == 6
 
 
@@ -95,7 +95,7 @@ def test_a_slot(tmp_path: Path) -> None:
     tools = "[tool.3]\ndiameter = 10\nteeth = 4\ncut_depth = 4\n"
     text = "G21 G90\nT3 M6\nS6000 M3\nG0 X30. Y35. Z3.\nG1 Z-4. F240\nG1 X90. F600\nG0 Z5.\nM30\n"
     query = asked(tmp_path, tools, text, "aluminium")
-    forces, lines = forces_of(query)
+    forces, lines = solve_contact_forces(query)
     assert kinds_by_line(query) == {5: "plunging", 6: "milling"}
     plunge, slot = lines.index(5), lines.index(6)
     assert forces.force[slot] == pytest.approx(310.3, abs=0.3) and forces.force[plunge] == 0.0
@@ -104,7 +104,7 @@ def test_a_slot(tmp_path: Path) -> None:
     # Nobody said its helix: 30 degrees, which pull with 310.3 tan 30 = 179.2 N; on the level it presses not down.
     assert forces.axial[slot].tolist() == pytest.approx([-179.2, 0.0], abs=0.3)
     assert forces.height[slot] == 2.0
-    need = cutting_need_of(answer(query), 0)
+    need = find_cutting_need(answer(query), 0)
     assert need is not None and need.jaw.line == 6
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from workhold.conventions import DOWEL_DEPTH
-from workhold.model.dowel_lengths import dowel_for, lengths_of, sold, standouts
+from workhold.model.dowel_lengths import find_shortest_dowel, lengths_of, sold, standouts
 
 
 def test_lengths_are_those_of_the_standards() -> None:
@@ -34,7 +34,7 @@ def test_lengths_are_those_of_the_standards() -> None:
 def test_the_shortest_that_sits_deep_enough(
     diameter: float, standout: float, name: str, depth: float
 ) -> None:
-    dowel = dowel_for(diameter, standout)
+    dowel = find_shortest_dowel(diameter, standout)
     assert dowel is not None
     assert (dowel.name, dowel.standout) == (name, standout)
     assert dowel.depth == pytest.approx(depth)
@@ -47,6 +47,6 @@ def test_the_shortest_that_sits_deep_enough(
 
 def test_what_is_not_sold_has_none() -> None:
     """A diameter between two, and more than the longest stands out."""
-    assert dowel_for(7.0, 5.0) is None
-    assert dowel_for(6.0, 51.1) is None
+    assert find_shortest_dowel(7.0, 5.0) is None
+    assert find_shortest_dowel(6.0, 51.1) is None
     assert standouts(6.0)[-1] == 51.0

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from workhold import Plate, Vise
 from workhold.errors import InputError
 from workhold.fixels.carrier import Holes
-from workhold.model.dowels import Bolts, jaw_plates, peg_error, refuse_limits
+from workhold.model.dowels import Bolts, compute_peg_error, list_jaw_plates, refuse_limits
 from workhold.units import INCH
 
 VISE = Vise(pitch=(10, 12), columns=3, peg_radius=3, rows=4, row_offset=5.0)
@@ -21,9 +21,9 @@ VISE = Vise(pitch=(10, 12), columns=3, peg_radius=3, rows=4, row_offset=5.0)
 
 def test_holes_are_those_of_the_jaws() -> None:
     """Every hole's name and its place from the jaw's own A1; what is blocked is missing from its jaw alone."""
-    left, right = jaw_plates(evolve(VISE, blocked=(Holes("left", 1), Holes("right", 0, 0))))
+    left, right = list_jaw_plates(evolve(VISE, blocked=(Holes("left", 1), Holes("right", 0, 0))))
     assert [len(left.holes), len(right.holes)] == [8, 11]
-    vise = jaw_plates(VISE)
+    vise = list_jaw_plates(VISE)
     for plate, carrier in zip(vise, VISE.carriers, strict=True):
         zero = carrier.place(0, 0)
         for name, (x, y) in plate.holes:
@@ -39,9 +39,9 @@ def test_holes_are_those_of_the_jaws() -> None:
 
 def test_the_edge_is_as_far_as_asked_for() -> None:
     """Half a pitch each way, or what is given."""
-    box = jaw_plates(VISE)[0].outline
+    box = list_jaw_plates(VISE)[0].outline
     assert (box.x0, box.y0, box.x1, box.y1) == (-5, -6, 25, 42)
-    box = jaw_plates(VISE, edge=15.0)[1].outline
+    box = list_jaw_plates(VISE, edge=15.0)[1].outline
     assert (box.x0, box.y0, box.x1, box.y1) == (-15, -15, 35, 51)
 
 
@@ -61,24 +61,24 @@ def test_the_edge_is_as_far_as_asked_for() -> None:
 def test_what_cannot_be_drilled_is_refused(changes: dict, said: str) -> None:
     """Holes that meet, or leave the plate."""
     with pytest.raises(InputError, match=said):
-        jaw_plates(VISE, **changes)
+        list_jaw_plates(VISE, **changes)
 
 
 def test_bolts_that_just_miss_are_allowed() -> None:
     """A tenth of a millimetre from a dowel hole, an edge and another bolt."""
     bolts = Bolts(4.0, ((5.0, 6.0), (5.0, 10.1), (22.9, 6.0), (10.0, 5.1)))
-    assert all(plate.bolts == bolts for plate in jaw_plates(VISE, bolts=bolts))
+    assert all(plate.bolts == bolts for plate in list_jaw_plates(VISE, bolts=bolts))
 
 
 def test_plates_need_a_number_of_rows() -> None:
     """As many as needed is none."""
     with pytest.raises(InputError, match="how many columns and rows"):
-        jaw_plates(evolve(VISE, rows=None))
+        list_jaw_plates(evolve(VISE, rows=None))
 
 
 def test_a_clamp_has_no_plate_to_drill() -> None:
     """Of a plate with a clamp only the plate is drilled, with all its holes."""
-    (plate,) = jaw_plates(Plate(pitch=20, peg_radius=5, columns=8, rows=6, directions=("-x", "-y")))
+    (plate,) = list_jaw_plates(Plate(pitch=20, peg_radius=5, columns=8, rows=6, directions=("-x", "-y")))
     assert (plate.title, len(plate.holes)) == ("plate", 48) and plate.holes[0][0] == "A1"
 
 
@@ -95,12 +95,12 @@ def test_no_pin_in_no_hole_is_off_by_more_and_one_is_by_as_much(a, b, c, d, posi
         position + max(0.0, bore - diameter) / 2 + abs(diameter - 2 * radius) / 2
         for diameter, bore in product(np.linspace(*pin, 7), np.linspace(*hole, 7))
     ]
-    assert peg_error(radius, pin, hole, position) == pytest.approx(max(off), abs=1e-12)
+    assert compute_peg_error(radius, pin, hole, position) == pytest.approx(max(off), abs=1e-12)
 
 
 def test_a_pin_of_just_the_size_pressed_into_its_place_is_not_off():
     """No clearance, no difference in size, no error of position: nothing is left."""
-    assert peg_error(3.0, (6.0, 6.0), (5.987, 6.0), 0.0) == 0
+    assert compute_peg_error(3.0, (6.0, 6.0), (5.987, 6.0), 0.0) == 0
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from attrs import evolve
 
 from workhold import Plate, Restrictions, Workpiece, design
 from workhold.errors import InputError
-from workhold.model.first_side import first_side, standing_matrix, turn_words
+from workhold.model.first_side import compute_standing_rotation, first_side, turn_words
 from workhold.model.solid import AXES, SolidOutline
 
 CORNERS = [(0.0, 0.0), (80.0, 4.0), (76.0, 50.0), (6.0, 44.0)]
@@ -39,14 +39,14 @@ def test_standing_is_as_the_reader_has_it(axis: str) -> None:
 
     box = BRepPrimAPI_MakeBox(gp_Pnt(1, 2, 3), 10.0, 20.0, 40.0).Solid()
     low, high = bounding_box(along(box, axis))
-    ends = np.array([standing_matrix(axis) @ corner for corner in ((1, 2, 3), (11, 22, 43))])
+    ends = np.array([compute_standing_rotation(axis) @ corner for corner in ((1, 2, 3), (11, 22, 43))])
     assert np.allclose(ends.min(axis=0), low, atol=1e-6) and np.allclose(ends.max(axis=0), high, atol=1e-6)
 
 
 @pytest.mark.parametrize(("before", "now"), list(product(AXES, AXES)))
 def test_words_describe_the_turn(before: str, now: str) -> None:
     """Half turns are told about the axis that they leave; every standing is a turn, none a mirror image."""
-    turn = standing_matrix(now) @ standing_matrix(before).T
+    turn = compute_standing_rotation(now) @ compute_standing_rotation(before).T
     assert np.linalg.det(turn) == pytest.approx(1.0)
     words = turn_words(before, now)
     for k, name in enumerate("xyz"):

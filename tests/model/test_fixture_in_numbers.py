@@ -11,7 +11,7 @@ from attrs import evolve
 
 import workhold
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.segment import distance_to_segment
+from workhold.geometry.segment import measure_distance_to_segment
 from workhold.model.requirements import Load
 
 PART = workhold.load("widget")
@@ -33,7 +33,7 @@ def test_contacts_lie_on_faces_and_their_forces_balance(toolkit: Toolkit) -> Non
         turn = points[:, 0] * normals[:, 1] - points[:, 1] * normals[:, 0]
         assert np.abs(force @ normals).max() < 1e-7 and abs(force @ turn) < 1e-5
         for peg, at in zip(fixture.pegs, fixture.pose.inverse.apply(points), strict=True):
-            assert distance_to_segment(tuple(at.tolist()), faces[peg.face]) < 1e-6
+            assert measure_distance_to_segment(tuple(at.tolist()), faces[peg.face]) < 1e-6
 
 
 def test_a_fixture_knows_its_rank_loads_and_what_its_jaws_are_at() -> None:
@@ -83,7 +83,9 @@ def test_a_part_becomes_a_polygon() -> None:
         assert polygon.is_valid and len(polygon.interiors) == len(part.hole_segments)
         corners = np.array(polygon.exterior.coords)
         middles = (corners[1:] + corners[:-1]) / 2
-        away = [min(distance_to_segment(at, one) for one in part.segments) for at in map(tuple, middles)]
+        away = [
+            min(measure_distance_to_segment(at, one) for one in part.segments) for at in map(tuple, middles)
+        ]
         assert tolerance / 4 < max(away) <= tolerance + 1e-9
     again = workhold.load(part.to_shapely(0.0005), fit=0.001)
     assert len(again.faces) == len(part.faces)

@@ -11,8 +11,15 @@ from toolkit_results import MOUTH, part
 from workhold import Fence, Fixture, FlatJaw, InputError, Plate, Result, Vise
 from workhold.drawing.sheet_facts import result_details
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.moved_setup import middle_move, move_to, moved_on, overhang_words, overhangs, spare_holes
-from workhold.model.shown import placed_box
+from workhold.model.moved_setup import (
+    count_spare_holes,
+    describe_overhang,
+    find_move_to_middle,
+    move_fixture_by_holes,
+    move_to,
+    overhangs,
+)
+from workhold.model.shown import bound_placed_part
 from workhold.web.answers import fixture_answer
 
 LOOP = [(0, 0, 0), (100, 0, 0), (100, 30, 0), (40, 34, 0), (40, 90, 0), (4, 90, 0)]
@@ -41,9 +48,9 @@ def test_all_stands_in_the_middle_and_nothing_changes_among_itself(kind: str) ->
     assert len(result)
     moves = set()
     for fixture in result:
-        move = middle_move(fixture, toolkit, result.workpiece)
+        move = find_move_to_middle(fixture, toolkit, result.workpiece)
         moves.add(move)
-        placed = moved_on(fixture, toolkit, move)
+        placed = move_fixture_by_holes(fixture, toolkit, move)
         by = [steps * pitch for steps, pitch in zip(move, toolkit.plates[0].pitch, strict=True)]
         for one, other in zip(fixture.pegs, placed.pegs, strict=True):
             assert (other.x - one.x, other.y - one.y) == pytest.approx(by)
@@ -58,9 +65,9 @@ def test_all_stands_in_the_middle_and_nothing_changes_among_itself(kind: str) ->
         if kind != "no stroke":
             assert placed.travels == fixture.travels
         off = [middle_off(placed, result, axis) for axis in (0, 1)]
-        for axis, (back, ahead) in enumerate(spare_holes(placed, toolkit)):
+        for axis, (back, ahead) in enumerate(count_spare_holes(placed, toolkit)):
             for step in range(-back, (ahead or 0) + 1):
-                there = moved_on(placed, toolkit, (step, 0) if axis == 0 else (0, step))
+                there = move_fixture_by_holes(placed, toolkit, (step, 0) if axis == 0 else (0, step))
                 if ahead is not None:
                     assert abs(middle_off(there, result, axis)) >= abs(off[axis]) - 1e-6
     assert moves != {(0, 0)}
@@ -71,7 +78,7 @@ def test_all_stands_in_the_middle_and_nothing_changes_among_itself(kind: str) ->
 def middle_off(fixture: Fixture, result: Result, axis: int) -> float:
     """How far the middle of part, pegs and clamps is from that of the plate along an axis, in mm."""
     plate = result.toolkit.plates[0]
-    box = placed_box(result.workpiece, fixture.pose)
+    box = bound_placed_part(result.workpiece, fixture.pose)
     ends = [(box.x0, box.y0)[axis], (box.x1, box.y1)[axis], *((peg.x, peg.y)[axis] for peg in fixture.pegs)]
     for peg in fixture.pegs:
         carrier = result.toolkit.carrier(peg.carrier)
@@ -90,7 +97,7 @@ def test_without_an_end_of_the_plate_and_in_a_vise_nothing_moves() -> None:
     ):
         result = held(toolkit)
         assert len(result)
-        assert {middle_move(one, toolkit, result.workpiece) for one in result} == {(0, 0)}
+        assert {find_move_to_middle(one, toolkit, result.workpiece) for one in result} == {(0, 0)}
 
 
 def test_a_hole_that_is_asked_for_takes_the_lowest_column_and_row() -> None:
@@ -98,7 +105,7 @@ def test_a_hole_that_is_asked_for_takes_the_lowest_column_and_row() -> None:
     toolkit = KINDS["plate"]
     result = held(toolkit)
     fixture = result[0]
-    placed = moved_on(fixture, toolkit, move_to(fixture, toolkit, "d4"))
+    placed = move_fixture_by_holes(fixture, toolkit, move_to(fixture, toolkit, "d4"))
     assert (min(peg.column for peg in placed.pegs), min(peg.row for peg in placed.pegs)) == (3, 3)
     for wrong, words in (
         ("4D", "'4D' names no hole to stand at: give a column letter and a row"),
@@ -125,20 +132,20 @@ def test_what_hangs_over_is_told() -> None:
     plate = KINDS["plate"].changed({"columns": 6, "rows": 5})
     result = held(plate)
     assert len(result)
-    fixture = moved_on(result[0], plate, middle_move(result[0], plate, result.workpiece))
-    box = placed_box(result.workpiece, fixture.pose)
+    fixture = move_fixture_by_holes(result[0], plate, find_move_to_middle(result[0], plate, result.workpiece))
+    box = bound_placed_part(result.workpiece, fixture.pose)
     wanted = {"left": -10 - box.x0, "right": box.x1 - 110, "lower": -10 - box.y0, "upper": box.y1 - 90}
     found = {one.side: one.length for one in overhangs(fixture, plate, result.workpiece)}
     assert found == pytest.approx({side: by for side, by in wanted.items() if by > 1e-6})
     jaw = FlatJaw(pitch=12, peg_radius=3, columns=4, jaw_width=30)
     kite = workhold.design(part(KITE), jaw)
-    words = overhang_words(kite[0], jaw, kite.workpiece, "{:.3f} mm".format)
-    box = placed_box(kite.workpiece, kite[0].pose)
+    words = describe_overhang(kite[0], jaw, kite.workpiece, "{:.3f} mm".format)
+    box = bound_placed_part(kite.workpiece, kite[0].pose)
     left, right = 3.0 - box.x0, box.x1 - 33.0
     told = f"{left:.3f} mm at the left and {right:.3f} mm at the right"
     assert words == f"The part stands out beyond the flat jaw: {told}."
     free = held(Plate(pitch=20, peg_radius=3))
-    assert overhang_words(free[0], free.toolkit, free.workpiece, str) == ""
+    assert describe_overhang(free[0], free.toolkit, free.workpiece, str) == ""
 
 
 def test_the_sheet_has_it_there_and_the_page_lays_the_plate_so() -> None:

@@ -17,7 +17,7 @@ from workhold.errors import InputError
 from workhold.model.cutting_tool import Cylinder, Tool
 from workhold.model.moves import Moves, along
 from workhold.model.program import SweptPiece
-from workhold.model.program_figures import tip_box, tool_figures
+from workhold.model.program_figures import bound_tip, measure_tools
 
 TOOL = Tool(1, [Cylinder(0, 20, 3), Cylinder(20, 60, 15)], 6.0, "mill")
 
@@ -236,19 +236,19 @@ def test_figures_of_tools_and_the_box_of_the_tips() -> None:
         (True, (10, 0, 30), (10, 0, 0), 0.0),
         (True, (10, 0, 0), (0, 10, 4), -tan(3 * pi / 8)),
     )
-    (one,) = tool_figures(program)
+    (one,) = measure_tools(program)
     arc = np.hypot(1.5 * pi * 10, 4)
     assert (one.tool, one.first_line, one.rapid, one.untimed) == (1, 10, 10.0, 0.0)
     assert one.cutting == pytest.approx(30 + arc) and one.seconds == pytest.approx((30 + arc) / 300 * 60)
     assert (one.lowest, one.highest, one.lowest_cut) == (0.0, 30.0, 0.0)
-    low, high = tip_box(program.moves)
+    low, high = bound_tip(program.moves)
     assert np.allclose(low, [-10, -10, 0]) and np.allclose(high, [10, 10, 30])
     start, end = [10 * np.array([np.cos(a), np.sin(a)]) for a in np.radians([150, 60])]
     over = program_of((True, (*start, 0), (*end, 9), -tan(pi / 8)))
-    low, high = tip_box(over.moves)
+    low, high = bound_tip(over.moves)
     assert np.allclose(low, [*start, 0]) and np.allclose(high, [end[0], 10, 9])
     unfed = evolve(program, moves=evolve(program.moves, feed=np.zeros(3)))
-    assert tool_figures(unfed)[0].untimed == pytest.approx(30 + arc)
+    assert measure_tools(unfed)[0].untimed == pytest.approx(30 + arc)
 
 
 def test_a_program_without_moves_sweeps_nothing() -> None:

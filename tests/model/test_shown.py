@@ -17,7 +17,7 @@ from workhold.errors import InputError
 from workhold.fixels.carrier import Holes
 from workhold.fixels.toolkit import Arrangement, Carrier, Symmetry, Toolkit, Travel
 from workhold.geometry.segment import Box
-from workhold.model.shown import Shown, placed_boxes, shown, shown_beside
+from workhold.model.shown import Shown, bound_placed_parts, find_shown_beside, shown
 
 WAYS = {"+x": 0.0, "+y": pi / 2, "-x": pi, "-y": -pi / 2}
 
@@ -83,7 +83,7 @@ def test_a_plate_may_slide_either_way_along_either_axis(way: str, travelled: flo
     """Plates stay apart, the travel is measured from where it begins to where it ends, and clamping undoes it."""
     toolkit = two_plates(way)
     fixture = pegs_in(toolkit, travelled, ("base", 1, 1), ("base", 2, 3), ("slide", 0, 0), ("slide", 2, 1))
-    seen = shown_beside(Box(0.0, 0.0, 20.0, 30.0), fixture, toolkit)
+    seen = find_shown_beside(Box(0.0, 0.0, 20.0, 30.0), fixture, toolkit)
     check(seen)
     (base, slide), (measured,) = seen.carriers, seen.measured
     start, end = measured.axes
@@ -103,7 +103,7 @@ def test_a_plate_alone_faces_nothing() -> None:
     """One carrier that stands still: nothing is measured, rows are named at the left, half a pitch is left all round."""
     toolkit = Plates(None, two_plates("+x").all[:1])
     fixture = pegs_in(toolkit, 0.0, ("base", 0, 0), ("base", 3, 0), ("base", 0, 4), ("base", 3, 4))
-    seen = shown_beside(Box(5.0, 5.0, 25.0, 40.0), fixture, toolkit)
+    seen = find_shown_beside(Box(5.0, 5.0, 25.0, 40.0), fixture, toolkit)
     check(seen)
     assert (
         seen.measured == () and seen.carriers[0].facing == frozenset() and seen.carriers[0].names_at == "left"
@@ -120,7 +120,7 @@ def test_holes_show_a_pitch_around_what_is_held_or_a_fourteenth_of_it(
     """Four columns of 10 mm ask for one more at either side, 28 of them for two, and rows of 12 mm for one."""
     plate = Carrier("base", (10.0, 12.0), 60, 60, 3.0, 3.0)
     fixture = pegs_in(Plates(None, (plate,)), 0.0, ("base", 10, 10), ("base", 10 + wide, 14))
-    (seen,) = shown_beside(Box(110.0, 125.0, 130.0, 165.0), fixture, Plates(None, (plate,))).carriers
+    (seen,) = find_shown_beside(Box(110.0, 125.0, 130.0, 165.0), fixture, Plates(None, (plate,))).carriers
     assert (seen.columns, seen.rows) == (columns, rows)
 
 
@@ -131,7 +131,7 @@ def test_the_clamping_direction_is_the_toolkits(kind: type[Vise], clamping: tupl
         pitch=10, columns=3, peg_radius=3, row_offset=2.0, blocked=(Holes("left", 2, 1), Holes("right", 0))
     )
     fixture = pegs_in(vise, 36.0, ("left", 2, 0), ("left", 1, 4), ("right", 1, 1), ("right", 1, 3))
-    seen = shown_beside(Box(21.0, 0.0, 55.0, 40.0), fixture, vise)
+    seen = find_shown_beside(Box(21.0, 0.0, 55.0, 40.0), fixture, vise)
     check(seen)
     left, right = seen.carriers
     assert (left.clamping, right.clamping) == (None, clamping)
@@ -146,7 +146,7 @@ def test_of_many_holes_those_near_the_pegs_are_left() -> None:
     """A pitch of 0.5 mm would give thousands; what is left lies within three columns and rows of a peg."""
     fine = Vise(pitch=0.5, columns=200, peg_radius=0.2)
     fixture = pegs_in(fine, 50.0, ("left", 199, 0), ("left", 150, 60), ("right", 0, 0), ("right", 60, 80))
-    for each in shown_beside(Box(100.0, 0.0, 149.0, 40.0), fixture, fine).carriers:
+    for each in find_shown_beside(Box(100.0, 0.0, 149.0, 40.0), fixture, fine).carriers:
         near = each.holes(2000)
         assert len(near) <= 49 * len(each.pegs) < len(each.holes())
         for hole in near:
@@ -161,7 +161,7 @@ def test_extents_are_those_of_the_placed_part(theta: float, x: float, y: float) 
     part = Workpiece.from_loops(
         "half disc", [[[0, 0, 0.4], [20, 0, 1.0], [0, 0.5, 0]], [[8, 1, 1], [9, 1, 1]]]
     )
-    ((x0, y0, x1, y1),) = placed_boxes(part, *np.array([[theta], [x], [y]]))
+    ((x0, y0, x1, y1),) = bound_placed_parts(part, *np.array([[theta], [x], [y]]))
     points = np.array(
         [
             segment.at(segment.half_extent * share)
@@ -200,10 +200,10 @@ def test_too_many_holes_are_not_shown(row: int) -> None:
     vise = Vise(pitch=10, columns=3, peg_radius=2)
     far = pegs_in(vise, 30.0, ("left", 0, 0), ("left", 1, row), ("right", 0, 0), ("right", 1, 1))
     near = pegs_in(vise, 30.0, ("left", 0, 0), ("left", 1, 3), ("right", 0, 0), ("right", 1, 1))
-    assert len(shown_beside(Box(0.0, 0.0, 50.0, 50.0), near, vise).carriers) == 2
+    assert len(find_shown_beside(Box(0.0, 0.0, 50.0, 50.0), near, vise).carriers) == 2
     for part, fixture in ((Box(0.0, 0.0, 50.0, 50.0), far), (Box(0.0, 10.0 * row, 50.0, 1e300), near)):
         with pytest.raises(InputError, match="too many to show"):
-            shown_beside(part, fixture, vise)
+            find_shown_beside(part, fixture, vise)
 
 
 @pytest.mark.parametrize(("peg_radius", "hole"), [(3.0, 3.0), (4.9, 4.2), (0.5001, 0.5001), (0.0, 10 / 7)])
@@ -211,7 +211,7 @@ def test_a_hole_is_drawn_as_large_as_its_peg(peg_radius: float, hole: float) -> 
     """Neighbouring holes stay apart where pegs nearly overlap, and pegs that are points have holes to be seen."""
     toolkit = Vise(pitch=(10, 14), columns=2, peg_radius=peg_radius)
     fixture = pegs_in(toolkit, 20.0, ("left", 0, 0), ("left", 1, 2), ("right", 0, 0), ("right", 1, 1))
-    seen = shown_beside(Box(0.0, 0.0, 20.0, 30.0), fixture, toolkit)
+    seen = find_shown_beside(Box(0.0, 0.0, 20.0, 30.0), fixture, toolkit)
     assert [each.hole_radius for each in seen.carriers] == pytest.approx([hole, hole])
 
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from workhold import InputError, Program, Query, Vise, Workpiece
 from workhold.model.cutting_tool import Cylinder, Tool
 from workhold.model.moves import Moves, along
-from workhold.model.stock import Stock, stretches_in
+from workhold.model.stock import Stock, find_stretches_in_stock
 
 Array = NDArray[np.float64]
 TOOLS = {2: Tool(2, [Cylinder(0, 40, 6)], 12)}
@@ -40,7 +40,7 @@ def found(moves: Moves, loops: list[Array], **how: Any) -> list[list[float]]:
     """The stretches of the first move."""
     stock = Stock.of(how, 10.0)
     border = stock.border(loops)
-    return stretches_in(moves, TOOLS, stock, border, np.ones(len(moves), np.bool_)).of_move(0)
+    return find_stretches_in_stock(moves, TOOLS, stock, border, np.ones(len(moves), np.bool_)).of_move(0)
 
 
 def sampled(loop: Array, step: float = 0.5) -> Array:
@@ -141,12 +141,12 @@ def test_heights_count_from_the_tip_to_the_end_of_the_flute() -> None:
     assert found(ramp, [PLATE]) == [pytest.approx([0.1, 1.0])]
     short = {2: Tool(2, [Cylinder(0, 40, 6)], 12, flute_length=10)}
     stock, every = Stock(height=10), np.ones(1, np.bool_)
-    got = stretches_in(ramp, short, stock, stock.border([PLATE]), every).of_move(0)
+    got = find_stretches_in_stock(ramp, short, stock, stock.border([PLATE]), every).of_move(0)
     # Where the tip is 10 below the plane, the flute has left the stock.
     assert got == [pytest.approx([0.1, 0.6])]
     # Nobody knows how high the part is: then the stock has no top.
     stock = Stock()
-    assert stretches_in(ramp, short, stock, stock.border([PLATE]), every).of_move(0)[0][0] == 0.0
+    assert find_stretches_in_stock(ramp, short, stock, stock.border([PLATE]), every).of_move(0)[0][0] == 0.0
 
 
 def test_holes_are_filled_and_pieces_count_each() -> None:

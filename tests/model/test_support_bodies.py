@@ -12,8 +12,8 @@ from workhold import Vise, Workpiece, design
 from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc
-from workhold.model.bodies import SUPPORT_HEIGHT, BodyKind, BodySizes, FixtureBody, part_slabs
-from workhold.model.support_bodies import bodies_with_supports, supported_sizes, with_room
+from workhold.model.bodies import SUPPORT_HEIGHT, BodyKind, BodySizes, FixtureBody, make_part_slabs
+from workhold.model.support_bodies import list_bodies_with_supports, size_supported_bodies, with_room
 from workhold.model.support_triples import ChosenSupports, Recounted, Supports, Triple, recounted
 
 KITE = Workpiece.from_loops("kite", [[[0, 0, 0], [70, -8, 0.1], [88, 40, 0], [22, 66, 0]]])
@@ -86,7 +86,7 @@ def test_heights_and_radii_of_the_bodies() -> None:
     chosen = ChosenSupports.of(found)
     triple, fixture, pads = chosen.triple, chosen.recounted.fixture, chosen.pads
     sizes = BodySizes.of(KITE, 15, plate_thickness=8, support_height=5)
-    bodies = bodies_with_supports(chosen, sizes)
+    bodies = list_bodies_with_supports(chosen, sizes)
     kinds = {kind: [body for body in bodies if body.kind is kind] for kind in BodyKind}
     assert [(slab.low, slab.high) for slab in kinds[BodyKind.PART][0].slabs] == [(0, 15)]
     assert {(slab.low, slab.high) for body in kinds[BodyKind.PLATE] for slab in body.slabs} == {(-13, -5)}
@@ -124,7 +124,9 @@ def test_room_for_the_clamp_is_a_well_or_all_above(
     center: tuple[float, float], holes: list[int] | None
 ) -> None:
     """A circle of 5 mm inside leaves a well; on the border or in a small hole nothing stays above; outside all does."""
-    (slab,) = part_slabs(Workpiece.from_loops("holed", [*PLATE.loops, [[74, 30, -1], [66, 30, -1]]]), 30.0)
+    (slab,) = make_part_slabs(
+        Workpiece.from_loops("holed", [*PLATE.loops, [[74, 30, -1], [66, 30, -1]]]), 30.0
+    )
     pieces = list(with_room(slab, center, 5.0, 12.0))
     if holes is None:
         assert pieces == [slab]
@@ -139,7 +141,9 @@ def test_what_has_no_body_and_a_set_that_is_not_there_are_refused(tmp_path: Path
     """One sentence each; a GLB file holds the supports by name."""
     found = found_in(TOOLKITS[0])
     with pytest.raises(InputError, match="pads of radius 0 have no body"):
-        bodies_with_supports(ChosenSupports.of(evolve(found, request=evolve(found.request, pad_radius=0))))
+        list_bodies_with_supports(
+            ChosenSupports.of(evolve(found, request=evolve(found.request, pad_radius=0)))
+        )
     with pytest.raises(InputError, match="there is no set 41 of supports: 40 are listed"):
         ChosenSupports.of(found, 41)
     with pytest.raises(InputError, match="support height -1 is not a length"):
@@ -155,6 +159,6 @@ def test_what_has_no_body_and_a_set_that_is_not_there_are_refused(tmp_path: Path
 def test_pegs_are_as_high_above_the_plates_as_is_asked() -> None:
     """Pegs count from the plates, which lie below the part by the height of the supports."""
     found = found_in(TOOLKITS[0])
-    sizes = supported_sizes(found, peg_height=17.0, support_height=6.0)
+    sizes = size_supported_bodies(found, peg_height=17.0, support_height=6.0)
     assert (sizes.top, sizes.floor, sizes.thickness) == (11.0, -6.0, 15.0)
-    assert supported_sizes(found).floor == -SUPPORT_HEIGHT
+    assert size_supported_bodies(found).floor == -SUPPORT_HEIGHT

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from strategies import outlines
 from workhold import Workpiece
 from workhold.errors import InputError
-from workhold.geometry.loop import signed_area
+from workhold.geometry.loop import compute_signed_area
 from workhold.model.solid import SolidOutline
 
 SQUARE = [[0, 0, 0], [40, 0, 0], [40, 40, 0], [0, 40, 0]]
@@ -59,8 +59,8 @@ def test_loops_are_turned_so_that_material_lies_on_the_left(piece):
                 loop = [[*loop[-k][:2], -loop[-k - 1][2]] for k in range(len(loop))]
             loops.append(loop)
         again = part(*loops)
-        assert signed_area(again.loop_segments[0]) > 0
-        assert all(signed_area(hole) < 0 for hole in again.loop_segments[1:])
+        assert compute_signed_area(again.loop_segments[0]) > 0
+        assert all(compute_signed_area(hole) < 0 for hole in again.loop_segments[1:])
         for one, two in zip(again.loops, piece.loops, strict=True):
             assert np.array_equal(one, two)
 

@@ -11,7 +11,7 @@ import pytest
 
 import workhold
 from paper import benchmark_set, scale
-from paper.catalogue_runs import killed_and_resumed, records_of, run_batch, write_parts
+from paper.catalogue_runs import killed_and_resumed, make_records, run_batch, write_parts
 from paper.document import Figures, Heading, Line, Paragraph, Table
 from paper.elimination import CASES, factors, random_system
 from paper.growth import area, power_law
@@ -118,10 +118,10 @@ def test_a_killed_run_goes_on_to_the_same_records(tmp_path_factory: pytest.TempP
     folder = tmp_path_factory.mktemp("batch")
     parts = write_parts(folder / "parts", 24)
     run_batch(parts, folder / "one", 1)
-    records = records_of(folder / "one")
+    records = make_records(folder / "one")
     told = killed_and_resumed(parts, folder / "killed", len(records))
     assert told["workers_killed"] == 2 and 0 < told["records_when_killed"] < len(records)
-    assert records_of(folder / "killed") == records
+    assert make_records(folder / "killed") == records
 
 
 def test_the_shares_of_the_benchmark_set_are_read_where_they_are(

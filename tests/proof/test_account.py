@@ -7,7 +7,7 @@ import pytest
 from attrs import evolve
 
 from workhold import Query, Result, Vise, Workpiece, design, load
-from workhold.algebra import answer_by_algebra
+from workhold.algebra import find_fixtures_by_algebra
 from workhold.proof import deciding
 
 PARTS = [
@@ -83,7 +83,7 @@ def test_what_double_precision_leaves_open_is_decided_without_the_families_as_wi
 
 
 def test_the_algebra_has_an_account_without_cells() -> None:
-    result = answer_by_algebra(Query(load("oblongPart"), Vise(pitch=12, columns=1, peg_radius=3)))
+    result = find_fixtures_by_algebra(Query(load("oblongPart"), Vise(pitch=12, columns=1, peg_radius=3)))
     check_account(result)
     assert result.proof is not None
     assert result.proof.cells == 0

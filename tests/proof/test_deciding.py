@@ -24,7 +24,7 @@ from workhold.listing.results import Work, listed_result
 from workhold.proof import deciding
 from workhold.proof import interval_newton as settling
 from workhold.proof.ball_contacts import end_slacks
-from workhold.proof.deciding import Course, box_reach, decided, interval_newton_in_doubles, merged
+from workhold.proof.deciding import Course, bound_box, decide_by_interval_newton, decided, merged
 from workhold.search import design as design_module
 
 
@@ -82,7 +82,7 @@ def test_a_cancel_on_the_way_stops_ball_arithmetic(
 ) -> None:
     """Boxes that doubles give up go to ball arithmetic one by one; a cancel there leaves the rest."""
     problem, records, _ = found
-    monkeypatch.setattr(deciding, "interval_newton_in_doubles", lambda block, *_: (block[:0], block))
+    monkeypatch.setattr(deciding, "decide_by_interval_newton", lambda block, *_: (block[:0], block))
     monkeypatch.setattr(deciding, "hold_nothing", lambda records, _: np.zeros(len(records), np.bool_))
     cancel = Event()
     looked_at = []
@@ -128,7 +128,7 @@ def test_more_open_records_are_looked_at_together_as_long_as_that_is_quick(
 
     monkeypatch.setattr(deciding, "sifted", lambda records, *_: (records[:0], records))
     monkeypatch.setattr(deciding, "merged", lambda records, _: records)
-    monkeypatch.setattr(deciding, "interval_newton_in_doubles", look)
+    monkeypatch.setattr(deciding, "decide_by_interval_newton", look)
     monkeypatch.setattr(deciding, "perf_counter", lambda: clock[0])
     course = Course(len(records))
     proven, reasons, left = deciding.escalated(records, found[0], course)
@@ -152,7 +152,7 @@ def test_a_stop_between_blocks_leaves_the_others(
 
     monkeypatch.setattr(deciding, "sifted", lambda records, *_: (records[:0], records))
     monkeypatch.setattr(deciding, "merged", lambda records, _: records)
-    monkeypatch.setattr(deciding, "interval_newton_in_doubles", look)
+    monkeypatch.setattr(deciding, "decide_by_interval_newton", look)
     monkeypatch.setattr(deciding, "QUICK", 1e9)
     proven, _, left = deciding.escalated(records, found[0], Course(100, cancel=cancel))
     assert (len(proven), left) == (48, 52)
@@ -163,7 +163,7 @@ def test_both_kinds_of_interval_arithmetic_decide_alike(
 ) -> None:
     """With everything open sent to ball arithmetic the same records are proven."""
     problem, records, result = found
-    monkeypatch.setattr(deciding, "interval_newton_in_doubles", lambda block, *_: (block[:0], block))
+    monkeypatch.setattr(deciding, "decide_by_interval_newton", lambda block, *_: (block[:0], block))
     other = listed_result(problem, records, Work(True, {}))
     assert np.array_equal(other.table.column, result.table.column)
     assert np.array_equal(other.table.row, result.table.row)
@@ -209,7 +209,7 @@ def test_one_thread_at_a_time_works_with_balls(monkeypatch: pytest.MonkeyPatch) 
             inside[0] -= 1
 
     monkeypatch.setattr(settling, "solutions_in", watched)
-    monkeypatch.setattr(deciding, "interval_newton_in_doubles", lambda block, *_: (block[:0], block))
+    monkeypatch.setattr(deciding, "decide_by_interval_newton", lambda block, *_: (block[:0], block))
     monkeypatch.setattr(finish_module, "BLOCK", 8)
     part, vise = load("oblongPart"), Vise(pitch=8, columns=2, peg_radius=3)
     one, many = (design_module.design(part, vise, threads=threads) for threads in (1, 8))
@@ -225,7 +225,7 @@ def test_the_separation_is_known_to_what_both_pegs_and_the_turn_allow() -> None:
     row, length, radius, reach = np.zeros((1, record.RECORD_LENGTH)), 30.0, 1e-3, 1e-4
     row[0, [record.REACH, record.LARGEST_RADIUS]] = reach, radius
     off = 2 * radius * cos(reach) + 2 * length * sin(reach)
-    assert off <= box_reach(row, length)[0, 3] <= 1.01 * off
+    assert off <= bound_box(row, length)[0, 3] <= 1.01 * off
 
 
 @pytest.mark.parametrize("row", [line_row(0, 0, 0, 5.0), arc_row(0, 0, 5.0, 0.0, 1.0)], ids=["line", "arc"])
@@ -257,9 +257,7 @@ def test_a_wide_box_is_decided_in_doubles() -> None:
     row = np.zeros((1, record.RECORD_LENGTH))
     row[0, : record.PSI] = 3, 12, 14, 13, 2, 0, -4, -1, 0, 0, -4, -1, -2
     row[0, record.PSI :] = -0.4988108, -15.43876, 4.146501, 47.99848, 4.116907e-4, 8.815414
-    proven, still_open = interval_newton_in_doubles(
-        row, problem, problem.setting._replace(backward_error=0.0)
-    )
+    proven, still_open = decide_by_interval_newton(row, problem, problem.setting._replace(backward_error=0.0))
     assert len(proven) == len(still_open) == 0
 
 
@@ -268,7 +266,9 @@ def test_an_ordinary_part_leaves_nothing_to_balls(monkeypatch: pytest.MonkeyPatc
     """Boxes that are not flat are contracted in the frame of the Jacobian alone; weighed, some of them stay open, and the
     search loads ball arithmetic for them."""
     in_balls: list[int] = []
-    monkeypatch.setattr(deciding, "records_in_balls", counted(in_balls, deciding.records_in_balls))
+    monkeypatch.setattr(
+        deciding, "decide_records_in_balls", counted(in_balls, deciding.decide_records_in_balls)
+    )
     bracket = Path(__file__).resolve().parents[2] / "examples" / "bracket.dxf"
     result = design(load(bracket), Vise(pitch=10, columns=2, peg_radius=3))
     assert result.proof is not None and result.proof.escalated > 500

@@ -317,7 +317,7 @@ def test_a_box_about_the_centre_of_an_arc_keeps_its_solution() -> None:
         box[0, TAIL_X : TAIL_Y + 1] = rows[int(solution[FEATURES]), [X, Y]]
         box[0, REACH], box[0, LARGEST_RADIUS] = 1e-9, 0.3
         assert np.isfinite(jacobians(box, rows, problem.setting)).all()
-        kept, left = deciding.interval_newton_in_doubles(box, problem, problem.setting)
+        kept, left = deciding.decide_by_interval_newton(box, problem, problem.setting)
         distances = [np.abs(one[PSI:REACH] - solution[PSI:REACH]).max() for one in kept]
         assert len(left) or min(distances, default=1.0) < 1e-9
 

@@ -8,7 +8,7 @@ import pytest
 from workhold import Fence, Query, Workpiece
 from workhold.contact.problem import Problem
 from workhold.listing.wall_fixtures import WallFixtures
-from workhold.proof.exact_contacts import side_of
+from workhold.proof.exact_contacts import find_drawn_segment
 from workhold.proof.flush import Candidate, pressing
 from workhold.search import wall_contacts
 from workhold.search.flush_search import part_on_wall
@@ -99,10 +99,10 @@ def test_a_line_that_misses_an_arc_has_no_contact() -> None:
 def test_sides_are_numbered_through_all_loops() -> None:
     """Each is given by the vertices at its ends; those of a hole come after those of the outside."""
     part = Workpiece.from_loops("part", [KITE, [[20, 15, 0], [20, 25, 0], [30, 25, 0]]])
-    ends = [side_of(part, number) for number in range(7)]
+    ends = [find_drawn_segment(part, number) for number in range(7)]
     loops = [[tuple(vertex) for vertex in loop.tolist()] for loop in part.loops]
     assert ends == [
         (one, other) for loop in loops for one, other in zip(loop, loop[1:] + loop[:1], strict=True)
     ]
     with pytest.raises(IndexError):
-        side_of(part, 7)
+        find_drawn_segment(part, 7)

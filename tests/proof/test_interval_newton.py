@@ -12,7 +12,7 @@ from workhold.kernels.base.tables import Limits
 from workhold.proof import interval_newton as settling
 from workhold.proof.ball_contacts import CandidateBox
 from workhold.proof.interval_newton import BoxOutcome, solutions_in
-from workhold.proof.singular_frame import thirds
+from workhold.proof.singular_frame import cut_in_thirds
 
 # The ladders' moving pegs stand among the standing ones: any gap will do here.
 LIMITS = Limits(-100.0, 0.0, 20.0, 9.0, 1.0, 0.0, 0.0)
@@ -22,7 +22,7 @@ LIMITS = Limits(-100.0, 0.0, 20.0, 9.0, 1.0, 0.0, 0.0)
 def way(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
     """All outcomes are the same without the curve."""
     if request.param == "boxes":
-        monkeypatch.setattr(settling, "roots_on_curve", lambda *_: None)
+        monkeypatch.setattr(settling, "find_roots_on_curve", lambda *_: None)
     return str(request.param)
 
 
@@ -105,7 +105,7 @@ def test_four_parallel_normals_take_few_boxes(monkeypatch: pytest.MonkeyPatch) -
 def test_three_parts_cover_a_place(center: float) -> None:
     """Neighbours overlap, and all are in the place but for a hair."""
     whole = arb(center, 2.0)
-    parts = [part[1] for part in thirds([arb(0, 1), whole, arb(0, 0.5)])]
+    parts = [part[1] for part in cut_in_thirds([arb(0, 1), whole, arb(0, 0.5)])]
     low, mid, high = sorted(parts, key=lambda part: float(part.mid()))
     assert low.overlaps(mid) and mid.overlaps(high)
     assert float(low.lower()) <= center - 2.0 and float(high.upper()) >= center + 2.0
@@ -134,7 +134,7 @@ def test_a_rule_met_exactly_at_its_edge_is_undecided() -> None:
 
 def test_what_takes_too_many_boxes_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(settling, "MOST_BOXES", 1)
-    monkeypatch.setattr(settling, "roots_on_curve", lambda *_: None)
+    monkeypatch.setattr(settling, "find_roots_on_curve", lambda *_: None)
     outcome = solutions_in(box(-2.5 + 1e-6, 0.0, 1e-2), LIMITS)
     assert outcome.fixtures == ()
     assert outcome.reason

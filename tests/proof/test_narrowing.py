@@ -144,7 +144,7 @@ def test_no_contact_is_lost(seed: int) -> None:
     assert found.reach[0] <= box.reach[0] * (1 + 1e-5)
 
 
-def placed_box(
+def bound_placed_part(
     random: Random, reach: float
 ) -> tuple[CandidateBox, tuple[float, float, float, float], Limits]:
     """A box about three standing pegs and a moving one on lines and arcs, the place at which all touch, and limits
@@ -173,7 +173,7 @@ def placed_box(
 def test_standing_pegs_lose_no_contact(seed: int) -> None:
     """The place at which three locators and a clamp touch stays in the box, which mostly shrinks to it."""
     random = Random(seed)
-    box, true, asked = placed_box(random, 10.0 ** random.uniform(-7, -2.5))
+    box, true, asked = bound_placed_part(random, 10.0 ** random.uniform(-7, -2.5))
     found = located(box, asked)
     assert found is not None
     for one, middle, reach in zip(true, found.middle, found.reach, strict=True):
@@ -185,7 +185,7 @@ def test_standing_pegs_make_most_boxes_small() -> None:
     small = 0
     for seed in range(60):
         random = Random(seed)
-        box, true, asked = placed_box(random, 1e-4)
+        box, true, asked = bound_placed_part(random, 1e-4)
         away = evolve(box, middle=(*box.middle[:3], true[3]), reach=(*box.reach[:3], 30.0))
         found = located(away, asked)
         assert found is not None

@@ -15,7 +15,13 @@ from workhold.proof import solution_curve
 from workhold.proof.ball_contacts import CandidateBox
 from workhold.proof.interval_newton import PRECISIONS
 from workhold.proof.singular_frame import SingularFrame
-from workhold.proof.solution_curve import SolutionCurve, TaylorForm, along_curve, curve_about, roots_on_curve
+from workhold.proof.solution_curve import (
+    SolutionCurve,
+    TaylorForm,
+    bound_along_curve,
+    find_curve_about,
+    find_roots_on_curve,
+)
 
 LIMITS = Limits(-100.0, 0.0, 20.0, 9.0, 1.0, 0.0, 0.0)
 REST = [0.0, 0.0, 0.0, 0.0]
@@ -67,8 +73,8 @@ def point(frame: SingularFrame, t: float) -> tuple[list[arb], arb]:
 def curve_of(frame: SingularFrame) -> SolutionCurve:
     """The curve in the whole box."""
     *well, t = frame.start()
-    well, is_curve = along_curve(frame, well, t)
-    curve = curve_about(frame, well, t)
+    well, is_curve = bound_along_curve(frame, well, t)
+    curve = find_curve_about(frame, well, t)
     assert is_curve and curve is not None
     return curve
 
@@ -91,7 +97,8 @@ def test_every_point_of_the_curve_is_in_its_taylor_forms(frame: SingularFrame, s
         assert is_near(form.at(arb(t)), value)
     *well, along = frame.start()
     assert all(
-        is_near(part, value) for part, value in zip(along_curve(frame, well, along)[0], known, strict=True)
+        is_near(part, value)
+        for part, value in zip(bound_along_curve(frame, well, along)[0], known, strict=True)
     )
     assert is_near(curve.value(arb(t)), rest)
     assert float(curve.value(arb(t)).rad()) <= float(abs(curve.rest.last).upper()) * abs(t) ** 5 + 1e-30
@@ -112,7 +119,7 @@ def test_both_roots_of_a_fold_are_found_once(
     """Where no rule helps each exact solution is in just one part, and these are small."""
     monkeypatch.setattr(solution_curve, "is_empty", lambda *_: False)
     frame = folded(rest, 1e-2, turn) if rest < 1e-3 else folded(rest, 3e-2, turn)
-    roots = roots_on_curve(frame, LIMITS)
+    roots = find_roots_on_curve(frame, LIMITS)
     assert roots is not None and len(roots) == 2
     with exactly():
         exact = [ladders.unknowns(psi, -2.5 + rest) for psi in ladders.orientations(-2.5 + rest)]
@@ -123,7 +130,7 @@ def test_both_roots_of_a_fold_are_found_once(
 
 
 def test_nothing_is_below_a_fold() -> None:
-    assert roots_on_curve(folded(-1e-7, 1e-2), LIMITS) == []
+    assert find_roots_on_curve(folded(-1e-7, 1e-2), LIMITS) == []
 
 
 def test_a_triple_root_takes_few_parts(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -132,13 +139,13 @@ def test_a_triple_root_takes_few_parts(monkeypatch: pytest.MonkeyPatch) -> None:
     curve = curve_of(triple())
     assert not curve.rest.terms[3].contains(0)
     assert all(float(abs(term).upper()) < 1e-14 for term in curve.rest.terms[:3])
-    assert roots_on_curve(triple(), LIMITS) == []
+    assert find_roots_on_curve(triple(), LIMITS) == []
 
 
 def test_a_triple_root_that_is_not_quite_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """With one row a millionth of a nanometre off, the root stays in the box and becomes simple."""
     monkeypatch.setattr(solution_curve, "is_empty", lambda *_: False)
-    roots = roots_on_curve(triple(1e-12), LIMITS)
+    roots = find_roots_on_curve(triple(1e-12), LIMITS)
     assert roots is not None and len(roots) in (1, 3)
     for root in roots:
         values = triple(1e-12).places(root).values
@@ -150,12 +157,12 @@ def test_a_box_with_two_open_directions_has_no_curve() -> None:
     lines = [[0.0, 0.0, float(y), 1.0, 0.0, 60.0, 0.0, 1.0, *REST] for y in (0, 0, 20, 20)]
     places = [(0.0, 0.0), (30.0, 0.0), (0.0, 20.0), (30.0, 20.0)]
     box = CandidateBox(lines, places, 2, (0.0, 0.0, 0.0, 5.0), (1e-3, 1.0, 1.0, 1.0))
-    assert roots_on_curve(SingularFrame.of(box, LIMITS), LIMITS) is None
+    assert find_roots_on_curve(SingularFrame.of(box, LIMITS), LIMITS) is None
 
 
 def test_what_takes_too_many_parts_has_no_outcome(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(solution_curve, "MOST_PARTS", 1)
-    assert roots_on_curve(folded(1e-6, 1e-2), LIMITS) is None
+    assert find_roots_on_curve(folded(1e-6, 1e-2), LIMITS) is None
 
 
 def test_the_terms_of_series_are_put_back() -> None:
@@ -181,11 +188,11 @@ def test_a_root_in_two_parts_is_one(monkeypatch: pytest.MonkeyPatch) -> None:
     curve = SolutionCurve(
         arb(0), [TaylorForm([arb(0)], arb(0))] * 3, TaylorForm([arb(-0.0625), arb(0.375)], arb(1))
     )
-    monkeypatch.setattr(solution_curve, "along_curve", lambda frame, well, t: (well, True))
-    monkeypatch.setattr(solution_curve, "curve_about", lambda *_: curve)
+    monkeypatch.setattr(solution_curve, "bound_along_curve", lambda frame, well, t: (well, True))
+    monkeypatch.setattr(solution_curve, "find_curve_about", lambda *_: curve)
     monkeypatch.setattr(solution_curve, "is_empty", lambda *_: False)
     monkeypatch.setattr(SingularFrame, "start", lambda _: [arb(0), arb(0), arb(0), arb(0, 1)])
-    roots = roots_on_curve(triple(), LIMITS)
+    roots = find_roots_on_curve(triple(), LIMITS)
     assert roots is not None
     assert sorted(round(float(root[3]), 12) for root in roots) == [-0.5, 0.125]
 
@@ -200,6 +207,6 @@ def test_a_part_that_the_curve_leaves_has_none() -> None:
     """The curve bends out of too narrow a part; one that is wide enough it passes from end to end."""
     frame = folded(1e-6, 1e-3)
     *well, t = frame.start()
-    kept, is_curve = along_curve(frame, well, t)
+    kept, is_curve = bound_along_curve(frame, well, t)
     assert is_curve
-    assert not along_curve(frame, [arb(part.mid(), 0.1 * part.rad()) for part in kept], t)[1]
+    assert not bound_along_curve(frame, [arb(part.mid(), 0.1 * part.rad()) for part in kept], t)[1]

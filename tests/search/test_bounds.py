@@ -31,7 +31,7 @@ from workhold import (
     design,
     polygon_zone,
 )
-from workhold.algebra import answer_by_algebra
+from workhold.algebra import find_fixtures_by_algebra
 from workhold.verification import verify, verify_fixture
 
 Loop = list[tuple[float, ...]]
@@ -251,7 +251,7 @@ def test_parts_of_whole_numbers_under_every_restriction(seed: int, kit: str) -> 
 def test_the_algebra_takes_the_same_bounds() -> None:
     """A margin that is met exactly, in the second engine."""
     query = Query(drawn(L), Vise(pitch=20, columns=2, peg_radius=3), contact_margin=1.0)
-    fast, slow = answer(query), answer_by_algebra(query)
+    fast, slow = answer(query), find_fixtures_by_algebra(query)
     assert len(fast) > 0 and identities(fast) == identities(slow)
 
 
@@ -263,4 +263,4 @@ def test_a_margin_counts_at_the_far_end_of_what_a_zone_leaves(kit: str) -> None:
     result, _ = assert_kept(loop, kit, both(box(4, 32, 11, 39), margin(1)))
     assert len(result) > 0
     if kit == "vise":
-        assert identities(answer_by_algebra(result.query)) == identities(result)
+        assert identities(find_fixtures_by_algebra(result.query)) == identities(result)

@@ -17,7 +17,7 @@ from fixture_sets import Judge, assert_same, listed
 from slow_fence import slow_fence
 from slow_plate import seen, slow_plate
 from workhold import Fence, Plate, Query, Result, Vise, Workpiece, design, verify
-from workhold.algebra import answer_by_algebra
+from workhold.algebra import find_fixtures_by_algebra
 from workhold.files.toolkit_file import load_toolkit, preset_names
 
 PRESETS = preset_names()
@@ -73,7 +73,7 @@ def test_hundreds_of_parts_on_every_preset(seed: int) -> None:
 def test_vises_agree_with_the_algebra(seed: int, pitch: float) -> None:
     """The other engine shares no solver, and lists the same."""
     part, vise = cad_part(seed), Vise(pitch, 1, 3)
-    ours, theirs = design(part, vise), answer_by_algebra(Query(part, vise))
+    ours, theirs = design(part, vise), find_fixtures_by_algebra(Query(part, vise))
     assert len(ours) > 3
     assert_same(listed(ours), listed(theirs), Judge(part, vise))
 

@@ -13,7 +13,13 @@ from workhold.contact.problem import Problem
 from workhold.kernels.curves.block_work import CANDIDATES, CROSSED
 from workhold.listing.collector import Needed
 from workhold.proof.deciding import Course, decided
-from workhold.search.cells import Block, cell_edges, member_counts, members_of_cell, run_blocks
+from workhold.search.cells import (
+    Block,
+    count_curves_in_cells,
+    divide_into_cells,
+    find_curves_in_cell,
+    run_blocks,
+)
 from workhold.search.toolkit_search import ToolkitSearch
 
 PROBLEM = Problem.of(Query(load("widget"), Vise(pitch=8, columns=2, peg_radius=3)))
@@ -47,10 +53,10 @@ def test_threads_make_the_same_curves() -> None:
 
 def test_curves_are_counted_for_all_cells_at_once() -> None:
     """As many as there are members of each cell."""
-    table, edges = ToolkitSearch.of(PROBLEM).table, cell_edges(2, 50)
-    members = [len(members_of_cell(table, low, high)) for low, high in pairwise(edges.tolist())]
+    table, edges = ToolkitSearch.of(PROBLEM).table, divide_into_cells(2, 50)
+    members = [len(find_curves_in_cell(table, low, high)) for low, high in pairwise(edges.tolist())]
     assert 0 < min(members) < max(members)
-    assert member_counts(table, edges[:-1], edges[1:]).tolist() == members
+    assert count_curves_in_cells(table, edges[:-1], edges[1:]).tolist() == members
 
 
 def test_blocks_that_run_when_the_search_is_cancelled_are_stopped_and_not_done() -> None:

@@ -19,9 +19,9 @@ import workhold
 from toolkit_results import MOUTH, NOTCHED, check_and_read_back, checked, part, rectangle
 from workhold import InputError, Plate, Query, Restrictions, Result, Workpiece, answer, design
 from workhold.kernels.contact import clamp_pairs
-from workhold.model.clamps import ratios, working_forces
+from workhold.model.clamps import compute_working_forces, ratios
 from workhold.search import lattice_shares
-from workhold.statics.quality import quality_of
+from workhold.statics.quality import measure_quality
 
 COMPLETE = sorted((Path(__file__).parent.parent / "data" / "toolkits").glob("clamp2_*.json"))
 WAYS = {"-x": (-1.0, 0.0), "+x": (1.0, 0.0), "-y": (0.0, -1.0), "+y": (0.0, 1.0)}
@@ -63,7 +63,7 @@ def test_every_fixture_stands_before_the_checker_and_reads_back(
     assert len(result) > 3
     check_and_read_back(result, tmp_path)
     again = workhold.open(tmp_path / "result.json")
-    figures = quality_of(again.table, again.workpiece, again.toolkit)
+    figures = measure_quality(again.table, again.workpiece, again.toolkit)
     # What is derived from the rounded places of a file agrees with what the search told.
     assert np.nanmax(np.abs(figures[:, :4] - result.table.quality[:, :4])) < 1e-6
 
@@ -235,7 +235,7 @@ def test_forces_at_the_ends_of_the_ratio_have_a_zero_and_none_between() -> None:
     for ratio in (low, np.where(np.isinf(high), 1e15, high)):
         at_end = locators[..., 0] / (1 + ratio[:, None]) + locators[..., 1] * (ratio / (1 + ratio))[:, None]
         assert np.abs(at_end).min(axis=1).max() < 1e-9 and at_end.min() > -1e-9
-    assert working_forces(result.table.force).min() > 0
+    assert compute_working_forces(result.table.force).min() > 0
     assert (degrees_between(low, high) > 0).all()
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from fixture_sets import Judge, assert_same, listed, missing, turned
 from workhold import InputError, Query, Vise, Workpiece, design, load
-from workhold.algebra import answer_by_algebra
+from workhold.algebra import find_fixtures_by_algebra
 from workhold.geometry import loop
 
 DRAWINGS = Path(__file__).parent.parent / "data" / "drawings"
@@ -185,7 +185,7 @@ def test_slots_on_the_lattice_of_the_vise() -> None:
     plate = Workpiece.from_loops("plate", [[[0, 0, 0], [50, 0, 0], [50, 40, 0], [0, 40, 0]], *slots])
     for part, columns in ((bar, 2), (plate, 1)):
         vise = Vise(pitch=10, columns=columns, peg_radius=2)
-        ours, theirs = listed(design(part, vise)), listed(answer_by_algebra(Query(part, vise)))
+        ours, theirs = listed(design(part, vise)), listed(find_fixtures_by_algebra(Query(part, vise)))
         assert len(ours) > 100
         assert_same(ours, theirs, Judge(part, vise))
 

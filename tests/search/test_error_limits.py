@@ -14,7 +14,7 @@ from cad_parts import cad_part
 from workhold import OpeningVise, Plate, Query, Result, Tolerance, Vise, Workpiece, answer, load
 from workhold.contact.problem import Problem
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.hull import convex_hull
+from workhold.geometry.hull import compute_convex_hull
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, X, Y
 from workhold.listing.bounds import preferred_angles
 from workhold.listing.canonical_form import listed_once
@@ -26,18 +26,18 @@ from workhold.search import design as designing
 from workhold.search import shares
 from workhold.search.error_limits import (
     LocatorSpots,
+    bound_keys_beyond_limit,
+    bound_location_errors,
     can_limit_errors,
-    distance_from_hull,
-    gives_of,
+    choose_next_limit,
+    compute_contact_allowances,
     is_enough,
-    keys_beyond,
-    next_limit,
+    measure_distance_from_hull,
     outermost,
-    precision_of,
 )
 from workhold.search.lattice_shares import LatticeShares
-from workhold.search.shares import one_clamp
-from workhold.search.toolkit_search import ToolkitSearch, with_limit
+from workhold.search.shares import select_one_clamp
+from workhold.search.toolkit_search import ToolkitSearch, limit_precision
 
 TOLERANCE = Tolerance(peg=0.0145, face=0.01)
 
@@ -218,7 +218,7 @@ def test_a_limit_loses_nothing_below_it(part: str, kit: str, times: float) -> No
     if not fine.any():
         pytest.skip("nothing holds it")
     most = times * float(errors[fine].min())
-    search = ToolkitSearch.of(problem, precision=with_limit(precision_of(problem), most))
+    search = ToolkitSearch.of(problem, precision=limit_precision(bound_location_errors(problem), most))
     some, good = found_errors(search)
     assert (some[good] <= most).sum() == (errors[fine] <= most).sum() > 0
     assert len(some) <= len(errors)
@@ -239,7 +239,7 @@ def test_a_limit_loses_nothing_below_it(part: str, kit: str, times: float) -> No
 def one_way(query: Query) -> Query:
     """A query with the first of its toolkit's ways."""
     ways = query.toolkit.ways
-    return query if len(ways) == 1 else one_clamp(query, ways[0])
+    return query if len(ways) == 1 else select_one_clamp(query, ways[0])
 
 
 @pytest.mark.thorough
@@ -269,7 +269,7 @@ def test_no_centre_moves_farther_than_its_give_says(part: str) -> None:
     """Where no point of the silhouette moves by more than 1, no centre of an arc does by more than that."""
     problem = Problem.of(Query(PARTS[part], KITS["plate"], tolerance=TOLERANCE, best=5))
     points, rows = outermost(problem), problem.rows[problem.rows[:, IS_ARC] != 0.0]
-    gives, nearest = gives_of(rows, points), np.zeros(len(rows))
+    gives, nearest = compute_contact_allowances(rows, points), np.zeros(len(rows))
     for seed in range(2000):
         x, y, turn = np.random.default_rng(seed).normal(size=3) * (1.0, 1.0, 1.0 / problem.wrench_length)
         moved, centers = (
@@ -288,7 +288,7 @@ def test_the_distance_from_a_hull_is_that_of_its_nearest_point(
     place: tuple[float, float], apart: float
 ) -> None:
     corners = [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0), (1.0, 0.5)]
-    assert distance_from_hull(convex_hull(corners), place) == pytest.approx(apart)
+    assert measure_distance_from_hull(compute_convex_hull(corners), place) == pytest.approx(apart)
 
 
 @pytest.mark.thorough
@@ -316,9 +316,9 @@ def test_the_next_limit_is_no_larger_than_it_must_be() -> None:
     least = float(keys.error.min()) / PER_MM
     assert is_enough(1.2 * last, keys, query) and is_enough(inf, keys, query)
     assert not is_enough(least, keys, query)
-    assert least < next_limit(least, keys, query, 1) <= 1.1001 * last
+    assert least < choose_next_limit(least, keys, query, 1) <= 1.1001 * last
     # Nothing beyond a limit has less than the least keys of its class of angles.
-    bound, limit = keys_beyond(1.2 * least, query), 1.2 * least * PER_MM
+    bound, limit = bound_keys_beyond_limit(1.2 * least, query), 1.2 * least * PER_MM
     beyond = keys.take((keys.error > limit) & keys.is_fine)
     assert len(beyond) > 10
     for row in beyond.rest:
@@ -328,8 +328,8 @@ def test_the_next_limit_is_no_larger_than_it_must_be() -> None:
         keys.take(np.flatnonzero(keys.is_fine)[:4]),
         Query(PARTS["flange"], KITS["two clamps"], best=5),
     )
-    assert next_limit(1.0, few, pair, 1) < next_limit(1.0, few, query, 1)
-    assert 1.0 < next_limit(1.0, few, query, 1) < inf == next_limit(1.0, few, query, 99)
+    assert choose_next_limit(1.0, few, pair, 1) < choose_next_limit(1.0, few, query, 1)
+    assert 1.0 < choose_next_limit(1.0, few, query, 1) < inf == choose_next_limit(1.0, few, query, 99)
 
 
 @pytest.mark.parametrize(

@@ -38,13 +38,13 @@ def unasked(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_an_estimate_is_right_within_a_factor_of_two(part: str, kit: str) -> None:
     """On every kind of toolkit whose fixtures are estimated; every run and any number of threads say the same."""
     query = Query(PARTS[part], KITS[kit])
-    about, known = estimate.estimated_fixtures(query, 1), len(answer(query))
+    about, known = estimate.estimate_fixtures(query, 1), len(answer(query))
     assert about is not None
     if known < 100:
         assert about <= 200
         return
     assert known / 2 <= about <= 2 * known
-    assert estimate.estimated_fixtures(query, 3) == about
+    assert estimate.estimate_fixtures(query, 3) == about
 
 
 @pytest.mark.thorough
@@ -52,17 +52,17 @@ def test_an_estimate_is_right_within_a_factor_of_two(part: str, kit: str) -> Non
 def test_every_pair_of_two_clamps_counts_where_all_are_listed() -> None:
     """There are many more pairs than seats."""
     query = Query(PARTS["widget"], KITS["two clamps"], listing="all")
-    about = estimate.estimated_fixtures(query, 2)
+    about = estimate.estimate_fixtures(query, 2)
     assert about is not None and len(answer(query)) / 2 <= about <= 2 * len(answer(query))
 
 
 def test_small_searches_and_walls_have_no_estimate() -> None:
     """What is soon counted is not estimated, nor what nobody can tell."""
     assert (
-        estimate.estimated_fixtures(Query(load("widget"), Vise(pitch=10, columns=1, peg_radius=3)), 1) is None
+        estimate.estimate_fixtures(Query(load("widget"), Vise(pitch=10, columns=1, peg_radius=3)), 1) is None
     )
     assert (
-        estimate.estimated_fixtures(Query(load("widget"), Fence(pitch=7, wall_offset=8, peg_radius=3)), 1)
+        estimate.estimate_fixtures(Query(load("widget"), Fence(pitch=7, wall_offset=8, peg_radius=3)), 1)
         is None
     )
 
@@ -73,18 +73,21 @@ def test_who_stops_hears_no_estimate(kit: str) -> None:
     """A part of a sample says nothing."""
     stopped = Event()
     stopped.set()
-    assert estimate.estimated_fixtures(Query(load("widget"), KITS[kit]), 1, stopped) is None
+    assert estimate.estimate_fixtures(Query(load("widget"), KITS[kit]), 1, stopped) is None
 
 
 def test_the_best_are_asked_for_where_there_are_many(monkeypatch: pytest.MonkeyPatch) -> None:
     """Up to a limit nothing changes, nor for who asks for the best already."""
     query = Query(load("widget"), KITS["vise"])
-    monkeypatch.setattr(estimate, "estimated_fixtures", lambda *asked: estimate.MANY)
-    assert estimate.best_where_many(query, 1) == (query, estimate.MANY)
-    monkeypatch.setattr(estimate, "estimated_fixtures", lambda *asked: estimate.MANY + 1)
-    assert estimate.best_where_many(query, 1) == (evolve(query, best=estimate.LISTED), estimate.MANY + 1)
+    monkeypatch.setattr(estimate, "estimate_fixtures", lambda *asked: estimate.MANY)
+    assert estimate.ask_for_best_where_many(query, 1) == (query, estimate.MANY)
+    monkeypatch.setattr(estimate, "estimate_fixtures", lambda *asked: estimate.MANY + 1)
+    assert estimate.ask_for_best_where_many(query, 1) == (
+        evolve(query, best=estimate.LISTED),
+        estimate.MANY + 1,
+    )
     few = evolve(query, best=3)
-    assert estimate.best_where_many(few, 1) == (few, None)
+    assert estimate.ask_for_best_where_many(few, 1) == (few, None)
 
 
 @pytest.mark.thorough
@@ -94,9 +97,9 @@ def test_what_is_thinned_counts_as_often(monkeypatch: pytest.MonkeyPatch) -> Non
     monkeypatch.setattr(estimate, "WORK", 1e9)
     query = Query(PARTS["bores"], KITS["vise"])
     known = len(answer(query))
-    assert estimate.estimated_fixtures(query, 2) == pytest.approx(known, rel=0.05)
+    assert estimate.estimate_fixtures(query, 2) == pytest.approx(known, rel=0.05)
     monkeypatch.setattr(estimate, "MOST_WORK", 2e4)
-    about = estimate.estimated_fixtures(query, 2)
+    about = estimate.estimate_fixtures(query, 2)
     assert about is not None and about != known and known / 2 <= about <= 2 * known
 
 
@@ -109,24 +112,24 @@ def test_triples_of_stretches_stand_for_all(monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.setattr(estimate, "CONTACTS_DECIDED", 1 << 20)
     query = Query(PARTS["bores"], KITS["two clamps"])
     known = len(answer(query))
-    assert estimate.estimated_fixtures(query, 2) == pytest.approx(known, rel=0.05)
+    assert estimate.estimate_fixtures(query, 2) == pytest.approx(known, rel=0.05)
     monkeypatch.setattr(estimate, "MOST_IN_CELL", 3e3)
-    about = estimate.estimated_fixtures(query, 2)
+    about = estimate.estimate_fixtures(query, 2)
     assert about is not None and about != known and known / 1.5 <= about <= 1.5 * known
-    assert estimate.estimated_fixtures(query, 1) == about
+    assert estimate.estimate_fixtures(query, 1) == about
 
 
 @pytest.mark.usefixtures("unasked")
 def test_candidates_that_are_not_proven_do_not_count(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of those that are decided the share that is proven counts."""
     query = Query(PARTS["widget"], KITS["vise"])
-    every, real = estimate.estimated_fixtures(query, 2), estimate.finish
+    every, real = estimate.estimate_fixtures(query, 2), estimate.finish
 
     def decide_half(records: Any, *asked: Any) -> Any:
         return real([records[0][::2]], *asked)
 
     monkeypatch.setattr(estimate, "finish", decide_half)
-    assert every is not None and estimate.estimated_fixtures(query, 2) == pytest.approx(every / 2, rel=0.2)
+    assert every is not None and estimate.estimate_fixtures(query, 2) == pytest.approx(every / 2, rel=0.2)
 
 
 @pytest.mark.usefixtures("unasked")
@@ -135,8 +138,8 @@ def test_all_ways_of_a_toolkit_count() -> None:
     kit = Plate(pitch=16, peg_radius=3, directions=("+x", "+y"))
     assert len(kit.ways) > 1
     query = Query(PARTS["widget"], kit)
-    ways = [estimate.estimated_fixtures(evolve(query, toolkit=way), 2) for way in kit.ways]
-    assert all(ways) and estimate.estimated_fixtures(query, 2) == sum(way or 0 for way in ways)
+    ways = [estimate.estimate_fixtures(evolve(query, toolkit=way), 2) for way in kit.ways]
+    assert all(ways) and estimate.estimate_fixtures(query, 2) == sum(way or 0 for way in ways)
 
 
 @pytest.mark.thorough

@@ -14,7 +14,7 @@ import pytest
 import workhold
 from toolkit_results import MOUTH, NOTCHED, check_and_read_back, checked, part, rectangle
 from workhold import Fence, Query, Restrictions, Workpiece, answer, design
-from workhold.proof.flush import reactions_on_fence
+from workhold.proof.flush import compute_fence_reactions
 from workhold.search import wall_search
 
 COMPLETE = Path(__file__).parent.parent / "data" / "toolkits" / "edge2_saddle_10.json"
@@ -194,10 +194,10 @@ def test_what_doubles_leave_open_balls_tell(monkeypatch: pytest.MonkeyPatch) -> 
 
     def counted(*task: Any) -> Any:
         asked.append(task)
-        return reactions_on_fence(*task)
+        return compute_fence_reactions(*task)
 
     monkeypatch.setattr(wall_search, "DOUBTFUL", -1.0)
-    monkeypatch.setattr(wall_search, "reactions_on_fence", counted)
+    monkeypatch.setattr(wall_search, "compute_fence_reactions", counted)
     other = design(part(NOTCHED), fence, listing="all")
     assert seen(one) == seen(other) and len(asked) > 20
     assert abs(one.table.force - other.table.force).max() < 1e-10 * abs(one.table.force).max()

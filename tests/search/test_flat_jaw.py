@@ -17,7 +17,7 @@ from own_heights import FOOT, STEM, stepped
 from strategies import outline
 from toolkit_results import NOTCHED, assert_all_proven, check_and_read_back, checked, part, rectangle
 from workhold import FlatJaw, InputError, Pose, Restrictions, Result, Workpiece, circle_zone
-from workhold.contact.features import contact_features
+from workhold.contact.features import list_contact_features
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Line, Segment
 from workhold.search.explaining import explain
@@ -110,7 +110,7 @@ def slow_search(
     """
     found = []
     met = workpiece if met_by_pegs is None else met_by_pegs
-    features = [one.segment for one in contact_features(met, vise.peg_radius, vise.flat)]
+    features = [one.segment for one in list_contact_features(met, vise.peg_radius, vise.flat)]
     for theta, ends in zip(workpiece.flush.theta, workpiece.flush.ends, strict=True):
         pose = Pose(float(np.degrees(theta)), 0.0, 0.0)
         low = pose.apply(*ends[0])
@@ -204,7 +204,7 @@ def test_planted_fixtures_are_found(limited: bool) -> None:
             continue
         radius = random.choice([0.5, 1.0, 2.0])
         try:
-            features = [one.segment for one in contact_features(workpiece, radius, None)]
+            features = [one.segment for one in list_contact_features(workpiece, radius, None)]
         except InputError:
             continue
         edge = random.randrange(len(workpiece.flush.theta))

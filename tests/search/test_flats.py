@@ -16,12 +16,12 @@ from attrs import evolve
 import workhold
 from toolkit_results import NOTCHED, assert_all_proven, part
 from workhold import Fence, Fixture, InputError, Load, Plate, Query, Vise, design
-from workhold.algebra import answer_by_algebra
-from workhold.contact.features import contact_features
+from workhold.algebra import find_fixtures_by_algebra
+from workhold.contact.features import list_contact_features
 from workhold.files.toolkit_file import load_toolkit
 from workhold.fixels.pegs import Flat, flat_of, standoff
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.offset import trimmed_offsets
+from workhold.geometry.offset import list_trimmed_offsets
 from workhold.geometry.segment import Arc, Line
 from workhold.statics.loads import load_cases
 from workhold.verification import verify_file, verify_fixture
@@ -111,7 +111,7 @@ def test_a_flat_at_the_radius_is_none() -> None:
 def test_both_engines_agree(loop: Any) -> None:
     """The curves and the paper's algebra, which share no solver, on lines and arcs."""
     vise = Vise((9, 8), 2, 2.5, flat=(1.5, 1.0))
-    curves, algebra = design(part(loop), vise), answer_by_algebra(Query(part(loop), vise))
+    curves, algebra = design(part(loop), vise), find_fixtures_by_algebra(Query(part(loop), vise))
     assert len(curves) > 20 and {key(one) for one in curves} == {key(one) for one in algebra}
 
 
@@ -175,15 +175,17 @@ def test_features_of_flats_end_where_the_body_meets_another_face() -> None:
     """On a square block: at a corner the round body would touch the next face, sqrt(rho^2 - distance^2) along."""
     block = part([[0, 0, 0], [40, 0, 0], [40, 30, 0], [0, 30, 0]])
     reach = sqrt(RADIUS**2 - DISTANCE**2)
-    for feature in contact_features(block, RADIUS, Flat(DISTANCE)):
+    for feature in list_contact_features(block, RADIUS, Flat(DISTANCE)):
         face = block.faces[feature.face].segment
         assert isinstance(face, Line) and isinstance(feature.segment, Line)
         assert feature.segment.length == pytest.approx(face.length - 2 * reach)
-    arcs = [f for f in contact_features(part(EAR), RADIUS, Flat(DISTANCE)) if not isinstance(f.segment, Line)]
+    arcs = [
+        f for f in list_contact_features(part(EAR), RADIUS, Flat(DISTANCE)) if not isinstance(f.segment, Line)
+    ]
     (arc,) = arcs
     assert arc.segment.radius == pytest.approx(25 + RADIUS)
     segments = [face.segment for face in block.faces]
-    assert trimmed_offsets(segments, RADIUS, RADIUS) == trimmed_offsets(segments, RADIUS)
+    assert list_trimmed_offsets(segments, RADIUS, RADIUS) == list_trimmed_offsets(segments, RADIUS)
 
 
 def test_keeping_their_place() -> None:

@@ -11,9 +11,9 @@ import pytest
 from toolkit_results import NOTCHED, part
 from workhold import FlatJaw, Query, Workpiece
 from workhold.contact.problem import Problem
-from workhold.proof.flush import verdict_on_pair
+from workhold.proof.flush import decide_pair
 from workhold.search.flush_search import part_on_wall
-from workhold.search.lattice_pairs import are_pressed, closure_of, pairs_on
+from workhold.search.lattice_pairs import compute_pair_closure, find_pairs_on_edge, select_pressed_pairs
 from workhold.search.wall_shares import LatticePairSearch, WallShares
 
 KITE = [(0, 0, 0), (56, 6, 0), (48, 44, 0), (10, 37, 0)]
@@ -35,10 +35,10 @@ def test_balls_find_the_same_places_forces_and_verdicts(loop: list[tuple[float, 
     looked = sharp_ones = 0
     for edge in range(len(problem.workpiece.hull_edges)):
         lying = part_on_wall(problem, edge)
-        for pairs in pairs_on(lying, (8.0, 8.0), (inf, inf), margin):
-            closed, held, open_ = closure_of(pairs, lying, problem)
+        for pairs in find_pairs_on_edge(lying, (8.0, 8.0), (inf, inf), margin):
+            closed, held, open_ = compute_pair_closure(pairs, lying, problem)
             for k in range(0, len(pairs), 3):
-                verdict, sharp = verdict_on_pair(pairs.candidate(k, edge), problem)
+                verdict, sharp = decide_pair(pairs.candidate(k, edge), problem)
                 looked += 1
                 if not open_[k]:
                     assert verdict is bool(held[k])
@@ -55,9 +55,9 @@ def test_where_curves_only_graze_no_bound_is_known_and_balls_decide() -> None:
     unknown = 0
     for edge in range(len(problem.workpiece.hull_edges)):
         lying = part_on_wall(problem, edge)
-        for pairs in pairs_on(lying, (15.0, 15.0), (inf, inf), 0.0):
+        for pairs in find_pairs_on_edge(lying, (15.0, 15.0), (inf, inf), 0.0):
             unknown += int(np.isinf(pairs.reach).sum())
-            good, undecided, sharpened = are_pressed(pairs, edge, lying, problem)
+            good, undecided, sharpened = select_pressed_pairs(pairs, edge, lying, problem)
             assert len(undecided) == 0
             assert np.isfinite(good.point).all() and np.isfinite(good.null).all()
             assert sharpened >= int((np.isinf(pairs.reach) & (pairs.slack > 0)).sum())
@@ -69,12 +69,12 @@ def test_what_doubles_are_too_coarse_for_is_taken_from_balls() -> None:
     search = LatticePairSearch(problem_of(part(ROCKER)))
     for edge in search.edges:
         lying = part_on_wall(search.problem, edge)
-        for pairs in pairs_on(lying, (8.0, 8.0), (inf, inf), 0.0):
-            fine, _, _ = are_pressed(pairs, edge, lying, search.problem)
+        for pairs in find_pairs_on_edge(lying, (8.0, 8.0), (inf, inf), 0.0):
+            fine, _, _ = select_pressed_pairs(pairs, edge, lying, search.problem)
             coarse = pairs.take(np.arange(len(pairs)))
             coarse.point[:] += 1e-9
             coarse.reach[:], coarse.swing[:] = np.inf, np.inf
-            sharp, undecided, count = are_pressed(coarse, edge, lying, search.problem)
+            sharp, undecided, count = select_pressed_pairs(coarse, edge, lying, search.problem)
             assert len(undecided) == 0 and count >= len(fine)
             assert np.allclose(sharp.point, fine.point, atol=1e-11) and np.allclose(
                 sharp.null, fine.null, atol=1e-9
@@ -85,11 +85,11 @@ def test_places_that_are_told_too_coarsely_are_taken_from_balls() -> None:
     """Also where the verdict is clear: with a bound above what one place is, the ball's place stands in the list."""
     problem = problem_of(part(KITE))
     lying = part_on_wall(problem, 0)
-    (pairs,) = pairs_on(lying, (8.0, 8.0), (inf, inf), 0.0)
-    fine, _, _ = are_pressed(pairs, 0, lying, problem)
+    (pairs,) = find_pairs_on_edge(lying, (8.0, 8.0), (inf, inf), 0.0)
+    fine, _, _ = select_pressed_pairs(pairs, 0, lying, problem)
     pairs.point[:] += 1e-8
     pairs.reach[:] = 1e-6
-    sharp, _, _ = are_pressed(pairs, 0, lying, problem)
+    sharp, _, _ = select_pressed_pairs(pairs, 0, lying, problem)
     assert len(sharp) == len(fine) > 0 and np.allclose(sharp.point, fine.point, rtol=0.0, atol=1e-11)
 
 

@@ -18,7 +18,7 @@ from own_heights import BASE, FOOT, ROOF, STEM, stepped
 from slow_fence import slow_fence
 from toolkit_results import NOTCHED, assert_all_proven, part
 from workhold import Fence, FlatJaw, InputError, OpeningVise, Plate, Query, Restrictions, Result, Vise, design
-from workhold.algebra import answer_by_algebra
+from workhold.algebra import find_fixtures_by_algebra
 from workhold.fixels.toolkit import Toolkit
 from workhold.verification import verify
 
@@ -334,7 +334,7 @@ def test_the_algebra_does_without_them_in_a_sentence(name: str) -> None:
     """The paper's polynomials know one outline."""
     toolkit, own = OWN[name]
     with pytest.raises(InputError, match="carriers are not alike"):
-        answer_by_algebra(Query(stepped(own), toolkit))
+        find_fixtures_by_algebra(Query(stepped(own), toolkit))
 
 
 @pytest.mark.thorough

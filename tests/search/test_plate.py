@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from strategies import random_outline
 from toolkit_results import MOUTH, NOTCHED, check_and_read_back, checked, part
 from workhold import InputError, Plate, Query, Restrictions, Result, Vise, Workpiece, answer, design
-from workhold.algebra import answer_by_algebra
+from workhold.algebra import find_fixtures_by_algebra
 from workhold.search.explaining import explain
 
 TESTS = Path(__file__).parent.parent
@@ -321,11 +321,11 @@ def test_directions_left_out_are_those_that_a_turn_of_the_plate_does_not_make() 
 def test_both_engines_list_the_same_fixtures(loop: list[tuple[float, ...]]) -> None:
     """The paper's algebra knows three pegs and one: with a clamp of the locators' radius it serves a plate."""
     query = Query(part(loop), Plate((20, 16), 3, columns=4, rows=4, travel=(4, 40)))
-    one, other = answer_by_algebra(query), answer(query)
+    one, other = find_fixtures_by_algebra(query), answer(query)
     assert one.counts == other.counts and len(other) > 20
     assert in_part(one) == in_part(other)
     with pytest.raises(InputError, match="carriers are not alike"):
-        answer_by_algebra(attrs.evolve(query, toolkit=Plate(20, 3, clamp_radius=4)))
+        find_fixtures_by_algebra(attrs.evolve(query, toolkit=Plate(20, 3, clamp_radius=4)))
 
 
 @pytest.mark.thorough
@@ -372,7 +372,7 @@ def compare(seed: int, path: Path) -> None:
     radius = random.choice([1.0, 2.0, 3.5])
     directions = random.choice([["-x"], ["+x"], ["-y"], ["-x", "+y"]])
     plate = Plate(pitch, radius, columns=columns, rows=rows, travel=travel, directions=directions)
-    one, other = answer(Query(workpiece, plate)), answer_by_algebra(Query(workpiece, plate))
+    one, other = answer(Query(workpiece, plate)), find_fixtures_by_algebra(Query(workpiece, plate))
     assert one.proof is not None and one.proof.undecided == ()
     (whole, poses), (whole_too, poses_too) = in_order(one), in_order(other)
     assert np.array_equal(whole, whole_too)

@@ -27,7 +27,7 @@ from slow_program import (
 )
 from strategies import random_outline
 from workhold import Fence, Fixture, InputError, Plate, Program, Query, Result, Vise, Workpiece, answer, load
-from workhold.algebra import answer_by_algebra
+from workhold.algebra import find_fixtures_by_algebra
 from workhold.fixels.toolkit import Toolkit
 from workhold.search.explaining import explain
 from workhold.statics.judging import unfit
@@ -213,7 +213,7 @@ def cuts_of(program: Program) -> Any:
 def test_both_engines_list_the_same() -> None:
     part, _, program = random_case(5, "vise")
     query = asked(part, Vise(12.5, 2, 3), program, types="II")
-    assert keys(answer(query, threads=1)) == keys(answer_by_algebra(query))
+    assert keys(answer(query, threads=1)) == keys(find_fixtures_by_algebra(query))
 
 
 @pytest.mark.thorough

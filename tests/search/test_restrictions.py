@@ -23,7 +23,7 @@ from workhold import (
     load,
     polygon_zone,
 )
-from workhold.algebra import answer_by_algebra
+from workhold.algebra import find_fixtures_by_algebra
 from workhold.fixels.carrier import holes_named
 
 Key = tuple[object, float]
@@ -217,7 +217,7 @@ def test_both_engines_agree_under_restrictions() -> None:
     limits = Restrictions(zones=(circle_zone(0.0, 0.0, 12.0),), angles=((-30.0, 60.0), (140.0, 170.0)))
     small = Vise(pitch=20, columns=2, peg_radius=3, body_radius=4, blocked=["R-A"])
     query = Query(part, small, restrictions=limits)
-    one, other = (engine(query) for engine in (answer, answer_by_algebra))
+    one, other = (engine(query) for engine in (answer, find_fixtures_by_algebra))
     assert len(one) > 0 and identities(one) == identities(other)
 
 

@@ -32,7 +32,7 @@ from workhold.listing.bounds import preferred_angles
 from workhold.listing.collector import Needed
 from workhold.model.notes import BestOnly
 from workhold.model.quality import TILT
-from workhold.search.lattice_shares import LatticeShares, square_first
+from workhold.search.lattice_shares import LatticeShares, order_square_ranges_first
 from workhold.search.toolkit_search import ToolkitSearch
 from workhold.verification import verify_file
 
@@ -115,7 +115,7 @@ def test_angles_that_are_asked_for_stay_so() -> None:
             assert list(best) == list(full)[:6]
 
 
-def records_of(search: ToolkitSearch, **asked: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
+def make_records(search: ToolkitSearch, **asked: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
     """All that some blocks of a search find, each record once."""
     blocks = search.blocks(search.problem.query.types, **asked)
     return np.unique(np.concatenate([block.work(Needed()) for block in blocks]), axis=0)
@@ -131,8 +131,8 @@ def test_the_first_blocks_and_the_rest_find_everything(loose: bool, monkeypatch:
     query = Query(cad_part(0), VISE)
     search = ToolkitSearch.of(Problem.of(query))
     angles = preferred_angles(query)
-    everything = records_of(search)
-    first, rest = (records_of(search, first=angles, rest=rest) for rest in (False, True))
+    everything = make_records(search)
+    first, rest = (make_records(search, first=angles, rest=rest) for rest in (False, True))
     assert np.array_equal(np.unique(np.concatenate([first, rest]), axis=0), everything)
     assert 0 < len(first) < len(everything)
     psi = np.degrees(-rest[:, 13])
@@ -157,7 +157,7 @@ def test_square_ranges_come_first_and_all_others_after_them() -> None:
     edges = np.linspace(0.0, tau, 4) - 0.1
     shares = [[pair] for pair in pairwise(edges.tolist())]
     square = [(-8.0, -5.0), (82.0, 85.0), (172.0, 175.0), (262.0, 265.0)]
-    ranges = square_first(shares, square)
+    ranges = order_square_ranges_first(shares, square)
     assert len(ranges) == 4
     pieces = sorted(pair for each in ranges for pair in each)
     assert pieces[0][0] == edges[0] and pieces[-1][1] == edges[-1]

@@ -17,8 +17,8 @@ import stress_parts as parts
 
 from fixture_sets import Judge, assert_same, listed, mirrored, missing, near_an_end, turned
 from workhold import Fixture, Result, Vise, Workpiece, design
-from workhold.algebra import answer_by_algebra
-from workhold.contact.features import contact_features
+from workhold.algebra import find_fixtures_by_algebra
+from workhold.contact.features import list_contact_features
 from workhold.verification import verify
 
 pytestmark = pytest.mark.thorough
@@ -73,7 +73,7 @@ def assert_follows(family: Family, change: float, vise: Vise, stiffness: float =
 def assert_engines_agree(result: Result) -> None:
     """The paper's algebra lists the same fixtures, apart from marginal ones."""
     judge = Judge(result.workpiece, result.toolkit)
-    assert_same(listed(result), listed(answer_by_algebra(result.query)), judge)
+    assert_same(listed(result), listed(find_fixtures_by_algebra(result.query)), judge)
 
 
 @pytest.mark.parametrize("tilt", HAIRS)
@@ -94,7 +94,7 @@ def test_arcs_of_nearly_equal_radius_one_step_apart(change: float) -> None:
     order of the hair. The algebra lists nothing else."""
     near = assert_follows(parts.two_bumps, change, Vise(pitch=10, columns=1, peg_radius=1))
     assert resting_on(near, 0, 2) == 1
-    algebra = answer_by_algebra(near.query)
+    algebra = find_fixtures_by_algebra(near.query)
     assert missing(listed(near), listed(algebra), Judge(near.workpiece, near.toolkit)) == []
 
 
@@ -108,7 +108,7 @@ def test_equal_arcs_nearly_one_step_apart(change: float) -> None:
     """The same where the radii are equal and the centres are a step and a hair apart."""
     near = assert_follows(spread_bumps, change, Vise(pitch=10, columns=1, peg_radius=1))
     assert resting_on(near, 0, 2) == 1
-    algebra = answer_by_algebra(near.query)
+    algebra = find_fixtures_by_algebra(near.query)
     assert missing(listed(near), listed(algebra), Judge(near.workpiece, near.toolkit)) == []
 
 
@@ -235,7 +235,7 @@ def test_a_concave_arc_a_hair_larger_or_smaller_than_a_peg(family: Family, play:
     vise = Vise(pitch=10, columns=1, peg_radius=3)
     part = family(3.0 + play)
     arcs = {face.number for face in part.faces if face.number >= 3} & {3, 4} & concave(part)
-    has_feature = bool(arcs & {feature.face for feature in contact_features(part, vise.peg_radius)})
+    has_feature = bool(arcs & {feature.face for feature in list_contact_features(part, vise.peg_radius)})
     assert has_feature == (play > 0) or abs(play) <= 1e-9
     near, open_wide = fixtures_of(family, 3.0 + play, vise), fixtures_of(family, 3.001, vise)
     assert_holds(near)

@@ -10,7 +10,7 @@ import pytest
 
 from chord_examples import arc_row
 from workhold.search.flush_search import PartOnWall
-from workhold.search.wall_contacts import half_angles, heights, pin_contacts_on
+from workhold.search.wall_contacts import find_pin_contacts, half_angles, heights
 
 
 @pytest.mark.parametrize("upright", [False, True])
@@ -34,7 +34,7 @@ def test_an_arc_reaches_from_its_lowest_to_its_highest_point(upright: bool) -> N
         laid = PartOnWall(rows, 50.0, 1e-15, 1e-13)
         inside = middle + np.array([random.uniform(-0.99, 0.99) * half for _ in range(5)])
         x, y = 3.0 + row[6] * np.cos(inside), -2.0 + row[6] * np.sin(inside)
-        found = pin_contacts_on(laid, (0, 1), x if upright else y, upright, 0.0)
+        found = find_pin_contacts(laid, (0, 1), x if upright else y, upright, 0.0)
         for k in range(5):
             there = found.point[found.line == k]
             assert 1 <= len(there) <= 2 and np.hypot(*(there - [x[k], y[k]]).T).min() < 1e-6 * row[6]
@@ -44,6 +44,6 @@ def test_a_line_is_met_up_to_its_ends() -> None:
     """One that rises gently, by lines through its middle, just inside its ends, and beyond them."""
     row = np.array([[0.0, 10.0, 5.0, cos(0.01), sin(0.01), 40.0, 0.0, 1.0, 0.0, 0.0, -1e-9, -1e-9]])
     levels = 5.0 + np.array([0.0, -39.999, 39.999, -40.001, 40.001, 60.0]) * sin(0.01)
-    found = pin_contacts_on(PartOnWall(row, 50.0, 1e-15, 1e-13), (0, 1), levels, False, 0.0)
+    found = find_pin_contacts(PartOnWall(row, 50.0, 1e-15, 1e-13), (0, 1), levels, False, 0.0)
     assert found.line.tolist() == [0, 1, 2]
     assert found.slack == pytest.approx([40.0, 1e-3, 1e-3], abs=1e-8)

@@ -7,7 +7,7 @@ import pytest
 
 from seating_examples import solved
 from workhold.kernels.seating.parallel_and_concentric import ALPHA, tangent_chords
-from workhold.seating.antipodal_contacts import chords_at_tangencies
+from workhold.seating.antipodal_contacts import find_chord_tangencies
 from workhold.seating.closing import filled
 
 
@@ -18,7 +18,7 @@ def test_each_length_has_tangencies_of_its_own(jaw: int) -> None:
     first, end = boundary.parts[jaw].tolist()
     found = 0
     for length in (20.0, 20.3, 20.0, 20.30001):
-        rows = chords_at_tangencies(boundary, length, jaw)
+        rows = find_chord_tangencies(boundary, length, jaw)
         assert np.array_equal(
             rows, filled(ALPHA + 1, 256, tangent_chords, boundary.pieces, first, end, length)
         )

@@ -15,7 +15,7 @@ from workhold import Vise, load
 from workhold.kernels.seating.closing import AT_REST
 from workhold.kernels.seating.columns import CONFIG, CONTACTS, SECOND, SEPARATION, THETA
 from workhold.seating.join_tree import JoinTree
-from workhold.seating.pattern import Pattern, subsets_of
+from workhold.seating.pattern import Pattern, list_subsets
 from workhold.seating.solver import Solver
 
 BRACKET = Path(__file__).parents[2] / "examples" / "bracket.dxf"
@@ -74,7 +74,7 @@ def test_second_derivatives_are_those_of_the_separation(number):
     closing = solver.closing(Pattern.of(fixture, solver.toolkit), False)
     found = equilibria_of(closing)
     given = two_contacts_of(closing).given
-    assert len(subsets_of(closing.pattern)) > 4
+    assert len(list_subsets(closing.pattern)) > 4
     rows, steps = [row for row in (*found.seats, *found.passes) if row[CONTACTS] == 3.0], 0
     for row in rows:
         step = 1e-5 if abs(row[SECOND]) < 1e4 else 1e-6

@@ -12,8 +12,8 @@ from scipy.optimize import linprog
 
 import workhold
 from workhold import Fence, Fixture, Plate, Result, Workpiece
-from workhold.model.clamps import order_words, working_forces
-from workhold.seating.clamping import WHY, by_hand, sticking_friction_of_two
+from workhold.model.clamps import compute_working_forces, order_words
+from workhold.seating.clamping import WHY, by_hand, find_sticking_friction_of_two
 
 RECTANGLE = Workpiece.from_loops("rectangle", [[[0, 0, 0], [100, 0, 0], [100, 60, 0], [0, 60, 0]]])
 BOWED = Workpiece.from_loops("bowed", [[[0, 0, 0], [70, 0, 0], [70, 45, 0.2], [20, 50, 0.3], [0, 40, 0]]])
@@ -75,7 +75,9 @@ def test_on_a_fence_a_rectangle_sticks_from_a_friction_found_by_hand() -> None:
     result = workhold.design(RECTANGLE, Fence(pitch=20, peg_radius=3, wall_offset=10, clamps=2), best=1)
     [fixture] = result
     assert sorted(round(peg.x) for peg in fixture.pegs) == [0, 3, 60, 103, 106] and fixture.pegs[0].y == 30.0
-    assert sticking_friction_of_two(fixture, RECTANGLE, result.toolkit) == pytest.approx(43 / 160, rel=1e-8)
+    assert find_sticking_friction_of_two(fixture, RECTANGLE, result.toolkit) == pytest.approx(
+        43 / 160, rel=1e-8
+    )
 
 
 @pytest.mark.thorough
@@ -110,7 +112,7 @@ def test_what_a_clamp_alone_does_not_press_is_told(result: Result) -> None:
             assert sorted((*pegs, *pressed), key=repr) == sorted(fixture.pegs[:3], key=repr) and pegs
             may_be_first = fixture.pair.ratio[k] == (0.0, inf)[k]
             assert may_be_first == bool((reactions[0, :3, k] > -1e-9).all())
-        assert (working_forces(reactions)[0] > 0.0).all()
+        assert (compute_working_forces(reactions)[0] > 0.0).all()
 
 
 def test_steps_tell_what_to_push_hold_tighten_and_look_at(result: Result) -> None:

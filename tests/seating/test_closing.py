@@ -16,7 +16,7 @@ from workhold.kernels.seating.columns import CONFIG, SECOND, DescentWorkSpace
 from workhold.kernels.seating.descent_paths import OUTSIDE, STOP
 from workhold.kernels.seating.linear_program import add_normal, shortest_out
 from workhold.kernels.seating.obstacles import clearances
-from workhold.seating.closing import descent_starts
+from workhold.seating.closing import find_descent_starts
 from workhold.seating.join_tree import JoinTree
 from workhold.seating.pattern import ClosingFrame, Pattern
 from workhold.seating.solver import Solver
@@ -44,7 +44,7 @@ def ways():
     for turned_over in (False, True):
         closing = solver.closing(pattern, turned_over)
         found = equilibria_of(closing)
-        starts = descent_starts(found.passes, closing.size)[0]
+        starts = find_descent_starts(found.passes, closing.size)[0]
         out.append((closing, starts, JoinTree.of(found, closing)))
     return out
 
@@ -154,7 +154,7 @@ def test_what_leaves_at_the_end_of_a_way_or_at_its_start_is_outside(ways):
     for closing, _, tree in ways:
         off_passes = np.flatnonzero(tree.passes[:, SECOND] < 0.0)
         rows, joined = tree.passes[off_passes], tree.joined[off_passes]
-        (every, lengths), how_far = descent_starts(rows, closing.size), 0.005
+        (every, lengths), how_far = find_descent_starts(rows, closing.size), 0.005
         for side in (0, 1):
             starts = every[side::2]
             for k in np.flatnonzero(lengths[side::2, 0] == how_far).tolist():

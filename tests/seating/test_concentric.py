@@ -24,7 +24,7 @@ from workhold.kernels.seating.columns import (
 )
 from workhold.kernels.seating.parallel_and_concentric import about_one_center
 from workhold.seating.closing import filled
-from workhold.seating.equilibria import in_balance
+from workhold.seating.equilibria import balance_candidates
 from workhold.seating.join_tree import JoinTree
 from workhold.seating.pattern import Pattern
 from workhold.seating.solver import Solver
@@ -64,7 +64,7 @@ def found():
         closing = solver.closing(pattern, False)
         given = two_contacts_of(closing).given
         rows = filled(CANDIDATE_LENGTH, 4, about_one_center, given, -1e3, 1e3)
-        out.append((closing, given, rows, in_balance(rows.copy(), given, closing.size)))
+        out.append((closing, given, rows, balance_candidates(rows.copy(), given, closing.size)))
     return out
 
 

@@ -25,8 +25,8 @@ from workhold.kernels.seating.columns import (
 from workhold.kernels.seating.descent_paths import free_until
 from workhold.kernels.seating.free_space import RANGES, leave
 from workhold.kernels.seating.obstacles import clearances
-from workhold.seating.closing import Closing, DescentCache, descent_starts
-from workhold.seating.join_tree import free_paths, pass_descents, shifts_of
+from workhold.seating.closing import Closing, DescentCache, find_descent_starts
+from workhold.seating.join_tree import compute_subset_shifts, follow_pass_descents, select_free_paths
 from workhold.seating.pattern import Pattern
 from workhold.seating.solver import Solver
 
@@ -48,7 +48,7 @@ def followed(solver, pattern, turned_over=False):
     closing = solver.closing(pattern, turned_over)
     found = equilibria_of(closing)
     seats = np.ascontiguousarray(found.seats[:, CONFIG])
-    return closing, found, seats, pass_descents(found, closing, seats)
+    return closing, found, seats, follow_pass_descents(found, closing, seats)
 
 
 @pytest.fixture(scope="module")
@@ -71,7 +71,7 @@ def test_they_end_as_ways_that_are_followed_with_all_pegs(ways):
     seen = set()
     for closing, found, seats, (starts, ends, how) in ways:
         assert starts[::2] + starts[1::2] == pytest.approx(2.0 * found.passes[:, CONFIG], abs=1e-9)
-        known, ended = closing.run(starts, descent_starts(found.passes, closing.size)[1], seats)
+        known, ended = closing.run(starts, find_descent_starts(found.passes, closing.size)[1], seats)
         assert np.array_equal(how, ended)
         assert ends[:, 3] == pytest.approx(known[:, 3], abs=1e-5)
         assert (clearance(closing, ends, [0, 1, 2, 3]) > -2e-8).all()
@@ -87,7 +87,9 @@ def test_a_way_of_a_group_is_one_of_the_pattern_as_far_as_no_other_peg_is_in_the
     cut = whole = 0
     for closing, found, _, _ in ways:
         cache = found.subsets[0][1].cache
-        chosen, whose, lasts = free_paths(found, np.arange(len(found.passes)), closing, shifts_of(found))
+        chosen, whose, lasts = select_free_paths(
+            found, np.arange(len(found.passes)), closing, compute_subset_shifts(found)
+        )
         for way, group, last in zip(chosen.tolist(), whose.tolist(), lasts.tolist(), strict=True):
             first, end = cache.begins[way : way + 2]
             nodes = cache.nodes[first:end, :4] + found.subsets[group][0].shift
@@ -185,7 +187,7 @@ def test_ways_are_followed_once(ways, monkeypatch):
     closing, found, seats, _ = ways[0]
     with monkeypatch.context() as patched:
         patched.setattr(Closing, "followed", None)
-        pass_descents(found, closing, seats)
+        follow_pass_descents(found, closing, seats)
     shared = [down for _, down in found.subsets if any(down is other for _, other in ways[2][1].subsets)]
     known = [down.cache.numbers[down.first : down.first + len(down.candidates)] for down in shared]
     assert len(shared) >= 4 and (np.concatenate(known) >= 0).sum() > 10

@@ -13,7 +13,13 @@ from workhold import Vise, Workpiece
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import CONTACTS, SEPARATION
 from workhold.seating.pattern import Pattern, PegSubset
-from workhold.seating.self_motions import balance, circles_meet, on_one_center, on_one_line, on_parallel_lines
+from workhold.seating.self_motions import (
+    balance,
+    find_circle_crossings,
+    find_motions_on_one_center,
+    find_motions_on_one_line,
+    find_motions_on_parallel_lines,
+)
 from workhold.seating.solver import Solver
 
 VISE = Vise(pitch=10, columns=2, peg_radius=3)
@@ -38,8 +44,16 @@ def ways_of(part, pegs, right):
     pattern = evolve(PegSubset.of(whole, range(len(pegs))).pattern, stop=-np.inf)
     closing = SOLVERS[id(part)].closing(pattern, False)
     boundary, held_by = closing.boundary, two_contacts_of(closing)
-    three = on_parallel_lines(boundary, pattern, held_by.slides, held_by.given)
-    return boundary, pattern, [*on_one_line(boundary, pattern), *three, *on_one_center(boundary, pattern)]
+    three = find_motions_on_parallel_lines(boundary, pattern, held_by.slides, held_by.given)
+    return (
+        boundary,
+        pattern,
+        [
+            *find_motions_on_one_line(boundary, pattern),
+            *three,
+            *find_motions_on_one_center(boundary, pattern),
+        ],
+    )
 
 
 def random_pegs(count):
@@ -119,12 +133,14 @@ def test_forces_balance_as_by_elimination():
 
 def test_circles_meet_in_points_of_both():
     for two in ((3.0, 4.0), (-8.0, 0.5)):
-        met = circles_meet((1.0, 2.0), 6.0, two, 5.0)
+        met = find_circle_crossings((1.0, 2.0), 6.0, two, 5.0)
         assert len(met) == 2 and met[0] != met[1]
         for x, y in met:
             assert (hypot(x - 1.0, y - 2.0), hypot(x - two[0], y - two[1])) == pytest.approx((6.0, 5.0))
     assert (
-        circles_meet((0.0, 0.0), 1.0, (5.0, 0.0), 3.0) == circles_meet((0.0, 0.0), 1.0, (1.0, 0.0), 3.0) == []
+        find_circle_crossings((0.0, 0.0), 1.0, (5.0, 0.0), 3.0)
+        == find_circle_crossings((0.0, 0.0), 1.0, (1.0, 0.0), 3.0)
+        == []
     )
 
 

@@ -30,8 +30,8 @@ from workhold.kernels.seating.obstacles import clearances
 from workhold.kernels.seating.slides import slides_blocked
 from workhold.seating import two_contact_curves
 from workhold.seating.closing import filled
-from workhold.seating.equilibria import Equilibria, SubsetCache, equilibria_of_subset
-from workhold.seating.pattern import Pattern, PegSubset, subsets_of
+from workhold.seating.equilibria import Equilibria, SubsetCache, find_subset_equilibria
+from workhold.seating.pattern import Pattern, PegSubset, list_subsets
 from workhold.seating.solver import Solver
 
 VISE = Vise(pitch=10, columns=2, peg_radius=3)
@@ -76,7 +76,7 @@ def test_nothing_depends_on_what_was_solved_before():
         assert [byte for one in solve(solver, patterns()[number]) for byte in told(one)] == by_themselves()[
             number
         ]
-        count += len(subsets_of(patterns()[number]))
+        count += len(list_subsets(patterns()[number]))
     [boundary] = solver.boundaries.values()
     assert (
         len(boundary.once(SubsetCache.empty).found) < 0.8 * count
@@ -94,7 +94,7 @@ def test_what_is_forgotten_is_found_again(monkeypatch):
     for pattern, known in zip(patterns()[:2], by_themselves()[:2], strict=True):
         assert [byte for one in solve(solver, pattern) for byte in told(one)] == known
     for boundary in (one for drawn in solver.boundaries.values() for one in (drawn, drawn.turned_over)):
-        assert 0 < len(boundary.once(SubsetCache.empty).found) <= len(subsets_of(patterns()[1]))
+        assert 0 < len(boundary.once(SubsetCache.empty).found) <= len(list_subsets(patterns()[1]))
         assert (
             0
             < sum(len(one.cells) for one in boundary.once(two_contact_curves.curves_of_jaws).values())
@@ -114,8 +114,8 @@ def test_pegs_that_stand_alike_are_one_group(order):
         right = pattern.right[order]
         places[:, 0] += 5.7 * right
         other = evolve(pattern, pegs=places, right=right, stop=pattern.stop - 5.7)
-        assert {group.key for group in subsets_of(other)} == {group.key for group in subsets_of(pattern)}
-        for group in subsets_of(other):
+        assert {group.key for group in list_subsets(other)} == {group.key for group in list_subsets(pattern)}
+        for group in list_subsets(other):
             # Back in the pattern each peg stands where it stands.
             own, config = group.pattern, np.array([[0.0, 0.0, 0.0, 12.0]])
             back = own.at(config) - other.at(config + group.shift)[:, list(group.numbers)]
@@ -179,12 +179,12 @@ def test_slides_end_where_a_third_peg_of_the_jaw_touches():
     """As three pegs in three places are found, which they are too where no two of them slide."""
     pattern, solver = patterns()[-1], Solver(STEP, VISE)
     boundary, size = solver.closing(pattern, False).boundary, solver.outline.arm
-    [group] = (group for group in subsets_of(pattern) if group.is_of_a_jaw and len(group.sides) == 3)
+    [group] = (group for group in list_subsets(pattern) if group.is_of_a_jaw and len(group.sides) == 3)
     held = two_contact_curves.TwoContactCurves.of(boundary, group.pattern)
     stopped = filled(CANDIDATE_LENGTH, 256, slides_blocked, held.slides, held.given)
     assert len(stopped) > 2
     kept = SubsetCache()
-    own = equilibria_of_subset(kept, boundary, group, size)
+    own = find_subset_equilibria(kept, boundary, group, size)
     every, told = np.split(kept.candidates[own.first : own.end], [-len(stopped)])
     assert np.array_equal(told, stopped)
     for row in stopped:

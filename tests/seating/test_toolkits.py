@@ -17,7 +17,7 @@ from workhold.kernels.base.distance import outline_distances
 from workhold.kernels.seating.columns import CONTACTS, SEPARATION
 from workhold.model.seating import Seating
 from workhold.seating.closing_simulation import simulate_closing
-from workhold.seating.contact_forces import contact_normals
+from workhold.seating.contact_forces import find_contact_normals
 from workhold.seating.join_tree import JoinTree
 from workhold.seating.pattern import ClosingFrame, Pattern
 from workhold.seating.solver import Solver
@@ -413,7 +413,7 @@ def test_the_tip_stops_at_the_fence_and_touches_with_its_own_radius():
         pattern, outline = Pattern.of(result[0], result.toolkit), solver.outline
         boundary = solver.closing(pattern, False).boundary
         for row in solver.trees(pattern)[0].seats:
-            places, _, _ = contact_normals(boundary, pattern, row)
+            places, _, _ = find_contact_normals(boundary, pattern, row)
             c, s = np.cos(row[0]), np.sin(row[0])
             assert outline_distances(places @ np.array([[c, -s], [s, c]]), outline.rows).max() < 1e-7
 

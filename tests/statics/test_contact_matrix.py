@@ -16,7 +16,7 @@ from closing_forces import clamping_force, null_vectors
 from workhold import Vise, Workpiece
 from workhold.conventions import LEAST_SPAN
 from workhold.kernels.contact.rules import minors
-from workhold.statics.contact_matrix import Touched, outward_normals
+from workhold.statics.contact_matrix import Touched, compute_outward_normals
 
 # An L: the faces at x = 20 and y = 20 meet in a concave corner, where a peg's centre stays its radius away.
 CORNER = Workpiece.from_loops(
@@ -205,4 +205,6 @@ def test_outward_normals_of_rows():
     """A line's normal is its tangent turned right; an arc's is radial, away from the centre if convex, to it if concave."""
     rows = np.array([[0, 1, 2, 0.6, 0.8, 5, 0, 1], [1, 1, 2, 1, 0, 3, 5, 1], [1, 1, 2, 1, 0, 3, 5, -1.0]])
     points = np.array([[1.0, 2], [4.0, 6], [4.0, 6]])
-    assert outward_normals(rows, points) == pytest.approx(np.array([[0.8, -0.6], [0.6, 0.8], [-0.6, -0.8]]))
+    assert compute_outward_normals(rows, points) == pytest.approx(
+        np.array([[0.8, -0.6], [0.6, 0.8], [-0.6, -0.8]])
+    )

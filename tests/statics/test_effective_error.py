@@ -15,7 +15,7 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.model.first_choice import FACTORS
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import LOCATION_ERROR, WARNINGS
-from workhold.statics.effective_error import EffectiveErrors, angle_classes
+from workhold.statics.effective_error import EffectiveErrors, classify_angles
 from workhold.statics.why_first import why_first
 from workhold.verification.first_choice import EffectiveJudge
 
@@ -39,7 +39,7 @@ def holding(query: Query, **changed: object) -> tuple[FixtureTable, dict[str, np
 def test_angles_as_written() -> None:
     """0 degrees, quarters of a turn, and others; a millionth of a degree is none."""
     degrees = [0.0, 9e-7, 360 - 9e-7, 1.1e-6, 90.0, 180.0, 270.0 + 9e-7, 270.0 + 2e-6, 45.0, 359.0]
-    assert angle_classes(np.radians(degrees)).tolist() == [0, 0, 0, 2, 1, 1, 1, 2, 2, 2]
+    assert classify_angles(np.radians(degrees)).tolist() == [0, 0, 0, 2, 1, 1, 1, 2, 2, 2]
 
 
 @pytest.mark.thorough

@@ -8,7 +8,7 @@ from attrs import evolve
 
 from friction_program import force_needed
 from workhold.model.jaw_hold import Patch
-from workhold.statics.friction import Grip, directed, is_pressed_all_over, least_largest_pressure
+from workhold.statics.friction import Grip, directed, find_least_peak_pressure, is_pressed_all_over
 from workhold.statics.patches import PressedPatch, hulls_meet
 
 MU, WIDE, DEEP = 0.15, 100.0, 60.0
@@ -135,15 +135,15 @@ def test_jaws_that_cannot_press_all_over():
     wide, short = Patch(((0.0, 60.0, 0.0, 20.0),), ()), Patch(((0.0, 22.0, 0.0, 20.0),), ())
     assert not is_pressed_all_over(wide, short)
     assert is_pressed_all_over(wide, Patch(((0.0, 40.0, 0.0, 20.0),), ()))
-    assert least_largest_pressure(wide, short, 1.0) is None
+    assert find_least_peak_pressure(wide, short, 1.0) is None
 
 
 def test_pressure_is_even_where_both_faces_are_alike():
     face = Patch(((0.0, 50.0, 0.0, 20.0),), ())
-    assert least_largest_pressure(face, face, 3000.0) == pytest.approx(3.0, rel=1e-9)
+    assert find_least_peak_pressure(face, face, 3000.0) == pytest.approx(3.0, rel=1e-9)
     # Off the middle by a tenth of the width, the edge bears 1.6 times the mean.
     moved = Patch(((10.0, 60.0, 0.0, 20.0),), ())
-    assert least_largest_pressure(face, moved, 3000.0) == pytest.approx(4.8, rel=1e-6)
+    assert find_least_peak_pressure(face, moved, 3000.0) == pytest.approx(4.8, rel=1e-6)
 
 
 def test_corners_about_a_range_of_directions_hold_all_of_them():

@@ -12,7 +12,7 @@ from workhold.conventions import GENTLE_PEG, SMALL_FACE_POINTS, STRONG_POINTS, T
 from workhold.drawing import SheetDetails
 from workhold.drawing.scene import LengthUnit
 from workhold.drawing.sheet_facts import cautions_of, edge_distances
-from workhold.model.own_outlines import outline_diameter
+from workhold.model.own_outlines import measure_outline_diameter
 from workhold.model.quality import (
     CLAMP_AMPLIFICATION,
     JAW_FORCE_NEEDED,
@@ -24,7 +24,7 @@ from workhold.model.quality import (
 )
 from workhold.statics.judging import Judging
 from workhold.statics.loads import load_cases
-from workhold.statics.quality import main_direction, quality_of, tilts
+from workhold.statics.quality import main_direction, measure_quality, tilts
 
 SHEET = {"number": 1, "count": 1, "day": None, "result_hash": "", "version": ""}
 
@@ -33,9 +33,9 @@ SHEET = {"number": 1, "count": 1, "day": None, "result_hash": "", "version": ""}
 def test_the_sheet_warns_as_often_as_the_table_counts(result: Result) -> None:
     """Of every kind, with a load and a jaw force that some fixtures need more than."""
     loads = [Load(((5.0, 5.0),), 100.0), Load((), 0.0, moment=500.0)]
-    quality = quality_of(result.table, result.workpiece, result.toolkit, loads=loads)
+    quality = measure_quality(result.table, result.workpiece, result.toolkit, loads=loads)
     force = float(np.median(quality[:, JAW_FORCE_NEEDED]))
-    counts = quality_of(result.table, result.workpiece, result.toolkit, loads=loads, jaw_force=force)[
+    counts = measure_quality(result.table, result.workpiece, result.toolkit, loads=loads, jaw_force=force)[
         :, WARNINGS
     ]
     for fixture, count in zip(result, counts, strict=True):
@@ -53,7 +53,7 @@ def test_the_sheet_warns_as_often_as_the_table_counts(result: Result) -> None:
 def test_the_jaw_force_needed_is_that_of_the_load_cases(result: Result) -> None:
     """The largest over the loads."""
     loads = [Load(((5.0, 5.0),), 100.0, (20.0, 70.0)), Load((), 0.0, moment=-500.0)]
-    needed = quality_of(result.table, result.workpiece, result.toolkit, loads=loads)[:, JAW_FORCE_NEEDED]
+    needed = measure_quality(result.table, result.workpiece, result.toolkit, loads=loads)[:, JAW_FORCE_NEEDED]
     for fixture, found in zip(result, needed, strict=True):
         cases = load_cases(fixture, result.workpiece, result.toolkit, loads)
         assert found == pytest.approx(max(case.needed.value for case in cases), rel=1e-6, abs=1e-9)
@@ -61,7 +61,7 @@ def test_the_jaw_force_needed_is_that_of_the_load_cases(result: Result) -> None:
 
 def test_the_penalty_is_the_sum_of_its_points(result: Result) -> None:
     """20 for ten times the location error, 9 for a tilt, 4 above 1.5, 2 for a face below a tenth of the diameter."""
-    small = outline_diameter(result.workpiece) / 10
+    small = measure_outline_diameter(result.workpiece) / 10
     for fixture in result:
         figures = fixture.quality
         points = ceil(20 * log10(figures["location_error"] / 0.02) - 1e-9)

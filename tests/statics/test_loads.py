@@ -24,7 +24,7 @@ from workhold.model.quality import (
     LOCATION_ERROR,
 )
 from workhold.statics.loads import load_cases
-from workhold.statics.quality import quality_of
+from workhold.statics.quality import measure_quality
 
 Array = NDArray[np.float64]
 PAGE = Path(__file__).parents[2] / "docs" / "quality.md"
@@ -197,7 +197,7 @@ def test_worked_example() -> None:
     assert case.needed.value == pytest.approx(200 * hypot(1.25, 0.5)) == pytest.approx(269.26, abs=0.005)
     assert min(case.needed.direction, 360 - case.needed.direction) == pytest.approx(21.80, abs=0.005)
     table = table_of(fixture, plate, vise)
-    quality = quality_of(table, plate, vise, loads=[push])[0]
+    quality = measure_quality(table, plate, vise, loads=[push])[0]
     assert quality[CLOSURE_MARGIN] == pytest.approx(0.25) and quality[CLAMP_AMPLIFICATION] == pytest.approx(
         1.0
     )

@@ -13,7 +13,7 @@ from workhold.model.cutting_forces import CuttingForces
 from workhold.model.cutting_tool import CuttingDirection, Cylinder, Tool
 from workhold.model.moves import Moves, along
 from workhold.statics import path_forces as module
-from workhold.statics.path_forces import PathForces, all_pieces, inside, path_forces, without_torques
+from workhold.statics.path_forces import PathForces, drop_lesser_torques, inside, list_all_pieces, path_forces
 
 Array = NDArray[np.float64]
 CENTER = (7.0, -3.0)
@@ -111,7 +111,7 @@ COLUMNS = ("line", "tool", "cutting", "start", "end", "bulge", "feed", "spindle"
 @pytest.mark.parametrize("levels", [1, 5, 400])
 def test_what_is_left_out_is_never_worst(levels: int, direction: CuttingDirection) -> None:
     program, functions = random_program(11, direction, levels, 900), functions_of(3, 60, 2)
-    whole, some = all_pieces(program, CENTER), path_forces(program, CENTER)
+    whole, some = list_all_pieces(program, CENTER), path_forces(program, CENTER)
     assert len(some) < len(whole) / (3 if direction == "any" else 1.1)
     every = whole.worst(functions)
     assert some.worst(functions).value == pytest.approx(every.value, rel=1e-12)
@@ -119,7 +119,7 @@ def test_what_is_left_out_is_never_worst(levels: int, direction: CuttingDirectio
 
 def test_blocks_are_passed_over_only_where_they_hold_less(monkeypatch: pytest.MonkeyPatch) -> None:
     program, functions = random_program(5, "feed", 30, 400), functions_of(9, 40, 3)
-    pieces = without_torques(all_pieces(program, CENTER))
+    pieces = drop_lesser_torques(list_all_pieces(program, CENTER))
     found = pieces.worst(functions)
     monkeypatch.setattr(module, "BLOCK", len(pieces))
     whole = PathForces(*(getattr(pieces, name) for name in module.COLUMNS), spread=pieces.spread).worst(

@@ -12,12 +12,19 @@ from attrs import evolve
 from workhold import Plate, Query, Result, Vise, Workpiece, design
 from workhold.errors import InputError
 from workhold.fixels.support_hardware import PinLimits
-from workhold.model.quality import BEFORE_PINS, FIGURES, PIN_KEYS, PIN_STRESS, WARNINGS, figures_in
+from workhold.model.quality import (
+    BEFORE_PINS,
+    FIGURES,
+    PIN_KEYS,
+    PIN_STRESS,
+    WARNINGS,
+    list_figures_in_columns,
+)
 from workhold.model.solid import SolidOutline
 from workhold.statics.bent_pegs import bent_pegs
 from workhold.statics.contact_matrix import Touched
-from workhold.statics.pins import deflections, stresses
-from workhold.statics.quality import quality_of
+from workhold.statics.pins import compute_deflections, stresses
+from workhold.statics.quality import measure_quality
 from workhold.units import INCH, MILLIMETRE
 
 SQUARE = Workpiece.from_loops("square", [[[-17, -17, 0], [17, -17, 0], [17, 17, 0], [-17, 17, 0]]])
@@ -37,7 +44,7 @@ def test_by_hand_a_pin_of_6_mm_gives_way_0_694_mm() -> None:
     inertia, area = pi * 6**4 / 64, pi * 9
     bending, shear = 500 * 38**3 / (3 * 210_000 * inertia), 10 * 500 * 38 / (9 * 81_000 * area)
     assert (round(bending, 3), round(bending + shear, 3)) == (0.685, 0.694)
-    assert deflections(500.0, 38.0, 6.0) == pytest.approx(bending + shear, rel=1e-12)
+    assert compute_deflections(500.0, 38.0, 6.0) == pytest.approx(bending + shear, rel=1e-12)
     assert stresses(500.0, 38.0, 6.0) == pytest.approx(500 * 38 / (inertia / 3), rel=1e-12)
     assert round(stresses(500.0, 38.0, 6.0)) == 896
 
@@ -48,7 +55,7 @@ def test_the_pinwheel_by_hand(bent: Result) -> None:
     fixture = next(
         one for one in bent if {peg.hole for peg in one.pegs} == pinwheel and one.pose.theta_deg == 0
     )
-    way = deflections(500.0, 38.0, 6.0)
+    way = compute_deflections(500.0, 38.0, 6.0)
     assert fixture.quality["pin_deflection"] == pytest.approx(way, rel=1e-9)
     assert fixture.quality["pin_stress"] == pytest.approx(stresses(500.0, 38.0, 6.0), rel=1e-9)
     # Pegs b and d give way by w each, so the part turns by w / 10, and a keeps 10 w / 10 + w of its side.
@@ -105,7 +112,7 @@ def test_the_worst_is_at_the_top_and_supports_make_the_lever_longer() -> None:
     assert low is not None and high is not None
     for peg, lifted in zip(low.pegs, high.pegs, strict=True):
         assert (peg.height, peg.top, lifted.height, lifted.top) == (10.0, 20.0, 18.0, 28.0)
-        assert peg.worst_deflection == pytest.approx(deflections(peg.force, 20.0, 6.0))
+        assert peg.worst_deflection == pytest.approx(compute_deflections(peg.force, 20.0, 6.0))
         assert lifted.stress == pytest.approx(stresses(peg.force, 18.0, 6.0))
     assert low.movement < low.worst_movement < high.worst_movement
 
@@ -114,7 +121,7 @@ def test_where_no_height_is_known_nothing_is_said() -> None:
     result = design(SQUARE, VISE, jaw_force=500)
     assert bent_pegs(result[0], SQUARE, VISE) is None
     assert not set(PIN_KEYS) & set(result[0].quality)
-    assert figures_in(result.table.quality.shape[1]) == FIGURES[:BEFORE_PINS]
+    assert list_figures_in_columns(result.table.quality.shape[1]) == FIGURES[:BEFORE_PINS]
     with pytest.raises(InputError, match="give the part's thickness, or the height of the pegs"):
         design(SQUARE, VISE, rank_by="pin-stress")
 
@@ -187,7 +194,7 @@ def test_of_a_solid_each_peg_is_pressed_in_the_middle_of_its_run() -> None:
 
 def test_warnings_of_bending_are_counted_of_whole_tables(bent: Result) -> None:
     """The column of warnings is that of its figures, and never less than without heights."""
-    plain = quality_of(bent.table, SQUARE, VISE, jaw_force=500)
-    tall = quality_of(bent.table, SQUARE, VISE, jaw_force=500, pressed_up_to=76)
+    plain = measure_quality(bent.table, SQUARE, VISE, jaw_force=500)
+    tall = measure_quality(bent.table, SQUARE, VISE, jaw_force=500, pressed_up_to=76)
     assert (tall[:, WARNINGS] >= plain[:, WARNINGS]).all()
     assert (tall[:, PIN_STRESS] > 421).all()

@@ -18,8 +18,8 @@ from workhold.model.cutting_tool import CuttingData
 from workhold.model.moves import Moves, Stretches, along
 from workhold.model.quality import JAW_FORCE_NEEDED, LOAD_REACTION
 from workhold.statics.loads import load_cases
-from workhold.statics.program_forces import cutting_need_of
-from workhold.statics.quality import quality_of
+from workhold.statics.program_forces import find_cutting_need
+from workhold.statics.quality import measure_quality
 
 KINDS = tuple(kinds_of_toolkit(10.0))
 
@@ -43,7 +43,7 @@ def pressing(program: Program, force: float = 300.0) -> Program:
 def figures(result: Result, program: Program | None, loads: tuple[Load, ...] = ()) -> np.ndarray:
     """Load reaction and jaw force needed of all fixtures."""
     passed = None if program is None else (program, PEG_HEIGHT)
-    quality = quality_of(result.table, result.workpiece, result.toolkit, loads=loads, passed=passed)
+    quality = measure_quality(result.table, result.workpiece, result.toolkit, loads=loads, passed=passed)
     return np.asarray(quality[:, [LOAD_REACTION, JAW_FORCE_NEEDED]])
 
 
@@ -80,14 +80,14 @@ def test_a_program_asks_what_its_loads_do(kind: str) -> None:
     assert figures(result, program, heavy) == pytest.approx(both)
     for index in range(3):
         cases = load_cases(result[index], result.workpiece, result.toolkit, loads, jaw_force=4000.0)
-        need = cutting_need_of(result, index, 4000.0)
+        need = find_cutting_need(result, index, 4000.0)
         assert need is not None
         assert need.jaw.force == pytest.approx(max(case.needed.value for case in cases), rel=1e-4)
         assert need.jaw.force == pytest.approx(found[index, 1], rel=1e-12)
         largest = max(max(case.largest) for case in cases)
         assert need.contact.force == pytest.approx(largest, rel=1e-4) and need.jaw_force == 4000.0
         assert need.room == pytest.approx(4000.0 - need.jaw.force)
-        constant = cutting_need_of(result, index, None, "constant")
+        constant = find_cutting_need(result, index, None, "constant")
         assert constant is not None and constant.room is None
         cases = load_cases(result[index], result.workpiece, result.toolkit, loads, jaw="constant")
         assert constant.jaw.force == pytest.approx(cases[0].jaw_force, rel=1e-4)
@@ -150,12 +150,14 @@ def test_loads_of_a_program_rank_like_other_loads() -> None:
 
 
 def test_words_say_who_asks() -> None:
-    need = cutting_need_of(result_of("vise"), 0)
+    need = find_cutting_need(result_of("vise"), 0)
     program = result_of("vise").query.program
     assert need is not None and program is not None
     assert need.jaw.line in program.moves.line and need.jaw.tool in program.tools
     holes = [peg.hole for peg in result_of("vise")[0].pegs]
     assert need.jaw.element is not None and need.jaw.element.removeprefix("peg ") in holes
     still = evolve(program, forces=forces_on(program.moves, program.tools, CuttingData(cutting_force=0)))
-    none = cutting_need_of(evolve(result_of("vise"), query=evolve(result_of("vise").query, program=still)), 0)
+    none = find_cutting_need(
+        evolve(result_of("vise"), query=evolve(result_of("vise").query, program=still)), 0
+    )
     assert none is not None and none.jaw.line is None and none.jaw.force == 0

@@ -16,7 +16,7 @@ from workhold import Fixture, Load, Plate, Result, Tolerance, Workpiece, design
 from workhold.geometry.segment import Arc, segment_rows
 from workhold.kernels.base.distance import outline_distances
 from workhold.model.fixture_table import FixtureTable
-from workhold.model.own_outlines import outline_diameter
+from workhold.model.own_outlines import measure_outline_diameter
 from workhold.model.quality import (
     BEFORE_PINS,
     CLAMP_AMPLIFICATION,
@@ -27,7 +27,7 @@ from workhold.model.quality import (
     WRENCH_RADIUS,
 )
 from workhold.statics.loads import load_cases
-from workhold.statics.quality import quality_of
+from workhold.statics.quality import measure_quality
 
 Array = NDArray[np.float64]
 
@@ -37,15 +37,15 @@ class TestHeld:
 
     def test_forces_and_closure_margin_are_those_of_the_search(self, result: Result) -> None:
         """The smallest entry of the null vector and the largest force per unit of jaw force, as found with the fixture."""
-        quality = quality_of(result.table, result.workpiece, result.toolkit)
+        quality = measure_quality(result.table, result.workpiece, result.toolkit)
         assert quality[:, CLOSURE_MARGIN] == pytest.approx(result.table.null_vector.min(axis=1), abs=1e-9)
         assert quality[:, CLAMP_AMPLIFICATION] == pytest.approx(result.table.force.max(axis=1), rel=1e-6)
 
     def test_wrench_radius_is_that_of_the_convex_hull(self, result: Result) -> None:
         """Qhull's nearest facet of the wrenches (n, (q - c) x n / L) is as far."""
-        quality = quality_of(result.table, result.workpiece, result.toolkit)
+        quality = measure_quality(result.table, result.workpiece, result.toolkit)
         radius = result.toolkit.peg_radius
-        length = outline_diameter(result.workpiece) / 2 + radius
+        length = measure_outline_diameter(result.workpiece) / 2 + radius
         for fixture, found in zip(result, quality[:, WRENCH_RADIUS], strict=True):
             points, normals = contacts(fixture, result.workpiece, radius)
             points = points - result.workpiece.center
@@ -56,7 +56,7 @@ class TestHeld:
     @pytest.mark.thorough
     def test_a_peg_can_walk_the_end_distance_and_no_farther(self, result: Result) -> None:
         """Along its face, either way, a peg stays clear of the rest of the part for that long; one of the four no longer."""
-        quality = quality_of(result.table, result.workpiece, result.toolkit)
+        quality = measure_quality(result.table, result.workpiece, result.toolkit)
         radius = result.toolkit.peg_radius
         for fixture, found in list(zip(result, quality[:, END_DISTANCE], strict=True))[::3]:
             points, normals = contacts(fixture, result.workpiece, radius)
@@ -71,7 +71,7 @@ class TestHeld:
     def test_location_error_is_that_of_the_pose_solved_anew(self, result: Result) -> None:
         """The pose's derivatives, by solving the contact equations with one error at a time, give it over all corners."""
         tolerance = Tolerance(peg=0.012, face=0.03)
-        quality = quality_of(result.table, result.workpiece, result.toolkit, tolerance)
+        quality = measure_quality(result.table, result.workpiece, result.toolkit, tolerance)
         points = silhouette(result.workpiece)
         for fixture, found in list(zip(result, quality[:, LOCATION_ERROR], strict=True))[::2]:
             moves = np.array([movement(fixture, result, points, peg) for peg in range(4)])
@@ -96,9 +96,11 @@ class TestHeld:
             Load(points=path, force=80.0, directions=(-50, 40), moment=300.0),
             Load(moment=-700.0),
         ]
-        together = quality_of(result.table, result.workpiece, result.toolkit, loads=loads)[:, LOAD_REACTION]
+        together = measure_quality(result.table, result.workpiece, result.toolkit, loads=loads)[
+            :, LOAD_REACTION
+        ]
         single = [
-            quality_of(result.table, result.workpiece, result.toolkit, loads=[load])[:, LOAD_REACTION]
+            measure_quality(result.table, result.workpiece, result.toolkit, loads=[load])[:, LOAD_REACTION]
             for load in loads
         ]
         assert together == pytest.approx(np.max(single, axis=0), rel=1e-12)
@@ -211,7 +213,9 @@ def test_pegs_that_share_a_face_share_its_error() -> None:
     """Every fixture of a triangle has two pegs on one face, so faces that are off move it no more than pegs that are."""
     result = held("triangle", 20, 2, 3, 30)
     apart, together = (
-        quality_of(result.table, result.workpiece, result.toolkit, Tolerance(peg, face))[:, LOCATION_ERROR]
+        measure_quality(result.table, result.workpiece, result.toolkit, Tolerance(peg, face))[
+            :, LOCATION_ERROR
+        ]
         for peg, face in ((0.02, 0.0), (0.0, 0.02))
     )
     assert (together <= apart * (1 + 1e-9)).all() and (together < 0.99 * apart).mean() > 0.5
@@ -221,7 +225,7 @@ def test_location_error_grows_with_the_tolerances_in_proportion() -> None:
     """First order: twice the tolerances, twice the error; none, none."""
     result = held("widget", 8, 1, 3, 50)
     one, two, none = (
-        quality_of(result.table, result.workpiece, result.toolkit, Tolerance(t, t))[:, LOCATION_ERROR]
+        measure_quality(result.table, result.workpiece, result.toolkit, Tolerance(t, t))[:, LOCATION_ERROR]
         for t in (0.01, 0.02, 0)
     )
     assert two == pytest.approx(2 * one, rel=1e-12)
@@ -232,17 +236,17 @@ def test_blocks_do_not_show(monkeypatch: pytest.MonkeyPatch) -> None:
     """Cut into blocks of any size the figures are the same, bit for bit."""
     result = held("widget", 8, 1, 3, 50)
     loads = [Load(points=[(3, 4)], force=10)]
-    whole = quality_of(result.table, result.workpiece, result.toolkit, loads=loads)
+    whole = measure_quality(result.table, result.workpiece, result.toolkit, loads=loads)
     monkeypatch.setattr("workhold.statics.quality.BLOCK", 7)
-    again = quality_of(result.table, result.workpiece, result.toolkit, loads=loads)
+    again = measure_quality(result.table, result.workpiece, result.toolkit, loads=loads)
     assert np.array_equal(again, whole, equal_nan=True)
 
 
 def test_no_fixtures_no_figures() -> None:
     """An empty table gives an empty array; without loads the load reaction is not known."""
     result = held("widget", 8, 1, 3, 50)
-    assert quality_of(FixtureTable.empty(), result.workpiece, result.toolkit).shape == (0, BEFORE_PINS)
-    quality = quality_of(result.table, result.workpiece, result.toolkit)
+    assert measure_quality(FixtureTable.empty(), result.workpiece, result.toolkit).shape == (0, BEFORE_PINS)
+    quality = measure_quality(result.table, result.workpiece, result.toolkit)
     assert np.isnan(quality[:, LOAD_REACTION]).all() and not np.isnan(quality[:, :LOAD_REACTION]).any()
 
 
@@ -254,6 +258,6 @@ def test_figures_take_the_direction_of_the_fixtures_own_clamp() -> None:
     plate = Plate((20, 16), 3, directions=["-y", "-x", "+y"])
     result = design(part, plate, best=40)
     assert {fixture.direction for fixture in result} == {"-x", "-y"}
-    again = quality_of(result.table, part, plate)
+    again = measure_quality(result.table, part, plate)
     known = ~np.isnan(again)
     assert np.allclose(again[known], result.table.quality[known], rtol=1e-9, atol=1e-12)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from workhold.supports.friction import least_costs
+from workhold.supports.friction import find_least_costs
 
 
 @pytest.mark.thinned(3)
@@ -23,7 +23,7 @@ def test_least_costs_are_those_of_another_solver(seed: int) -> None:
     # A solution of a single column, in which all other forces are 0.
     sides[0] = 3.0 * matrix[:, 4]
     sides[1] = 0.0
-    found = least_costs(matrix, costs, sides)
+    found = find_least_costs(matrix, costs, sides)
     for value, side in zip(found, sides, strict=True):
         size = max(np.abs(side).max(), 1e-3)
         answer = linprog(costs, A_eq=matrix, b_eq=side / size, method="highs")

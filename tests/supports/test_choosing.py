@@ -15,8 +15,8 @@ from workhold import Vise, Workpiece, design
 from workhold.errors import InputError
 from workhold.model.support_request import SupportRequest
 from workhold.supports import choosing, listing
-from workhold.supports.choosing import coarse, digits_of
-from workhold.supports.listing import supports_of, supports_one_by_one
+from workhold.supports.choosing import bound_coarse_figure, coarse
+from workhold.supports.listing import supports_of, yield_supports
 
 
 @pytest.mark.thorough
@@ -105,7 +105,7 @@ def test_sets_from_which_the_part_falls_come_after_all_others(name: str) -> None
 def test_digits_bound_all_that_count_as_a_figure(value: float) -> None:
     """All figures below the first count as less, all above the second as more."""
     value = coarse(value)
-    low, high = digits_of(value)
+    low, high = bound_coarse_figure(value)
     assert low <= value <= high
     for near in np.linspace(0.9 * value, 1.1 * value + 1e-8, 2001):
         if abs(near - low) > 1e-6 * value and abs(near - high) > 1e-6 * value:
@@ -132,7 +132,7 @@ def test_a_search_is_followed_and_stopped(monkeypatch: pytest.MonkeyPatch) -> No
     plate = Workpiece.from_loops("plate", [[[0, 0, 0], [100, 0, 0], [100, 60, 0], [0, 60, 0]]])
     result = design(plate, Vise(pitch=20, columns=5, peg_radius=3), best=3)
     request, seen, cancel = SupportRequest.of(plate, 20, toolkit=result.toolkit), list[float](), Event()
-    found = list(supports_one_by_one(result, result.query, request, each=2, progress=seen.append))
+    found = list(yield_supports(result, result.query, request, each=2, progress=seen.append))
     assert len(found) == 3 and seen == sorted(seen) and seen[-1] == 1.0 and len(seen) > 10
     assert not any(one.stopped for one in found)
 
@@ -140,6 +140,6 @@ def test_a_search_is_followed_and_stopped(monkeypatch: pytest.MonkeyPatch) -> No
         if fraction > 0.5:
             cancel.set()
 
-    stopped = list(supports_one_by_one(result, result.query, request, each=2, cancel=cancel, progress=stop))
+    stopped = list(yield_supports(result, result.query, request, each=2, cancel=cancel, progress=stop))
     assert [one.stopped for one in stopped] == [False, True]
     assert stopped[1].count is None and stopped[0].triples == found[0].triples

@@ -13,7 +13,7 @@ from workhold.model.cutting_forces import forces_on
 from workhold.model.cutting_tool import CuttingData, Cylinder, Tool
 from workhold.model.moves import Moves
 from workhold.model.support_request import SpatialLoad
-from workhold.supports.program import acting_on, cutting_loads
+from workhold.supports.program import list_acting_loads, make_cutting_loads
 
 PART = Workpiece.from_loops("part", [[[0, 0, 0], [100, 0, 0], [96, 60, 0], [4, 55, 0]]])
 VISE = Vise(pitch=20, columns=5, peg_radius=3)
@@ -32,20 +32,20 @@ HOLE = [((50, 30, 22), (50, 30, -2), 0.0)]
 
 
 def test_loads_by_hand() -> None:
-    one, other = cutting_loads(program_of(SLOT, cut_depth=4, helix_angle=45), 20.0)
+    one, other = make_cutting_loads(program_of(SLOT, cut_depth=4, helix_angle=45), 20.0)
     assert one.points == ((20.0, 30.0), (80.0, 30.0)) and one.force == 400 and one.heights == (17.0, 17.0)
     assert one.axial == pytest.approx((-400.0, 0.0)) and (one.moment, other.moment) == (2000.0, -2000.0)
-    drill, _ = cutting_loads(program_of(HOLE, "drill"), 20.0)
+    drill, _ = make_cutting_loads(program_of(HOLE, "drill"), 20.0)
     # What comes out below acts on the part at its lower side.
     assert drill.force == 0 and drill.axial == pytest.approx((0.0, 560.0)) and drill.heights == (0.0, 20.0)
     assert drill.points == ((50.0, 30.0),) and drill.name == "T1 drilling"
     # Any other tool plunges: what it mills with presses down.
-    plunge, _ = cutting_loads(program_of(HOLE), 20.0)
+    plunge, _ = make_cutting_loads(program_of(HOLE), 20.0)
     assert (plunge.axial, plunge.moment, plunge.name) == ((0.0, 400.0), 2000.0, "T1 plunging")
 
 
 def test_an_arc_lies_inside_its_load() -> None:
-    (load, _) = cutting_loads(program_of([((30, 30, 15), (70, 30, 15), 1.0)]), 20.0)
+    (load, _) = make_cutting_loads(program_of([((30, 30, 15), (70, 30, 15), 1.0)]), 20.0)
     angle = np.linspace(np.pi, 2 * np.pi, 50)
     for x, y in zip(50 + 20 * np.cos(angle), 30 + 20 * np.sin(angle), strict=True):
         corners = np.array([*load.points, load.points[0]])
@@ -61,7 +61,7 @@ def test_a_program_holds_the_clamp_down_as_its_loads_do() -> None:
     result = answer(query, threads=1)
     fixture = next(one for one in result if one.supports(20.0, best=1).triples)
     mine = fixture.supports(20.0, best=1)
-    assert mine.loads == cutting_loads(program, 20.0) == acting_on(query, 20.0)
+    assert mine.loads == make_cutting_loads(program, 20.0) == list_acting_loads(query, 20.0)
     given = fixture.supports(20.0, best=1, loads=list(mine.loads))
     assert mine.triples[0].best.clamp_needed == given.triples[0].best.clamp_needed > 0
     twice = [evolve(one, force=2 * one.force, moment=2 * one.moment) for one in mine.loads]

@@ -12,7 +12,7 @@ from supports.random_supports import convex_part
 from workhold import Fixture, Vise, design
 from workhold.model.support_request import SupportRequest
 from workhold.supports.faces import TouchableFace
-from workhold.supports.holes import CarrierRoom, holes_under
+from workhold.supports.holes import CarrierRoom, find_holes_under_face
 
 pytestmark = pytest.mark.thorough
 
@@ -53,7 +53,7 @@ def test_sets_fit_where_some_way_to_write_them_out_does(vise: Vise) -> None:
         result = design(part, vise, best=20)
         fixture = random.choice(list(result))
         request = SupportRequest.of(part, 12, pad_radius=1.0)
-        holes = holes_under(fixture, vise, TouchableFace.of(part.loops), request)
+        holes = find_holes_under_face(fixture, vise, TouchableFace.of(part.loops), request)
         room = CarrierRoom.of(fixture, vise, holes)
         sets = np.array(list(combinations(range(len(holes.row)), 3)), np.int64)
         fits = room.standing(sets).fits

@@ -13,7 +13,7 @@ from workhold.cli.supports_command import notes_of as notes_of_command
 from workhold.model.support_request import SpatialLoad, SupportRequest
 from workhold.model.support_triples import Supports
 from workhold.supports.listing import supports_of
-from workhold.supports.words import flat_faces_notes, place_notes
+from workhold.supports.words import place_notes, write_flat_faces_notes
 from workhold.units import unit_named
 from workhold.web.support_tasks import notes_of as notes_of_page
 
@@ -55,11 +55,11 @@ def test_nothing_is_said_of_what_is_not_there(found: Supports) -> None:
     still = tuple(evolve(one, travel=found.fixture.travel) for one in found.triples)
     plain = evolve(found, triples=still, loads=())
     assert [note for note in notes_of_page(plain, "mm") if "are level" not in note] == []
-    assert flat_faces_notes(workhold.load("widget"), ("a", "b")) == []
+    assert write_flat_faces_notes(workhold.load("widget"), ("a", "b")) == []
     part = stepped({})
     assert part.solid is not None
     known = evolve(part, solid=evolve(part.solid, bottom=[BASE]))
-    (note,) = flat_faces_notes(known, ("a", "b"))
+    (note,) = write_flat_faces_notes(known, ("a", "b"))
     assert "at the part's top are level" in note and note.endswith("off the rest with b.")
 
 
@@ -80,7 +80,7 @@ def test_no_pad_stands_under_a_part_that_lies_on_no_face() -> None:
         assert result[0].supports(best=1, pad_radius=2, tip_radius=2, bottom=[BASE]).triples
     found = workhold.design(lying, toolkit, best=1)[0].supports(best=1, pad_radius=2)
     assert "the part lies on no level face under which a pad could stand" in last_paragraph(found)
-    (note,) = flat_faces_notes(lying, ("a", "b"))
+    (note,) = write_flat_faces_notes(lying, ("a", "b"))
     assert note.endswith("no support can stand under it: turn another side up.")
 
 

@@ -15,14 +15,14 @@ from shown_words import last_paragraph
 from slow_program import OFF, THICKNESS, TOOLS, Row, path, program_of, random_program, walked
 from workhold import Program, Query, Vise, Workpiece, answer, circle_zone
 from workhold.geometry.loop import loop_segments
-from workhold.model.requirements import zone_of
+from workhold.model.requirements import make_zone
 from workhold.model.support_request import SupportRequest
 from workhold.supports.choosing import WorkLimit
-from workhold.supports.clamp_point import ClampPlaces, point_on
+from workhold.supports.clamp_point import ClampPlaces, find_point_on_curve
 from workhold.supports.faces import FaceBorders, TouchableFace, offset_curves
 from workhold.supports.forces import Triangles
-from workhold.supports.listing import supports_of, supports_one_by_one
-from workhold.supports.program import FINEST, MOST_ABOVE, capsule, with_program
+from workhold.supports.listing import supports_of, yield_supports
+from workhold.supports.program import FINEST, MOST_ABOVE, add_program_zones, capsule
 
 Array = NDArray[np.float64]
 PART = Workpiece.from_points("plate", [(0, 0), (60, 0), (60, 40), (0, 40)])
@@ -56,7 +56,7 @@ def walk_room(program: Program, points: Array, slabs: list[tuple[float, float, f
 def rooms(program: Program, points: Array) -> tuple[Array, Array]:
     """By how much pads and tips at points keep the rules of the faces with the program's zones."""
     asked = SupportRequest(THICKNESS, PAD, TIP)
-    request = with_program(asked, PART, program)
+    request = add_program_zones(asked, PART, program)
     bottom, top = (
         TouchableFace.of(PART.loops, [zone.loop for zone in zones])
         for zones in (request.bottom_zones, request.top_zones)
@@ -97,17 +97,17 @@ def test_a_program_high_above_all_leaves_everything() -> None:
     """Moves above the clamp and above the part make no zone."""
     program = program_of([(1, False, (0.0, 0.0, 60.0), (50.0, 30.0, 60.0), 0.0)])
     asked = SupportRequest(THICKNESS, PAD, TIP)
-    assert with_program(asked, PART, program) == asked
-    assert with_program(asked, PART, None) is asked
+    assert add_program_zones(asked, PART, program) == asked
+    assert add_program_zones(asked, PART, None) is asked
 
 
 def test_own_zones_stay_and_nothing_is_added_twice() -> None:
     """What the user keeps out stays kept out; a request that has the zones already stays as it is."""
     own = SupportRequest(THICKNESS, PAD, TIP, bottom_zones=[circle_zone(5, 5, 2)])
     program = random_program(Random(3), PART)
-    first = with_program(own, PART, program)
+    first = add_program_zones(own, PART, program)
     assert first.bottom_zones[0] == own.bottom_zones[0]
-    assert with_program(first, PART, program) == first
+    assert add_program_zones(first, PART, program) == first
 
 
 @pytest.mark.parametrize("bulge", [0.0, 0.03, 0.4, -0.4, 0.98, -0.98, 1.0])
@@ -115,7 +115,7 @@ def test_own_zones_stay_and_nothing_is_added_twice() -> None:
 def test_capsules_hold_what_is_nearer_than_their_radius(bulge: float, radius: float) -> None:
     """Signed distances from the border are distances from the path, less the radius, also inside bends."""
     start, end = (3.0, 1.0), (11.0, 6.0)
-    loop = tuple(loop_segments(np.array(zone_of(capsule(((*start, bulge), (*end, 0.0)), radius)).loop)))
+    loop = tuple(loop_segments(np.array(make_zone(capsule(((*start, bulge), (*end, 0.0)), radius)).loop)))
     span = program_of([(1, True, (*start, 0.0), (*end, 0.0), bulge)])
     line = walked(span)[0][:, :2]
     points = np.random.default_rng(4).uniform(-15, 25, (400, 2))
@@ -135,7 +135,7 @@ def many_passes() -> list[Row]:
 def test_many_pieces_become_few_zones_that_leave_nothing_in_the_way() -> None:
     """Zones stay few whatever the program has; places that are left keep the clearance."""
     program = program_of(many_passes())
-    request = with_program(SupportRequest(THICKNESS, PAD, TIP), PART, program)
+    request = add_program_zones(SupportRequest(THICKNESS, PAD, TIP), PART, program)
     assert len(request.top_zones) <= MOST_ABOVE
     points = grid(2.3)
     _, above = rooms(program, points)
@@ -148,7 +148,7 @@ def test_many_pieces_become_few_zones_that_leave_nothing_in_the_way() -> None:
 def test_the_clamps_place_is_the_best_of_a_fine_grid(number: int) -> None:
     """Free pieces of borders hold the best place: no place of a grid 0.4 mm fine that is left is any better."""
     program = program_of(many_passes()) if number % 2 else random_program(Random(91 + number), PART)
-    request = with_program(SupportRequest(THICKNESS, PAD, TIP), PART, program)
+    request = add_program_zones(SupportRequest(THICKNESS, PAD, TIP), PART, program)
     face = TouchableFace.of(PART.loops, [zone.loop for zone in request.top_zones])
     places = ClampPlaces(face, TIP, None)
     random = np.random.default_rng(number)
@@ -182,11 +182,11 @@ def test_a_limit_of_the_work_stops_at_the_same_fixture_every_time() -> None:
     fixtures = list(answer(query))
     request = SupportRequest(THICKNESS, PAD, TIP)
     counted = WorkLimit(10**12)
-    whole = list(supports_one_by_one(fixtures, query, request, cancel=counted))
+    whole = list(yield_supports(fixtures, query, request, cancel=counted))
     assert len(whole) == len(fixtures) and not any(one.stopped for one in whole) and counted.done > 0
     for share in (2, 3):
         first, second = (
-            list(supports_one_by_one(fixtures, query, request, cancel=WorkLimit(counted.done // share)))
+            list(yield_supports(fixtures, query, request, cancel=WorkLimit(counted.done // share)))
             for _ in range(2)
         )
         assert [one.triples for one in first] == [one.triples for one in second]
@@ -273,10 +273,10 @@ def test_free_pieces_hold_all_places_on_borders() -> None:
         assert len(own.bent)
         for curve, (low, high) in zip(own.bent.curves, own.bent.spans, strict=True):
             inner = np.linspace(low, high, 9)[1:-1]
-            assert own.allows(np.stack([point_on(curve, at, True) for at in inner])).all()
+            assert own.allows(np.stack([find_point_on_curve(curve, at, True) for at in inner])).all()
         for curve in np.unique(own.bent.curves, axis=0):
             around = np.linspace(-pi, pi, 721)
-            points = np.stack([point_on(curve, at, True) for at in around])
+            points = np.stack([find_point_on_curve(curve, at, True) for at in around])
             free = points[own.allows(points)]
             mine = np.flatnonzero((own.bent.curves == curve).all(axis=1))
             kept = own.bent.on_pieces(np.repeat(free[:, None], len(own.bent), axis=1), True)[:, mine, 0]
@@ -288,7 +288,7 @@ def test_a_disc_rolls_round_corners_alone() -> None:
     turns = np.arange(8) * pi / 4
     octagon = tuple(loop_segments(np.array([(10 * cos(t), 10 * sin(t), 0.0) for t in turns])))
     assert len(offset_curves(octagon, 2.0, left=False)[1]) == 8
-    slot = tuple(loop_segments(np.array(zone_of(capsule(((0.0, 0.0, 0.0), (9.0, 0.0, 0.0)), 2.0)).loop)))
+    slot = tuple(loop_segments(np.array(make_zone(capsule(((0.0, 0.0, 0.0), (9.0, 0.0, 0.0)), 2.0)).loop)))
     lines, circles = offset_curves(slot, 3.0, left=False)
     assert (len(lines), len(circles)) == (2, 2) and all(radius == 5.0 for *_, radius in circles)
     # From within the ends are too narrow for the disc, and it may touch their joints.

@@ -80,7 +80,10 @@ def force_by_other_program(fixture, loops, tips, forces, friction=0.1, sides=32,
     total = sum(np.concatenate([[0, 0, -1.0], np.cross([*tip, THICK], [0, 0, -1.0]) / 50]) for tip in tips)
     columns.append(total)
     costs.append(1.0)
-    upper = [({first: -1.0, first + 1: -x, first + 2: -y}) for x, y in foot.convex_hull.exterior.coords[:-1]]
+    upper = [
+        ({first: -1.0, first + 1: -x, first + 2: -y})
+        for x, y in foot.compute_convex_hull.exterior.coords[:-1]
+    ]
     # Friction in a coarse grid of the same cells, summed.
     groups = {}
     for x, y, area in pieces:

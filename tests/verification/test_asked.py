@@ -13,8 +13,8 @@ import pytest
 
 from workhold import Load, Restrictions, Result, Vise, circle_zone, design, load
 from workhold.listing.ranking import order_keys, usual_errors
-from workhold.model.first_choice import figures_ranked_by
-from workhold.model.quality import FIGURES, whole_rows
+from workhold.model.first_choice import list_ranking_figures
+from workhold.model.quality import FIGURES, fill_figure_rows
 from workhold.verification import Verification, verify
 
 Verify = Callable[[Callable[[dict[str, Any]], object]], Verification]
@@ -82,7 +82,7 @@ def test_blocked_holes_and_bodies_are_looked_at(limited: Result) -> None:
 @pytest.mark.parametrize("number", range(len(FIGURES)))
 def test_a_wrong_figure_refutes(limited: Result, number: int) -> None:
     """Each figure of quality is derived again."""
-    quality = whole_rows(limited.table.quality).copy()
+    quality = fill_figure_rows(limited.table.quality).copy()
     # A figure that such fixtures do not have is wrong whatever it is.
     quality[4, number] = np.nan_to_num(quality[4, number]) + 1e-6 * max(
         np.nan_to_num(quality[4, number]), 1.0
@@ -141,7 +141,7 @@ def test_other_keys_to_rank_by_are_a_fault(limited: Result) -> None:
     for ranking in (
         ("closure_margin",),
         ("end_distance", "location_error"),
-        tuple(reversed(figures_ranked_by(limited.query.rank_by))),
+        tuple(reversed(list_ranking_figures(limited.query.rank_by))),
     ):
         outcome = verify(attrs.evolve(limited, query=attrs.evolve(limited.query, rank_by=ranking)))
         assert len(outcome.faults) == 1, ranking

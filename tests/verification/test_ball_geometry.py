@@ -11,7 +11,7 @@ from hypothesis import given
 
 from strategies import outlines, seeds
 from workhold import Workpiece
-from workhold.geometry.segment import Arc, Line, distance_to_segment
+from workhold.geometry.segment import Arc, Line, measure_distance_to_segment
 from workhold.verification.ball_geometry import ArcSide, BallOutline, arc_side, exact_point, line_side
 
 
@@ -28,7 +28,7 @@ def test_distances_and_gaps_are_those_of_the_floats(workpiece: Workpiece, seed: 
     for _ in range(4):
         x, y = random.uniform(-80, 80), random.uniform(-80, 80)
         for side, segment in zip(outline.segments, workpiece.segments, strict=True):
-            assert holds(side.distance(exact_point(x, y)), distance_to_segment((x, y), segment), 1e-8)
+            assert holds(side.distance(exact_point(x, y)), measure_distance_to_segment((x, y), segment), 1e-8)
             if isinstance(segment, Line):
                 normal = segment.normal()
                 gap = (x - segment.start[0]) * normal[0] + (y - segment.start[1]) * normal[1]

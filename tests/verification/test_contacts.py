@@ -25,7 +25,7 @@ HARDWARE = rules_in(Vise(pitch=10, columns=1, peg_radius=0))
 UPRIGHT = posed(0)
 
 
-def random_contacts(random: Random) -> tuple[list[tuple[float, float]], list[float]]:
+def make_random_contacts(random: Random) -> tuple[list[tuple[float, float]], list[float]]:
     """Four places in mm and four directions of normals in radians."""
     points = [(random.uniform(-50, 50), random.uniform(-50, 50)) for _ in range(4)]
     return points, [random.uniform(-3.2, 3.2) for _ in range(4)]
@@ -34,7 +34,7 @@ def random_contacts(random: Random) -> tuple[list[tuple[float, float]], list[flo
 @given(seeds)
 def test_the_null_vector_balances_forces_and_moments(seed: int) -> None:
     """Sum of lambda_i n_i and of lambda_i q_i x n_i is 0."""
-    places, angles = random_contacts(Random(seed))
+    places, angles = make_random_contacts(Random(seed))
     points = [(arb(x), arb(y)) for x, y in places]
     normals = [(arb(angle).cos(), arb(angle).sin()) for angle in angles]
     vector = minors(points, normals)
@@ -47,7 +47,7 @@ def test_the_null_vector_balances_forces_and_moments(seed: int) -> None:
 @given(seeds)
 def test_it_is_that_of_the_statics(seed: int) -> None:
     """Point and scale of the moments do not matter to it."""
-    places, angles = random_contacts(Random(seed))
+    places, angles = make_random_contacts(Random(seed))
     points = [(arb(x), arb(y)) for x, y in places]
     vector = minors(points, [(arb(angle).cos(), arb(angle).sin()) for angle in angles])
     total = sum(vector, arb(0))

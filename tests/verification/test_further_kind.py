@@ -21,7 +21,7 @@ from judged import known_in, place_in_order, rules_in
 from workhold import Fixture, InputError, Workpiece
 from workhold.fixels.support_hardware import PinLimits
 from workhold.fixels.toolkit import Arrangement, Carrier, Limit, Symmetry, Toolkit, Travel
-from workhold.geometry.segment import Line, distance_to_segment
+from workhold.geometry.segment import Line, measure_distance_to_segment
 from workhold.verification import Ruling, verify_fixture
 from workhold.verification.reading import fixtures_of
 from workhold.verification.repeats import stance
@@ -109,7 +109,7 @@ def on_faces(item: Data, workpiece: Workpiece) -> Data:
     for x, y in (item["wall"]["from"], item["wall"]["to"]):
         dx, dy = x - pose["x"], y - pose["y"]
         point = cos(turn) * dx + sin(turn) * dy, cos(turn) * dy - sin(turn) * dx
-        touched = [f for f in workpiece.faces if distance_to_segment(point, f.segment) < 1e-6]
+        touched = [f for f in workpiece.faces if measure_distance_to_segment(point, f.segment) < 1e-6]
         flush = [
             f.number
             for f in touched

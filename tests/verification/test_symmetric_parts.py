@@ -13,7 +13,7 @@ from attrs import evolve
 from symmetric_parts import Symmetric, sets_of, symmetric_parts
 from workhold import Fence, OpeningVise, Plate, Query, Result, Vise, Workpiece, answer
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.symmetry import centroid_of_joints, rotations_onto_itself
+from workhold.geometry.symmetry import find_centroid_of_joints, find_rotations_onto_itself
 from workhold.verification import verify
 from workhold.verification.repeats import PartRotations
 
@@ -111,10 +111,10 @@ def test_rotations_are_those_that_the_part_was_made_with(name: str) -> None:
     """Found by the search and by the verification, apart from each other, with the point that they keep."""
     case = PARTS[name]
     faces = [face.segment for face in case.part.faces]
-    turning, rotations = PartRotations.of(case.part), rotations_onto_itself(faces)
+    turning, rotations = PartRotations.of(case.part), find_rotations_onto_itself(faces)
     assert turning.is_certain and turning.order == len(rotations) == case.order
     assert turning.angles == pytest.approx([rotation.angle for rotation in rotations[1:]])
-    for point in (turning.center, centroid_of_joints(faces)):
+    for point in (turning.center, find_centroid_of_joints(faces)):
         assert complex(*point) == pytest.approx(case.kept, abs=1e-9)
 
 

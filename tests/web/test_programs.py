@@ -9,7 +9,7 @@ import pytest
 from running_server import RunningServer
 
 from workhold import Program, Query, Vise, answer, load
-from workhold.statics.program_forces import cutting_need_of
+from workhold.statics.program_forces import find_cutting_need
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 PART = load(EXAMPLES / "bracket.dxf")
@@ -149,7 +149,7 @@ def test_forces_act_where_tools_meet_the_stock(server: RunningServer) -> None:
     told = server.client.get(f"{url}/fixtures/1").json()["program_forces"]
     how: dict[str, Any] = {"thickness": 12, **asked}
     program = Program.read(EXAMPLES / "bracket.nc", EXAMPLES / "tools.toml", **how)
-    own = cutting_need_of(answer(Query(PART, Vise(20, 2, 4), program=program, peg_height=6)), 0)
+    own = find_cutting_need(answer(Query(PART, Vise(20, 2, 4), program=program, peg_height=6)), 0)
     assert own is not None
     assert {key: told[key] for key in own.to_dict()} == own.to_dict()
     assert f"line {own.jaw.line}, T{own.jaw.tool} (end mill, milling from X" in told["words"][0]

@@ -134,7 +134,7 @@ def test_of_very_many_fixtures_the_best_are_sought(
     query: Query, whole: Result, asked: list[int | None], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A remark says how many there are; who wants every one gets them."""
-    monkeypatch.setattr(estimate, "estimated_fixtures", lambda *_: 4_240_000)
+    monkeypatch.setattr(estimate, "estimate_fixtures", lambda *_: 4_240_000)
     monkeypatch.setattr(estimate, "LISTED", 30)
     found, _ = run(query)
     assert asked == [FIRST, 30] and found.result.query.best == 30 and marks(found.result) == marks(whole)[:30]

@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from workhold.algebra.engine import answer_by_algebra
+from workhold.algebra.engine import find_fixtures_by_algebra
 
-__all__ = ["answer_by_algebra"]
+__all__ = ["find_fixtures_by_algebra"]

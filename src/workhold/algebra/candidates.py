@@ -39,11 +39,11 @@ __all__ = [
     "Systems",
     "facing",
     "lattice_steps",
-    "peg_pairs",
+    "list_peg_pairs",
     "pieces_of",
-    "sector_of",
-    "type_one_systems",
-    "type_two_systems",
+    "find_sector",
+    "list_type_one_systems",
+    "list_type_two_systems",
 ]
 
 Array = NDArray[np.float64]
@@ -57,7 +57,7 @@ CENTERS = (np.arange(SECTORS) + 0.5) * tau / SECTORS
 PIECE = 1 / 16
 
 
-def sector_of(psi: Array) -> IntArray:
+def find_sector(psi: Array) -> IntArray:
     """Sectors of orientations in radians."""
     return np.floor(np.mod(psi, tau) * SECTORS / tau).astype(np.int64) % SECTORS
 
@@ -146,7 +146,7 @@ class PegPairs:
         return np.asarray(self.tails.any(axis=1))
 
 
-def wedge_sectors(
+def find_wedge_sectors(
     one: FeaturePieces, two: FeaturePieces, distance: float, direction: float
 ) -> BoolArray | None:
     """Orientations (P, SECTORS) at which a peg pair fits each piece of the first feature.
@@ -171,7 +171,7 @@ def wedge_sectors(
     return out
 
 
-def tail_bounds(one: FeaturePieces, tails: BoolArray) -> tuple[Array, Array]:
+def bound_first_peg(one: FeaturePieces, tails: BoolArray) -> tuple[Array, Array]:
     """Bounds (SECTORS, 2) on the first peg along x and y at each orientation; inf, -inf where it has none."""
     seen = one.middle[:, None] * np.exp(-1j * CENTERS)
     slack = (one.radius + np.abs(one.middle) * HALF_SECTOR + WEDGE_SLACK)[:, None]
@@ -182,7 +182,7 @@ def tail_bounds(one: FeaturePieces, tails: BoolArray) -> tuple[Array, Array]:
     return low, high
 
 
-def peg_pairs(rows: Array, frame: Frame, diameter: float) -> PegPairs:
+def list_peg_pairs(rows: Array, frame: Frame, diameter: float) -> PegPairs:
     """Every peg pair that its annulus wedges allow (section 3.4); refuses too many of them.
 
     Features (F, 10) are about the centre of the part. ``diameter`` is the largest distance in mm between two
@@ -196,7 +196,7 @@ def peg_pairs(rows: Array, frame: Frame, diameter: float) -> PegPairs:
         step = complex(column * frame.lattice.pitch_x, row * frame.lattice.pitch_y)
         for a, one in enumerate(pieces):
             for b, two in enumerate(pieces):
-                found = wedge_sectors(one, two, abs(step), float(np.angle(step)))
+                found = find_wedge_sectors(one, two, abs(step), float(np.angle(step)))
                 if found is None:
                     continue
                 if len(whole) == MOST_PEG_PAIRS:
@@ -204,7 +204,7 @@ def peg_pairs(rows: Array, frame: Frame, diameter: float) -> PegPairs:
                         f"two pegs fit the part in more than {MOST_PEG_PAIRS:,} ways, too many for the "
                         "paper's algebra: use a larger pitch, or the other engine."
                     )
-                low, high = tail_bounds(one, found)
+                low, high = bound_first_peg(one, found)
                 whole.append((a, b, column, row))
                 tails.append(np.pad(found, ((0, most - len(found)), (0, 0))))
                 lows.append(low)
@@ -270,7 +270,7 @@ def are_parallel(rows: Array, a: IntArray, b: IntArray) -> BoolArray:
     return np.asarray((rows[a, 0] == 0.0) & (rows[b, 0] == 0.0) & (np.abs(turn) <= PARALLEL))
 
 
-def jaw_ranks(pairs: PegPairs, rows: Array) -> IntArray:
+def rank_peg_pairs(pairs: PegPairs, rows: Array) -> IntArray:
     """A rank (N,) of each peg pair, the same with its features exchanged, higher with more arcs.
 
     Half a turn of the toolkit exchanges the jaws and each pair's features. So it is enough to look at
@@ -287,11 +287,11 @@ def jaw_ranks(pairs: PegPairs, rows: Array) -> IntArray:
     return rank
 
 
-def type_one_systems(pairs: PegPairs, rows: Array, frame: Frame) -> Iterator[Systems]:
+def list_type_one_systems(pairs: PegPairs, rows: Array, frame: Frame) -> Iterator[Systems]:
     """Quartets with two pegs on each jaw, but those with parallel lines on one jaw (section 3.5.1)."""
     facings = Facings.of(rows, frame.toolkit.clamping)
     generic = np.flatnonzero(~are_parallel(rows, pairs.tail, pairs.head))
-    rank, sectors = jaw_ranks(pairs, rows), pairs.sectors
+    rank, sectors = rank_peg_pairs(pairs, rows), pairs.sectors
     resists = facings.resists[pairs.tail] | facings.resists[pairs.head]
     as_left = sectors & (facings.left[pairs.tail] | facings.left[pairs.head])
     as_right = sectors & (facings.right[pairs.tail] | facings.right[pairs.head])
@@ -328,7 +328,7 @@ def with_rows(pairs: PegPairs, one: int, two: IntArray, shared: BoolArray, frame
         yield Systems(feature, column, row, inside[keep])
 
 
-def type_two_systems(pairs: PegPairs, rows: Array, frame: Frame) -> Iterator[Systems]:
+def list_type_two_systems(pairs: PegPairs, rows: Array, frame: Frame) -> Iterator[Systems]:
     """Triples of left pegs, also on parallel lines; the fourth peg follows the pose (section 3.5).
 
     The third peg lies in the wedges from the first and from the second peg.

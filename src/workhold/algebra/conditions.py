@@ -29,9 +29,9 @@ from workhold.kernels.base.feature import (
     Y,
 )
 from workhold.kernels.contact import record, rules
-from workhold.statics.contact_matrix import outward_normals
+from workhold.statics.contact_matrix import compute_outward_normals
 
-__all__ = ["SimultaneousContacts", "fourth_pegs", "records_of", "row_points"]
+__all__ = ["SimultaneousContacts", "find_fourth_pegs", "make_records", "find_row_points"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -63,10 +63,10 @@ class SimultaneousContacts(ArrayTable):
     center: Complex
 
 
-def within_ends(rows: Array, center: Complex, margin: float, radius: Array) -> BoolArray:
+def are_within_ends(rows: Array, center: Complex, margin: float, radius: Array) -> BoolArray:
     """Whether contacts may be inside their features, ``margin`` mm from the ends (model: condition 1).
 
-    Not ``contact.features.end_distances``: the algebra is a second opinion and asks the rules by itself. The
+    Not ``contact.features.measure_end_distances``: the algebra is a second opinion and asks the rules by itself. The
     last two entries of rows (..., 12) are how far in mm a contact may lie past the low and the high end. Peg
     centres (...) may be off by ``radius`` mm.
     """
@@ -79,7 +79,9 @@ def within_ends(rows: Array, center: Complex, margin: float, radius: Array) -> B
     return np.asarray(whole | (np.minimum(*ends) >= margin - 2.0 * radius))
 
 
-def records_of(held: SimultaneousContacts, rows: Array, frame: Frame, margin: float, length: float) -> Array:
+def make_records(
+    held: SimultaneousContacts, rows: Array, frame: Frame, margin: float, length: float
+) -> Array:
     """What may be fixtures among parts touched by four pegs, as records (``kernels.contact.record``).
 
     Features (F, 12) are about the centre of the part with the slack of their ends. ``margin`` is the smallest
@@ -87,7 +89,7 @@ def records_of(held: SimultaneousContacts, rows: Array, frame: Frame, margin: fl
     part's size.
     """
     radius = 4.0 * length * held.reach
-    inside = within_ends(rows[held.feature], held.center, margin, radius[:, None])
+    inside = are_within_ends(rows[held.feature], held.center, margin, radius[:, None])
     held = held.take(np.asarray(inside.all(axis=1)))
     along = (held.center * np.exp(-1j * held.psi)[:, None]).real
     gap = along[:, held.standing :].min(axis=1, initial=np.inf) - along[:, : held.standing].max(
@@ -98,7 +100,7 @@ def records_of(held: SimultaneousContacts, rows: Array, frame: Frame, margin: fl
     points = np.stack([held.center.real, held.center.imag], axis=-1)
     held_rows = rows[held.feature][..., :SEGMENT_LENGTH]
     good = may_close(
-        held, held_rows, outward_normals(held_rows, points), points, length, frame.toolkit.clamping
+        held, held_rows, compute_outward_normals(held_rows, points), points, length, frame.toolkit.clamping
     )
     out = np.zeros((len(held.psi), record.RECORD_LENGTH))
     out[:, record.STANDING] = held.standing
@@ -156,7 +158,7 @@ def wrench_minors(points: Array, normals: Array, length: float) -> Array:
     return out
 
 
-def row_points(row: Array, psi: Array, height: Array) -> tuple[IntArray, Complex, Array]:
+def find_row_points(row: Array, psi: Array, height: Array) -> tuple[IntArray, Complex, Array]:
     """Where a feature's line or circle meets horizontals of the frame.
 
     Given are a feature row (8,), orientations of the pegs (N,) in radians, and heights (N,) along the frame's
@@ -179,16 +181,16 @@ def row_points(row: Array, psi: Array, height: Array) -> tuple[IntArray, Complex
     return np.concatenate([index, index]), np.concatenate(both), np.concatenate([slope, slope])
 
 
-def fourth_pegs(
+def find_fourth_pegs(
     triples: SimultaneousContacts, rows: Array, frame: Frame, margin: float, length: float
 ) -> SimultaneousContacts:
     """Type II: the fourth pegs on rows that overlap the transformed fourth features (section 3.5).
 
     Triples are of three left pegs each, ``center`` and the others of shape (N, 3). For the rest see
-    :func:`records_of`.
+    :func:`make_records`.
     """
     radius = 4.0 * length * triples.reach
-    inside = within_ends(rows[triples.feature], triples.center, margin, radius[:, None])
+    inside = are_within_ends(rows[triples.feature], triples.center, margin, radius[:, None])
     triples = triples.take(np.asarray(inside.all(axis=1)))
     turn = np.exp(-1j * triples.psi)
     base = (triples.center[:, 0] * turn).imag + frame.lattice.row_offset
@@ -202,7 +204,9 @@ def fourth_pegs(
         steps = np.arange(int((highest - lowest).max(initial=-1)) + 1)
         owner, step = np.nonzero(lowest[:, None] + steps <= highest[:, None])
         line = lowest[owner] + step
-        index, point, slope = row_points(row, triples.psi[owner], base[owner] + line * frame.lattice.pitch_y)
+        index, point, slope = find_row_points(
+            row, triples.psi[owner], base[owner] + line * frame.lattice.pitch_y
+        )
         chosen, line = triples.take(owner[index]), line[index]
         found.append(
             SimultaneousContacts(

@@ -18,14 +18,20 @@ import numpy as np
 from attrs import define, evolve, field
 from numpy.typing import NDArray
 
-from workhold.algebra.candidates import Systems, are_parallel, peg_pairs, type_one_systems, type_two_systems
-from workhold.algebra.conditions import SimultaneousContacts, fourth_pegs, records_of
-from workhold.algebra.poses import orientations, peg_centers, poses_at
+from workhold.algebra.candidates import (
+    Systems,
+    are_parallel,
+    list_peg_pairs,
+    list_type_one_systems,
+    list_type_two_systems,
+)
+from workhold.algebra.conditions import SimultaneousContacts, find_fourth_pegs, make_records
+from workhold.algebra.poses import find_poses_at, locate_peg_centers, orientations
 from workhold.algebra.resultants import ContactSystems
 from workhold.algebra.sliding_pairs import (
     alike,
-    alike_orientations,
-    sliding_pairs_of,
+    find_level_orientations,
+    find_sliding_pairs,
     three_and_one_sliding_pairs,
     two_and_two_sliding_pairs,
 )
@@ -38,13 +44,13 @@ from workhold.model.notes import MoreSystems, Note, UndecidedSystem
 from workhold.model.query import Query
 from workhold.model.result import Result
 
-__all__ = ["answer_by_algebra", "undecided_notes"]
+__all__ = ["find_fixtures_by_algebra", "write_undecided_notes"]
 
 # Systems named; the others are counted.
 MOST_NAMED = 20
 
 
-def undecided_notes(undecided: Sequence[Systems], faces: NDArray[np.int64]) -> Iterator[Note]:
+def write_undecided_notes(undecided: Sequence[Systems], faces: NDArray[np.int64]) -> Iterator[Note]:
     """A note for each undecided system; ``faces`` has the number of each feature's face."""
     named = [
         UndecidedSystem(*(tuple(numbers.tolist()) for numbers in (faces[feature], column, row)))
@@ -66,8 +72,8 @@ BATCH = 4096
 GENERATORS: dict[
     tuple[int, ...], tuple[Callable[..., Iterator[Systems]], Callable[..., list[SimultaneousContacts]]]
 ] = {
-    (2, 2): (type_one_systems, two_and_two_sliding_pairs),
-    (3, 1): (type_two_systems, three_and_one_sliding_pairs),
+    (2, 2): (list_type_one_systems, two_and_two_sliding_pairs),
+    (3, 1): (list_type_two_systems, three_and_one_sliding_pairs),
 }
 
 
@@ -113,13 +119,13 @@ class ResultantSolver:
         """Simultaneous contacts of systems of one case (section 4): three or four pegs."""
         contacts = ContactSystems(self.scaled[systems.feature], self.offsets(systems) / self.diameter)
         owner, psi = self.orientations(contacts, case, systems)
-        poses = poses_at(contacts, case, owner, psi)
+        poses = find_poses_at(contacts, case, owner, psi)
         self.counts["systems"] += len(systems)
         self.counts["orientations"] += len(psi)
         chosen = systems.take(poses.owner)
         # Systems of three pegs are those of the standing pegs alone.
         standing = 2 if systems.feature.shape[1] == 4 else 3
-        center = peg_centers(contacts, poses) * self.diameter
+        center = locate_peg_centers(contacts, poses) * self.diameter
         return SimultaneousContacts(
             standing, chosen.feature, chosen.column, chosen.row, poses.psi, poses.reach, center
         )
@@ -129,19 +135,19 @@ class ResultantSolver:
         special = alike(contacts) if contacts.rows.shape[1] == 4 else np.zeros(len(systems), np.bool_)
         plain, other = np.flatnonzero(~special), np.flatnonzero(special)
         owner, psi, undecided = orientations(contacts.take(plain), case, systems.sectors[plain])
-        mirrored, level = alike_orientations(contacts.take(other))
+        mirrored, level = find_level_orientations(contacts.take(other))
         self.undecided.append(systems.take(plain[undecided]))
         return np.concatenate([plain[owner], other[mirrored]]), np.concatenate([psi, level])
 
     def fixtures(self, held: SimultaneousContacts) -> Array:
         """Records of the fixtures among simultaneous contacts; three pegs are completed by a fourth first."""
         if held.feature.shape[1] == 3:
-            held = fourth_pegs(held, self.rows, self.frame, self.margin, self.diameter / 2)
+            held = find_fourth_pegs(held, self.rows, self.frame, self.margin, self.diameter / 2)
         self.counts["simultaneous_contacts"] += len(held.psi)
-        return records_of(held, self.rows, self.frame, self.margin, self.diameter / 2)
+        return make_records(held, self.rows, self.frame, self.margin, self.diameter / 2)
 
 
-def arcs_first(systems: Systems, rows: Array) -> Systems:
+def order_arcs_first(systems: Systems, rows: Array) -> Systems:
     """Pegs of each jaw with arcs before lines; the first peg is the characteristic point."""
     line = (rows[systems.feature, 0] == 0.0).astype(np.int64)
     jaw = (np.arange(line.shape[1]) >= 2) * (line.shape[1] == 4)
@@ -169,10 +175,10 @@ def generic(systems: Systems, rows: Array) -> Systems:
     if systems.feature.shape[1] == 3:
         for k, m in ((0, 1), (0, 2), (1, 2)):
             keep &= ~are_parallel(rows, systems.feature[:, k], systems.feature[:, m])
-    return arcs_first(systems.take(keep), rows)
+    return order_arcs_first(systems.take(keep), rows)
 
 
-def by_case(stream: Iterable[Systems], rows: Array) -> Iterator[tuple[Systems, Case]]:
+def batch_by_case(stream: Iterable[Systems], rows: Array) -> Iterator[tuple[Systems, Case]]:
     """Systems gathered into batches of one case."""
     waiting: dict[Case, list[Systems]] = {}
     for systems in stream:
@@ -202,18 +208,18 @@ def refuse_unlike(frame: Frame) -> None:
 def stages(solver: ResultantSolver, arrangements: Sequence[str]) -> Iterator[Array]:
     """Records of fixtures, a batch at a time."""
     rows, frame = solver.rows, solver.frame
-    pairs = peg_pairs(rows[:, :SEGMENT_LENGTH], frame, solver.diameter)
-    sliding_pairs = sliding_pairs_of(pairs, solver.scaled, frame, solver.diameter)
+    pairs = list_peg_pairs(rows[:, :SEGMENT_LENGTH], frame, solver.diameter)
+    sliding_pairs = find_sliding_pairs(pairs, solver.scaled, frame, solver.diameter)
     for name in arrangements:
         systems, sliding = GENERATORS[frame.toolkit.arrangement(name).pegs]
         held = sliding(pairs, sliding_pairs, rows, frame)
         if held:
             yield solver.fixtures(SimultaneousContacts.joined(held))
-        for batch, case in by_case(systems(pairs, rows[:, :SEGMENT_LENGTH], frame), rows):
+        for batch, case in batch_by_case(systems(pairs, rows[:, :SEGMENT_LENGTH], frame), rows):
             yield solver.fixtures(solver.solve(batch, case))
 
 
-def answer_by_algebra(
+def find_fixtures_by_algebra(
     query: Query,
     *,
     progress: Progress | None = None,
@@ -245,7 +251,7 @@ def answer_by_algebra(
     ways = query.toolkit.ways
     if len(ways) > 1:
         alone = [evolve(query, toolkit=way) for way in ways]
-        part = partial(answer_by_algebra, progress=progress, cancel=cancel, is_part=True)
+        part = partial(find_fixtures_by_algebra, progress=progress, cancel=cancel, is_part=True)
         return joined_ways(list(map(part, alone)), query)
     problem = Problem.of(query)
     refuse_unlike(problem.frame)
@@ -265,4 +271,4 @@ def answer_by_algebra(
         "undecided": sum(map(len, solver.undecided)),
     }
     result = listed_result(problem, records, Work(complete, statistics), cancel=cancel, is_part=is_part)
-    return evolve(result, notes=(*result.notes, *undecided_notes(solver.undecided, problem.faces)))
+    return evolve(result, notes=(*result.notes, *write_undecided_notes(solver.undecided, problem.faces)))

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from workhold.algebra.resultants import ContactSystems
 from workhold.conventions import REFINED
 
-__all__ = ["Laurent", "exact_resultant", "exact_roots"]
+__all__ = ["Laurent", "compute_exact_resultant", "find_exact_roots"]
 
 # Bits; roots are spread by half of them.
 PRECISIONS = (512, 1024)
@@ -199,7 +199,7 @@ def with_square(ring: LaurentTriple, double: list[Laurent]) -> Laurent:
     return total
 
 
-def exact_resultant(
+def compute_exact_resultant(
     contacts: ContactSystems, case: tuple[int, int], free_of_separation: bool = False
 ) -> acb_poly:
     """The resultant of one system that has an arc, times a power of z, at the precision of ``flint.ctx``."""
@@ -238,13 +238,13 @@ def spread(polynomial: acb_poly, precision: int) -> acb_poly:
     )
 
 
-def exact_roots(
+def find_exact_roots(
     contacts: ContactSystems, case: tuple[int, int], free_of_separation: bool = False
 ) -> NDArray[np.complex128] | None:
     """Roots z of the resultant of one system that has an arc, None if it vanishes identically."""
     for bits in PRECISIONS:
         with ctx.workprec(bits), suppress(ValueError):
-            polynomial = spread(exact_resultant(contacts, case, free_of_separation), bits)
+            polynomial = spread(compute_exact_resultant(contacts, case, free_of_separation), bits)
             if polynomial.degree() < 1:
                 return None
             return np.array([complex(root) for root in polynomial.roots(REFINED)], np.complex128)

@@ -20,17 +20,17 @@ from attrs import define
 from flint import acb, acb_poly, ctx
 from numpy.typing import NDArray
 
-from workhold.algebra.candidates import CENTERS, HALF_SECTOR, sector_of
-from workhold.algebra.exact import exact_roots
+from workhold.algebra.candidates import CENTERS, HALF_SECTOR, find_sector
+from workhold.algebra.exact import find_exact_roots
 from workhold.algebra.resultants import (
     ArrayTable,
     Complex,
     ContactSystems,
     TrigPolynomial,
-    circle_constraint,
     coefficients,
+    compute_circle_constraint,
+    compute_line_constraint,
     have_no_separation,
-    line_constraint,
     pair_constraint,
 )
 from workhold.conventions import (
@@ -54,10 +54,10 @@ from workhold.conventions import (
 
 __all__ = [
     "Poses",
-    "hard_roots",
+    "find_hard_roots",
     "orientations",
-    "peg_centers",
-    "poses_at",
+    "locate_peg_centers",
+    "find_poses_at",
 ]
 
 Array = NDArray[np.float64]
@@ -67,7 +67,7 @@ IntArray = NDArray[np.int64]
 PRECISIONS = (64, 128, 256, 512)
 
 
-def sectors_with_roots(values: Complex, size: Array) -> tuple[BoolArray, BoolArray]:
+def find_sectors_with_roots(values: Complex, size: Array) -> tuple[BoolArray, BoolArray]:
     r"""Sectors of orientations in which roots cannot be excluded, and those where rounding may hide them.
 
     By Taylor's theorem \|f(c + h) - f(c) - h f'(c)\| <= h^2 / 2 max \|f''\|, and max \|f''\| is at most the
@@ -90,7 +90,7 @@ def sectors_with_roots(values: Complex, size: Array) -> tuple[BoolArray, BoolArr
     return possible, possible & crowded
 
 
-def ball_roots(values: Complex) -> Complex:
+def isolate_roots_in_balls(values: Complex) -> Complex:
     """All roots of a polynomial, coefficients from the constant up, isolated in ball arithmetic."""
     polynomial = acb_poly([acb(c.real, c.imag) for c in values])
     for bits in PRECISIONS:
@@ -100,7 +100,7 @@ def ball_roots(values: Complex) -> Complex:
     return np.asarray(np.roots(values[::-1]), np.complex128)
 
 
-def companion_roots(values: Complex) -> Complex:
+def find_companion_roots(values: Complex) -> Complex:
     """Roots (N, 2 d) of N polynomials with well-conditioned outermost coefficients, (N, 2 d + 1)."""
     degree = values.shape[1] - 1
     matrix = np.zeros((len(values), degree, degree), np.complex128)
@@ -109,19 +109,19 @@ def companion_roots(values: Complex) -> Complex:
     return np.asarray(np.linalg.eigvals(matrix))
 
 
-def vanishing_ends(values: Complex, largest: Array) -> IntArray:
+def count_vanishing_ends(values: Complex, largest: Array) -> IntArray:
     """(N,) numbers of coefficients that vanish at either end of polynomials (N, 2 d + 1)."""
     bound = values.shape[1] // 2
     size = np.maximum(np.abs(values), np.abs(values[:, ::-1]))[:, :bound]
     return np.asarray((np.maximum.accumulate(size, axis=1) <= VANISHING * largest[:, None]).sum(axis=1))
 
 
-def hard_roots(contacts: ContactSystems, case: tuple[int, int], values: Complex) -> Complex | None:
+def find_hard_roots(contacts: ContactSystems, case: tuple[int, int], values: Complex) -> Complex | None:
     """Roots of one system's resultant (a set of one) in ball arithmetic; None if they are not isolated."""
     if case[0] == 0:
         kept = np.flatnonzero(np.abs(values) > VANISHING * np.abs(values).max())
-        return ball_roots(values[kept[0] : kept[-1] + 1])
-    return exact_roots(contacts, case, case[1] == 2 and bool(have_no_separation(contacts)[0]))
+        return isolate_roots_in_balls(values[kept[0] : kept[-1] + 1])
+    return find_exact_roots(contacts, case, case[1] == 2 and bool(have_no_separation(contacts)[0]))
 
 
 def nearly_sliding(contacts: ContactSystems) -> BoolArray:
@@ -144,9 +144,9 @@ def orientations(
     values, size = coefficients(contacts, case)
     largest = np.abs(values).max(axis=1)
     vanishing = largest <= IDENTICALLY_ZERO * size
-    possible, crowded = sectors_with_roots(values, size)
+    possible, crowded = find_sectors_with_roots(values, size)
     index = np.flatnonzero(~vanishing & (sectors & possible).any(axis=1))
-    trimmed = vanishing_ends(values[index], largest[index])
+    trimmed = count_vanishing_ends(values[index], largest[index])
     outermost = np.abs(values[index, values.shape[1] - 1 - trimmed])
     flat = contacts.rows[index][..., 6].max(axis=1, initial=0.0) > NEARLY_STRAIGHT
     hard = (outermost <= ILL_CONDITIONED * largest[index]) | (sectors & crowded)[index].any(axis=1) | flat
@@ -154,14 +154,14 @@ def orientations(
     owners, found = [], []
     for cut in np.unique(trimmed[~hard]):
         steady = index[~hard & (trimmed == cut)]
-        roots = companion_roots(values[steady, cut : values.shape[1] - cut])
+        roots = find_companion_roots(values[steady, cut : values.shape[1] - cut])
         owners.append(np.repeat(steady, roots.shape[1]))
         found.append(roots.ravel())
     undecided: list[int] = []
     for k in [*np.flatnonzero(vanishing), *index[hard]]:
         # Without arcs there is no exact form: what vanishes in double precision is left.
         unknown = vanishing[k] and case[0] == 0
-        several = None if unknown else hard_roots(contacts.take(np.array([k])), case, values[k])
+        several = None if unknown else find_hard_roots(contacts.take(np.array([k])), case, values[k])
         if several is None:
             undecided.append(int(k))
             continue
@@ -174,7 +174,7 @@ def orientations(
     owner, psi = owner[keep], np.mod(np.angle(root[keep]), tau)
     # A root may have been moved across the edge of a sector.
     wide = sectors | np.roll(sectors, 1, axis=1) | np.roll(sectors, -1, axis=1)
-    inside = wide[owner, sector_of(psi)]
+    inside = wide[owner, find_sector(psi)]
     return owner[inside], psi[inside], np.array(undecided, np.int64)
 
 
@@ -204,7 +204,7 @@ class Poses(ArrayTable):
     reach: Array
 
 
-def peg_centers(contacts: ContactSystems, poses: Poses) -> Complex:
+def locate_peg_centers(contacts: ContactSystems, poses: Poses) -> Complex:
     """Peg centres (N, K) in the workpiece's frame."""
     moving = np.arange(contacts.rows.shape[1]) >= 2 if contacts.rows.shape[1] == 4 else np.zeros(3)
     reach = contacts.point[poses.owner] + poses.separation[:, None] * moving
@@ -213,7 +213,7 @@ def peg_centers(contacts: ContactSystems, poses: Poses) -> Complex:
 
 def distances(contacts: ContactSystems, poses: Poses) -> tuple[Array, Complex, Complex]:
     """Signed distances (N, K) of pegs from their lines or circles, directions across, and peg centres."""
-    center = peg_centers(contacts, poses)
+    center = locate_peg_centers(contacts, poses)
     off = center - contacts.middle[poses.owner]
     straight = contacts.rows[poses.owner][..., 0] == 0.0
     size = np.abs(off)
@@ -229,7 +229,7 @@ def refined(contacts: ContactSystems, poses: Poses) -> Poses:
     """
     pegs = contacts.rows.shape[1]
     for _ in range(ROUNDS):
-        off, matrix = linearized(contacts, poses)
+        off, matrix = linearize_contacts(contacts, poses)
         regular = np.abs(np.linalg.det(matrix)) > SINGULAR
         poses, off, matrix = poses.take(regular), off[regular], matrix[regular]
         step = np.linalg.solve(matrix, off[..., None])[..., 0]
@@ -238,13 +238,13 @@ def refined(contacts: ContactSystems, poses: Poses) -> Poses:
         place = poses.place - step[:, 1] - 1j * step[:, 2]
         reach = LAST_STEPS * np.abs(step).max(axis=1, initial=0.0) + POSE_REACH
         poses = Poses(poses.owner, poses.psi - step[:, 0], place, separation, reach)
-    off, matrix = linearized(contacts, poses)
+    off, matrix = linearize_contacts(contacts, poses)
     return poses.take(
         (np.abs(off).max(axis=1, initial=0.0) <= MET) & (np.abs(np.linalg.det(matrix)) > DOUBLE)
     )
 
 
-def linearized(contacts: ContactSystems, poses: Poses) -> tuple[Array, Array]:
+def linearize_contacts(contacts: ContactSystems, poses: Poses) -> tuple[Array, Array]:
     """Distances (N, K) of pegs from lines or circles; their Jacobian over psi, place and separation."""
     pegs = contacts.rows.shape[1]
     off, across, center = distances(contacts, poses)
@@ -269,18 +269,18 @@ def separations(contacts: ContactSystems, case: tuple[int, int], psi: Array, w: 
         return [np.zeros(w.shape)]
     if case[1] == 0:
         (one, rest_one), (two, rest_two) = (
-            line_constraint(contacts, 2, psi),
-            line_constraint(contacts, 3, psi),
+            compute_line_constraint(contacts, 2, psi),
+            compute_line_constraint(contacts, 3, psi),
         )
         steep = np.abs(one) >= np.abs(two)
         factor = np.where(steep, one, two)
         return [-np.where(steep, rest_one.at(w), rest_two.at(w)) / np.where(factor == 0.0, 1.0, factor)]
-    linear, constant = (ring.at(w) for ring in circle_constraint(contacts, 2, psi))
+    linear, constant = (ring.at(w) for ring in compute_circle_constraint(contacts, 2, psi))
     root = np.sqrt(np.maximum(linear**2 / 4.0 - constant, 0.0))
     return [-linear / 2.0 + root, -linear / 2.0 - root]
 
 
-def straight_poses(contacts: ContactSystems, owner: IntArray, psi: Array) -> Poses:
+def solve_straight_poses(contacts: ContactSystems, owner: IntArray, psi: Array) -> Poses:
     """Poses on lines alone: linear equations for place and separation at an orientation."""
     pegs = contacts.rows.shape[1]
     normal = contacts.normal[owner]
@@ -295,7 +295,7 @@ def straight_poses(contacts: ContactSystems, owner: IntArray, psi: Array) -> Pos
     return Poses(owner, psi, solution[:, 0] + 1j * solution[:, 1], separation, np.zeros(len(owner)))
 
 
-def poses_at(contacts: ContactSystems, case: tuple[int, int], owner: IntArray, psi: Array) -> Poses:
+def find_poses_at(contacts: ContactSystems, case: tuple[int, int], owner: IntArray, psi: Array) -> Poses:
     """All poses of systems at, or very near to, orientations.
 
     The systems are of one case, with lengths in parts of the part's size. ``owner`` (M,) says which system,
@@ -304,7 +304,7 @@ def poses_at(contacts: ContactSystems, case: tuple[int, int], owner: IntArray, p
     if len(owner) == 0:
         return Poses(owner, psi, np.zeros(0, np.complex128), np.zeros(0), np.zeros(0))
     if case[0] == 0:
-        return refined(contacts, straight_poses(contacts, owner, psi))
+        return refined(contacts, solve_straight_poses(contacts, owner, psi))
     chosen, column = contacts.take(owner), psi[:, None]
     found = []
     for w in angles_of(pair_constraint(chosen, 1, column)):

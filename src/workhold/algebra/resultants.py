@@ -51,10 +51,10 @@ __all__ = [
     "ContactSystems",
     "ArrayTable",
     "TrigPolynomial",
-    "circle_constraint",
+    "compute_circle_constraint",
     "coefficients",
     "have_no_separation",
-    "line_constraint",
+    "compute_line_constraint",
     "pair_constraint",
     "resultant",
 ]
@@ -163,7 +163,7 @@ class ContactSystems(ArrayTable):
         return length, np.where(self.sliding_pairs(k, m)[:, None], along, plain)
 
 
-def line_constraint(contacts: ContactSystems, k: int, psi: Array) -> tuple[Array, TrigPolynomial]:
+def compute_line_constraint(contacts: ContactSystems, k: int, psi: Array) -> tuple[Array, TrigPolynomial]:
     """h (equation 2) or h_sigma (equation 4) of peg k on a line, at orientations (N, M) in radians.
 
     The factor of the separation comes first, then the rest.
@@ -176,7 +176,9 @@ def line_constraint(contacts: ContactSystems, k: int, psi: Array) -> tuple[Array
     )
 
 
-def circle_constraint(contacts: ContactSystems, k: int, psi: Array) -> tuple[TrigPolynomial, TrigPolynomial]:
+def compute_circle_constraint(
+    contacts: ContactSystems, k: int, psi: Array
+) -> tuple[TrigPolynomial, TrigPolynomial]:
     """g (equation 3) or g_sigma (5) of peg k on a circle: factors of the separation (its square has 1)."""
     z, radius = np.exp(1j * psi), contacts.radius[:, 0, None]
     start = (contacts.middle[:, 0] - contacts.middle[:, k])[:, None] + z * contacts.point[:, k, None]
@@ -190,7 +192,7 @@ def circle_constraint(contacts: ContactSystems, k: int, psi: Array) -> tuple[Tri
 def pair_constraint(contacts: ContactSystems, k: int, psi: Array) -> TrigPolynomial:
     """h or g of peg k of the first peg's jaw, N features of one kind; z - z0 is divided out of g."""
     if contacts.rows[0, k, 0] == 0.0:
-        return line_constraint(contacts, k, psi)[1]
+        return compute_line_constraint(contacts, k, psi)[1]
     length, apart = contacts.centers_apart(0, k, psi)
     sliding_pairs = contacts.sliding_pairs(0, k)[:, None]
     radius, other = contacts.radius[:, 0, None], contacts.radius[:, k, None]
@@ -200,7 +202,7 @@ def pair_constraint(contacts: ContactSystems, k: int, psi: Array) -> TrigPolynom
     )
 
 
-def circle_difference(contacts: ContactSystems, k: int, m: int, psi: Array) -> tuple[Array, TrigPolynomial]:
+def subtract_circles(contacts: ContactSystems, k: int, m: int, psi: Array) -> tuple[Array, TrigPolynomial]:
     """g_sigma of peg m less that of peg k, linear in the separation like h_sigma: its square cancels.
 
     The factor of the separation comes first, then the rest, with z - z0 divided out where the arcs slide.
@@ -235,7 +237,7 @@ TRUE_DEGREES = PAPER_DEGREES | {(1, 0): 8, (2, 0): 10, (1, 1): 14, (2, 1): 16, (
 GRID_START = 0.1234
 
 
-def resultant_of_rings(one: TrigPolynomial, two: TrigPolynomial) -> tuple[Array, Array]:
+def compute_resultant_of_rings(one: TrigPolynomial, two: TrigPolynomial) -> tuple[Array, Array]:
     """Resultant in w of two trigonometric polynomials, and the sum of the sizes of its terms.
 
     For a w + b + a* / w and c w + d + c* / w it is \\|a d - c b\\|^2 - 4 Im(a c*)^2.
@@ -305,7 +307,7 @@ def resultant_with_square(
     return value.real, size
 
 
-def straight_line_form(contacts: ContactSystems, psi: Array) -> tuple[Array, Array]:
+def compute_straight_line_form(contacts: ContactSystems, psi: Array) -> tuple[Array, Array]:
     """The determinant of the contacts' equations, linear in the place and the separation.
 
     Rows (normal, factor of the separation on the right jaw, rest); three rows without it for Type II.
@@ -329,26 +331,28 @@ def resultant(contacts: ContactSystems, case: tuple[int, int], psi: Array) -> tu
     """
     left, right = case
     if left == 0:
-        return straight_line_form(contacts, psi)
+        return compute_straight_line_form(contacts, psi)
     second = pair_constraint(contacts, 1, psi)
     if right == -1:
         return triple_resultant(contacts, second, psi)
     if right == 0:
-        return resultant_of_rings(second, lines_without_separation(contacts, psi))
-    factor, rest = circle_difference(contacts, 2, 3, psi) if right == 2 else line_constraint(contacts, 3, psi)
+        return compute_resultant_of_rings(second, lines_without_separation(contacts, psi))
+    factor, rest = (
+        subtract_circles(contacts, 2, 3, psi) if right == 2 else compute_line_constraint(contacts, 3, psi)
+    )
     value, size = resultant_with_square(
-        second, without_separation(factor, rest, *circle_constraint(contacts, 2, psi))
+        second, without_separation(factor, rest, *compute_circle_constraint(contacts, 2, psi))
     )
     free = have_no_separation(contacts)[:, None] & (right == 2)
     # Where the separation is not in the difference at all, the difference alone takes the place of the
     # resultant in it.
-    plain_value, plain_size = resultant_of_rings(second, rest)
+    plain_value, plain_size = compute_resultant_of_rings(second, rest)
     return np.where(free, plain_value, value), np.where(free, plain_size, size)
 
 
 def triple_resultant(contacts: ContactSystems, second: TrigPolynomial, psi: Array) -> tuple[Array, Array]:
     """Resultant of three left pegs; where the second and third arc slide, that factor is divided out."""
-    value, size = resultant_of_rings(second, pair_constraint(contacts, 2, psi))
+    value, size = compute_resultant_of_rings(second, pair_constraint(contacts, 2, psi))
     sliding_pairs = contacts.sliding_pairs(1, 2)[:, None]
     length = np.where(sliding_pairs, contacts.centers_apart(1, 2, psi)[0], 1.0)
     return value / length**2, size / length**2
@@ -356,7 +360,10 @@ def triple_resultant(contacts: ContactSystems, second: TrigPolynomial, psi: Arra
 
 def lines_without_separation(contacts: ContactSystems, psi: Array) -> TrigPolynomial:
     """h_sigma of pegs 3 and 4 with the separation eliminated."""
-    (one, rest_one), (two, rest_two) = line_constraint(contacts, 2, psi), line_constraint(contacts, 3, psi)
+    (one, rest_one), (two, rest_two) = (
+        compute_line_constraint(contacts, 2, psi),
+        compute_line_constraint(contacts, 3, psi),
+    )
     return TrigPolynomial(
         one * rest_two.middle - two * rest_one.middle, one * rest_two.first - two * rest_one.first
     )

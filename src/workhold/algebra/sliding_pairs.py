@@ -24,8 +24,8 @@ import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
-from workhold.algebra.candidates import PegPairs, are_parallel, sector_of
-from workhold.algebra.conditions import STEEPEST, SimultaneousContacts, row_points
+from workhold.algebra.candidates import PegPairs, are_parallel, find_sector
+from workhold.algebra.conditions import STEEPEST, SimultaneousContacts, find_row_points
 from workhold.algebra.resultants import Complex, ContactSystems
 from workhold.contact.problem import Frame
 from workhold.conventions import (
@@ -42,9 +42,9 @@ from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, R
 __all__ = [
     "SlidingPair",
     "alike",
-    "alike_orientations",
+    "find_level_orientations",
     "meets",
-    "sliding_pairs_of",
+    "find_sliding_pairs",
     "three_and_one_sliding_pairs",
     "two_and_two_sliding_pairs",
 ]
@@ -73,12 +73,12 @@ class SlidingPair:
     error: float
 
 
-def step_of(pairs: PegPairs, k: int, frame: Frame) -> complex:
+def compute_pair_step(pairs: PegPairs, k: int, frame: Frame) -> complex:
     """Step between the pegs of a pair as a complex number in mm."""
     return complex(pairs.column[k] * frame.lattice.pitch_x, pairs.row[k] * frame.lattice.pitch_y)
 
 
-def sliding_pairs_of(pairs: PegPairs, scaled: Array, frame: Frame, diameter: float) -> list[SlidingPair]:
+def find_sliding_pairs(pairs: PegPairs, scaled: Array, frame: Frame, diameter: float) -> list[SlidingPair]:
     """All peg pairs that fix the orientation, once for each orientation.
 
     Features (F, 10) have lengths in parts of the part's size, which is ``diameter`` in mm.
@@ -107,7 +107,7 @@ def reach_of(sliding_pair: SlidingPair, row: Array, point: Complex, step: comple
 
     Contacts that miss by e turn the pegs by e over the distance between their two lines of action. The step
     leads from the first peg to the second, turned by the orientation, in mm. ``slope`` is how much farther
-    the contacts move than the pegs turn, see :func:`row_points`.
+    the contacts move than the pegs turn, see :func:`find_row_points`.
     """
     normal = (
         row[AXIS_Y] - 1j * row[AXIS_X] if row[IS_ARC] == 0.0 else (point - row[X] - 1j * row[Y]) / row[RADIUS]
@@ -173,12 +173,12 @@ def two_and_two_sliding_pairs(
     for sliding_pair in sliding_pairs:
         i, z = sliding_pair.pair, complex(np.exp(1j * sliding_pair.psi))
         a, b = int(pairs.tail[i]), int(pairs.head[i])
-        own = z * step_of(pairs, i, frame)
-        sector = int(sector_of(np.array(sliding_pair.psi)))
+        own = z * compute_pair_step(pairs, i, frame)
+        sector = int(find_sector(np.array(sliding_pair.psi)))
         near = sectors[:, sector] | sectors[:, sector - 1] | sectors[:, (sector + 1) % sectors.shape[1]]
         for j in np.flatnonzero(near):
             c, d = int(pairs.tail[j]), int(pairs.head[j])
-            step = z * step_of(pairs, int(j), frame)
+            step = z * compute_pair_step(pairs, int(j), frame)
             for point, steep in meets(rows[c], rows[d], step):
                 line, tail, slope = stopped(rows[a], sliding_pair.psi, (point / z).imag, frame)
                 if len(line) == 0:
@@ -212,7 +212,7 @@ def stopped(row: Array, psi: float, height: float, frame: Frame) -> tuple[IntArr
     first = ceil((height - frame.lattice.row_offset - middle - reach) / pitch - ROW_SLACK)
     last = floor((height - frame.lattice.row_offset - middle + reach) / pitch + ROW_SLACK)
     line = np.arange(first, last + 1)
-    index, point, slope = row_points(
+    index, point, slope = find_row_points(
         row, np.full(len(line), psi), height - frame.lattice.row_offset - line * pitch
     )
     return line[index], point, slope
@@ -226,8 +226,8 @@ def three_and_one_sliding_pairs(
     most = frame.standing.column_count - 1
     for sliding_pair in sliding_pairs:
         i, z = sliding_pair.pair, complex(np.exp(1j * sliding_pair.psi))
-        a, b, own = int(pairs.tail[i]), int(pairs.head[i]), z * step_of(pairs, i, frame)
-        for c, column, row in third_pegs(pairs, a):
+        a, b, own = int(pairs.tail[i]), int(pairs.head[i]), z * compute_pair_step(pairs, i, frame)
+        for c, column, row in list_third_pegs(pairs, a):
             spread = (0, int(pairs.column[i]), column)
             if (column, row) in ((0, 0), (int(pairs.column[i]), int(pairs.row[i]))) or max(spread) - min(
                 spread
@@ -250,7 +250,7 @@ def three_and_one_sliding_pairs(
     return found
 
 
-def third_pegs(pairs: PegPairs, tail: int) -> list[tuple[int, int, int]]:
+def list_third_pegs(pairs: PegPairs, tail: int) -> list[tuple[int, int, int]]:
     """Features and steps (columns, rows) of pegs that can stand beside a peg, before or after it."""
     after = [
         (int(h), int(k), int(m))
@@ -281,7 +281,7 @@ def alike(contacts: ContactSystems) -> NDArray[np.bool_]:
     return np.asarray(same)
 
 
-def alike_orientations(contacts: ContactSystems) -> tuple[IntArray, Array]:
+def find_level_orientations(contacts: ContactSystems) -> tuple[IntArray, Array]:
     """Orientations at which the two places of such a pair are level: (indices of systems, psi in radians).
 
     The places are mirror images in the line (second peg) or in the line through the circles' centres (pegs

@@ -14,7 +14,7 @@ from math import tau
 import numpy as np
 from attrs import frozen
 
-from workhold.algebra.poses import Poses, hard_roots, poses_at
+from workhold.algebra.poses import Poses, find_hard_roots, find_poses_at
 from workhold.algebra.resultants import PAPER_DEGREES, TRUE_DEGREES, ContactSystems, coefficients
 from workhold.kernels.base.feature import (
     AXIS_X,
@@ -28,7 +28,7 @@ from workhold.kernels.base.feature import (
     Y,
 )
 
-__all__ = ["Row", "random_contacts", "table_two"]
+__all__ = ["Row", "make_random_contacts", "table_two"]
 
 # Spans of coefficients, and what of the largest counts as nothing.
 SPAN = 12
@@ -68,7 +68,7 @@ class Row:
     poses: int
 
 
-def random_contacts(case: tuple[int, int], count: int, seed: int) -> ContactSystems:
+def make_random_contacts(case: tuple[int, int], count: int, seed: int) -> ContactSystems:
     """Random systems of a case (see ``resultants.resultant``), arcs first on each jaw, a real pose each."""
     random = np.random.default_rng(seed)
     left, right = case
@@ -92,7 +92,7 @@ def random_contacts(case: tuple[int, int], count: int, seed: int) -> ContactSyst
     return ContactSystems(rows, point)
 
 
-def distinct_poses(poses: Poses) -> int:
+def count_distinct_poses(poses: Poses) -> int:
     """How many poses there are, those counted once that several starting values lead to."""
     place = [poses.place.real, poses.place.imag, poses.separation]
     values = np.stack([poses.owner, np.cos(poses.psi), np.sin(poses.psi), *place], axis=1)
@@ -104,11 +104,11 @@ def table_two(count: int = 20, seed: int = 1996) -> list[Row]:
     """Degrees and numbers of roots for every row of the table, from ``count`` random systems each."""
     rows = []
     for case in PAPER_DEGREES:
-        contacts = random_contacts(case, count, seed)
+        contacts = make_random_contacts(case, count, seed)
         wide = np.abs(coefficients(contacts, case, SPAN)[0])
         filled = (wide > NOTHING * wide.max(axis=1, keepdims=True)).any(axis=0)
         values = coefficients(contacts, case)[0]
-        found = [hard_roots(contacts.take(np.array([k])), case, values[k]) for k in range(count)]
+        found = [find_hard_roots(contacts.take(np.array([k])), case, values[k]) for k in range(count)]
         roots = [np.zeros(0, np.complex128) if several is None else several for several in found]
         root, owner = np.concatenate(roots), np.repeat(np.arange(count), [len(several) for several in roots])
         real = np.abs(np.abs(root) - 1.0) <= REAL
@@ -123,7 +123,7 @@ def table_two(count: int = 20, seed: int = 1996) -> list[Row]:
                 systems=count,
                 roots=len(root),
                 real=int(real.sum()),
-                poses=distinct_poses(poses_at(contacts, case, owner[real], np.angle(root[real]))),
+                poses=count_distinct_poses(find_poses_at(contacts, case, owner[real], np.angle(root[real]))),
             )
         )
     return rows

@@ -30,7 +30,7 @@ from workhold.files.atomic import plain_errors, write_bytes
 from workhold.files.budget import FileLimits
 from workhold.files.result.writer import outlines_entry, solid_entry, workpiece_entry
 from workhold.files.text import read_limited
-from workhold.model.own_outlines import with_own_outlines
+from workhold.model.own_outlines import add_own_outlines
 from workhold.model.solid import SolidOutline
 from workhold.model.workpiece import Workpiece
 
@@ -108,7 +108,7 @@ def workpiece_of(record: dict[str, Any]) -> Workpiece:
     workpiece = Workpiece.from_loops(PART_NAME, record["loops"], None, record["departure"], solid)
     if "outlines" not in record:
         return workpiece
-    return with_own_outlines(workpiece, record["outlines"], record["heights"])
+    return add_own_outlines(workpiece, record["outlines"], record["heights"])
 
 
 # What the file of a checksum ends in, in place of the record's own ending.

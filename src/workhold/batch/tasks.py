@@ -172,10 +172,10 @@ class Answering(Task):
         from workhold.files.result.writer import result_text
         from workhold.model.notes import Many
         from workhold.search.design import answer
-        from workhold.search.estimate import MANY, estimated_fixtures
+        from workhold.search.estimate import MANY, estimate_fixtures
 
         query = evolve(self.query, workpiece=workpiece_of(plain_record(self.part)))
-        count = estimated_fixtures(query, threads=1)
+        count = estimate_fixtures(query, threads=1)
         if count is not None and count > MANY:
             result = answer(evolve(query, best=self.best), threads=1)
             made = evolve(result, notes=(Many(count, len(result)), *result.notes))

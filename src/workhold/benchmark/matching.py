@@ -32,7 +32,7 @@ from workhold.errors import InputError
 from workhold.files.budget import LIMITS, Budget
 from workhold.files.tables import SAVED, CsvRow, table_of
 from workhold.files.text import json_value, read_text
-from workhold.geometry.symmetry import centroid_of_joints, rotated, rotations_onto_itself
+from workhold.geometry.symmetry import find_centroid_of_joints, find_rotations_onto_itself, rotate_vectors
 from workhold.limits import read_number, refuse_long
 from workhold.model.workpiece import Workpiece
 
@@ -218,12 +218,12 @@ class Places:
         """Return a place under all rotations of the part onto itself, the place itself first."""
         every = self.part.numbered
         faces = [face.segment for face in every.faces]
-        kept = centroid_of_joints(faces)
+        kept = find_centroid_of_joints(faces)
         out = []
-        for rotation in rotations_onto_itself(faces, every.marks):
-            x, y = rotated(place[:, 0] - kept[0], place[:, 1] - kept[1], rotation.angle)
-            pushed = rotated(place[:, 2], place[:, 3], rotation.angle)
-            axis = rotated(place[:, 4], place[:, 5], 2 * rotation.angle)
+        for rotation in find_rotations_onto_itself(faces, every.marks):
+            x, y = rotate_vectors(place[:, 0] - kept[0], place[:, 1] - kept[1], rotation.angle)
+            pushed = rotate_vectors(place[:, 2], place[:, 3], rotation.angle)
+            axis = rotate_vectors(place[:, 4], place[:, 5], 2 * rotation.angle)
             out.append(np.column_stack([x + kept[0], y + kept[1], *pushed, *axis]))
         return out
 
@@ -233,8 +233,8 @@ def place_of(entered: Entered, scale: float) -> Array:
     theta = np.radians(entered.theta_deg)
     rows = []
     for peg in entered.pegs:
-        x, y = rotated(peg.x - entered.x, peg.y - entered.y, -theta)
-        push = rotated(scale * peg.push[0], scale * peg.push[1], -theta)
+        x, y = rotate_vectors(peg.x - entered.x, peg.y - entered.y, -theta)
+        push = rotate_vectors(scale * peg.push[0], scale * peg.push[1], -theta)
         rows.append((x, y, *push, scale * np.cos(2 * theta), -scale * np.sin(2 * theta)))
     return np.array(rows, np.float64).reshape(-1, 6)
 

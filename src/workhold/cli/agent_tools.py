@@ -39,9 +39,16 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Box
 from workhold.listing.identity import entries
 from workhold.model.program import Program
-from workhold.model.quality import asked_ranking
+from workhold.model.quality import read_asked_ranking
 from workhold.model.query import Query
-from workhold.model.requirements import Load, Restrictions, Tolerance, circle_zone, far_loads, polygon_zone
+from workhold.model.requirements import (
+    Load,
+    Restrictions,
+    Tolerance,
+    circle_zone,
+    describe_far_loads,
+    polygon_zone,
+)
 from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
 from workhold.presenting.data import explanation_data, fixture_data, load_case_data, part_data, result_data
@@ -92,7 +99,7 @@ def design(asked: DesignArguments, folder: Path, cancel: Event) -> Answer:
     data = {
         **found,
         "result_file": out,
-        "remarks": [*loaded.remarks, *far_loads(result.query.loads, Box(*result.workpiece.bounds))],
+        "remarks": [*loaded.remarks, *describe_far_loads(result.query.loads, Box(*result.workpiece.bounds))],
     }
     return Answer(data, result.draw() if asked.picture and len(result) else None)
 
@@ -138,7 +145,7 @@ def answered(asked: DesignArguments, cancel: Event) -> tuple[Loaded, Result]:
         toolkit,
         asked.types,
         Restrictions(asked.avoid, zones, asked.angles, asked.touch),
-        asked_ranking(None, asked.prefer, bool(loads) or has_forces, program is not None),
+        read_asked_ranking(None, asked.prefer, bool(loads) or has_forces, program is not None),
         with_fit_of(None, tolerance),
         loads,
         **given_in(asked, OF_SEARCH),

@@ -271,7 +271,7 @@ def parse(
     from workhold.files.part.load import refuse_unsure_numbers
     from workhold.geometry.segment import Box
     from workhold.model.query import Query
-    from workhold.model.requirements import far_loads
+    from workhold.model.requirements import describe_far_loads
 
     loaded = machined.reading(part, reading).load(part, toolkit.heights, toolkit.peg_diameter)
     refuse_unsure_numbers(loaded, asked["restrictions"].avoid, CALLED)
@@ -281,7 +281,7 @@ def parse(
     thickness = machined.thickness if written.supports or machined.program is None else None
     high = asked_thickness(written.supports, thickness, workpiece, shown)
     query = Query(workpiece, toolkit, None if type_ == EVERY_TYPE else type_, **asked)
-    for remark in far_loads(query.loads, Box(*workpiece.bounds)):
+    for remark in describe_far_loads(query.loads, Box(*workpiece.bounds)):
         print_remark(remark)
     unit = printed_unit(reading.unit, toolkit)
     return DesignTask(query, loaded, searched.every, threads, engine, high, unit, output)
@@ -379,10 +379,10 @@ def as_many_as_asked(asked: DesignTask, cancel: Event) -> tuple[Query, int | Non
     """
     from workhold.limits import thread_count
     from workhold.model.notes import round_to_two_digits
-    from workhold.search.estimate import LISTED, MANY, best_where_many
+    from workhold.search.estimate import LISTED, MANY, ask_for_best_where_many
 
     output = asked.output
-    query, count = best_where_many(asked.query, thread_count(asked.threads), cancel)
+    query, count = ask_for_best_where_many(asked.query, thread_count(asked.threads), cancel)
     if count is None or count <= MANY:
         return asked.query, count
     name = "" if output.file is None else f" in {output.file}"
@@ -406,10 +406,10 @@ def as_many_as_asked(asked: DesignTask, cancel: Event) -> tuple[Query, int | Non
 def answered(query: Query, engine: str, streamed: str | None, threads: int | None, **watching: Any) -> Result:
     """Return the answer of an engine; where ``streamed`` names a file it is written during the search."""
     if engine == "algebra":
-        from workhold.algebra.engine import answer_by_algebra
-        from workhold.search.seated import seated_answer
+        from workhold.algebra.engine import find_fixtures_by_algebra
+        from workhold.search.seated import answer_with_seating
 
-        return seated_answer(query, answer_by_algebra, **watching)
+        return answer_with_seating(query, find_fixtures_by_algebra, **watching)
     if streamed is not None:
         from workhold.files.result.columns import answer_to_file
 

@@ -146,14 +146,14 @@ def read_for(
 
 def refuse_unknown_faces(numbers: Sequence[int], loaded: Collection[Loaded]) -> None:
     """Refuse, before any toolkit is tried, faces that do not exist, and those whose numbers are not sure."""
-    from workhold.contact.features import face_of_segment
+    from workhold.contact.features import find_face_of_segment
     from workhold.files.part.load import refuse_unsure_numbers
 
     for each in loaded:
         refuse_unsure_numbers(each, numbers, CALLED)
     for number in numbers:
         for each in loaded:
-            face_of_segment(each.workpiece, number)
+            find_face_of_segment(each.workpiece, number)
 
 
 def ask(asked: ExploreTask) -> list[Explored]:

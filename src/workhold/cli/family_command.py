@@ -361,10 +361,10 @@ def curve_table(found: Family, unit: Unit) -> Table:
 
 def setup_table(setup: SetUp, found: Family, unit: Unit) -> Table:
     from workhold.family.members import loss_text
-    from workhold.model.setup import settings_of
+    from workhold.model.setup import list_length_settings
     from workhold.presenting.figure_words import figure_text, heading
 
-    settings = settings_of(setup.standing.fixture, found.toolkit)
+    settings = list_length_settings(setup.standing.fixture, found.toolkit)
     names = [f">{setting.short} {unit.abbreviation}" for setting in settings]
     columns = (
         "part",
@@ -379,7 +379,7 @@ def setup_table(setup: SetUp, found: Family, unit: Unit) -> Table:
     for one in setup.holdings:
         fixture = one.fixture
         pose = fixture.pose
-        lengths = [unit.number(setting.length) for setting in settings_of(fixture, found.toolkit)]
+        lengths = [unit.number(setting.length) for setting in list_length_settings(fixture, found.toolkit)]
         table.add_row(
             one.member.name,
             f"{one.number:,}" + ("'" if one.turned else ""),

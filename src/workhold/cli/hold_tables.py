@@ -21,7 +21,7 @@ SHOWN = ("clamp_needed", "slip_reserve", "safety_reached", "grip", "above", "con
 
 def hold_table(result: Result, entries: Entries, count: int, unit: Unit) -> Table:
     """Tabulate the best holds: what lies on the fixed jaw, parallels, stop and opening, and figures."""
-    from workhold.model.hold_words import faces_words
+    from workhold.model.hold_words import describe_touched_faces
     from workhold.model.jaw_hold import HOLD_FIGURES
 
     known = {key for hold in result.holds for key in hold.figures}
@@ -46,7 +46,7 @@ def hold_table(result: Result, entries: Entries, count: int, unit: Unit) -> Tabl
             table.red.add(len(table.rows))
         table.add_row(
             str(index + 1),
-            faces_words(hold.fixed),
+            describe_touched_faces(hold.fixed),
             unit.number(hold.parallels, 1) if hold.parallels else "bed",
             *((hold.stop or "",) if has_stop else ()),
             unit.number(hold.opening),
@@ -61,24 +61,24 @@ def hold_table(result: Result, entries: Entries, count: int, unit: Unit) -> Tabl
 
 def first_hold_sentence(result: Result, unit: Unit) -> str:
     """Say why the first hold stands first, and with which friction."""
-    from workhold.model.hold_words import coefficient_words, hold_reasons
+    from workhold.model.hold_words import describe_coefficients, hold_reasons
 
     first = result[0]
     said = f"First: {'; '.join(hold_reasons(first, unit))}."
-    return f"{said} {coefficient_words(result.query)}" if result.query.is_loaded else said
+    return f"{said} {describe_coefficients(result.query)}" if result.query.is_loaded else said
 
 
 def hold_fixture_tables(fixture: Fixture, rank: int, total: int, unit: Unit) -> tuple[Table | str, ...]:
     """Say how to set up one hold, with lengths in a unit, and what each load asks for."""
-    from workhold.model.hold_words import coefficient_words, setup_sentences, warning_sentences
+    from workhold.model.hold_words import describe_coefficients, write_setup_sentences, write_warnings
     from workhold.statics.jaw_program import asked_words
 
     assert fixture.hold is not None
     hold, query = fixture.hold, fixture.listing.result.query
-    steps = (f"{step}." for step in setup_sentences(fixture, query, unit))
+    steps = (f"{step}." for step in write_setup_sentences(fixture, query, unit))
     tables: list[Table | str] = [f"Fixture {rank} of {total}", *steps]
     if query.is_loaded:
-        tables.append(coefficient_words(query))
+        tables.append(describe_coefficients(query))
     if hold.program_need is not None and query.program is not None:
         tables.append(asked_words(hold.program_need, query.program, unit))
     if hold.clamp_needed_each:
@@ -87,4 +87,4 @@ def hold_fixture_tables(fixture: Fixture, rank: int, total: int, unit: Unit) -> 
             text = "no force holds it" if need is None else rounded(need / unit.newtons, 1)
             needs.add_row(str(number), load.name, text)
         tables.append(needs)
-    return (*tables, *warning_sentences(hold))
+    return (*tables, *write_warnings(hold))

@@ -251,7 +251,7 @@ def asked_of(
     from workhold.files.part_list import read_listed
     from workhold.model.query import Query
     from workhold.model.setup import part_zero
-    from workhold.model.solid import other_way_up
+    from workhold.model.solid import flip_up_axis
 
     usual = RANKINGS[toolkit.travels]
     members, left_out = [], []
@@ -288,7 +288,7 @@ def asked_of(
         if workpiece.solid is None:
             members.append(one.lying_as(None))
             continue
-        read = read_listed(job.listed, **{**options, "axis": other_way_up(workpiece.solid.axis)})
+        read = read_listed(job.listed, **{**options, "axis": flip_up_axis(workpiece.solid.axis)})
         if read.loaded is None:
             left_out.append(LeftOut(f"{job.name}, {OTHER_SIDE}", str(path), read.refusal.rstrip(".")))
         else:

@@ -112,17 +112,17 @@ def program(
 
 def data_of(read: ReadProgram) -> dict[str, Any]:
     """Return what was understood, as plain data; lengths in mm."""
-    from workhold.model.program_figures import tip_box, tool_figures
+    from workhold.model.program_figures import bound_tip, measure_tools
 
     program = read.program
-    low, high = tip_box(program.moves)
+    low, high = bound_tip(program.moves)
     return {
         **program.head(),
         "lines": read.lines,
         "moves": len(program.moves),
         "calls": [{"line": line, "tool": number} for line, number in read.calls],
         "tip": {"low": low.tolist(), "high": high.tolist()},
-        "figures": [asdict(one) for one in tool_figures(program)],
+        "figures": [asdict(one) for one in measure_tools(program)],
         **({} if program.forces is None else {"cutting": force_data(program.forces, program.moves.tool)}),
     }
 
@@ -179,10 +179,10 @@ def stock_words(program: Program, unit: Unit) -> str:
 
 
 def report(read: ReadProgram, unit: Unit, from_z_zero: bool) -> None:
-    from workhold.model.program_figures import tip_box, tool_figures
+    from workhold.model.program_figures import bound_tip, measure_tools
 
     program = read.program
-    figures = tool_figures(program)
+    figures = measure_tools(program)
     calls = Counter(number for _, number in read.calls)
     short = unit.abbreviation
     table = Table(
@@ -212,7 +212,7 @@ def report(read: ReadProgram, unit: Unit, from_z_zero: bool) -> None:
             clock(one.seconds) + ("+" if one.untimed else ""),
             "" if one.lowest_cut is None else unit.number(one.lowest_cut),
         )
-    low, high = tip_box(program.moves)
+    low, high = bound_tip(program.moves)
     spans = ", ".join(
         f"{axis} {unit.number(one)} to {unit.number(other)}"
         for axis, one, other in zip("XYZ", low.tolist(), high.tolist(), strict=True)

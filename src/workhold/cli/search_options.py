@@ -173,14 +173,14 @@ class QueryWords:
         InputError
             For words that mean nothing, figures that are not known, and a file that cannot be used.
         """
-        from workhold.model.quality import asked_ranking
+        from workhold.model.quality import read_asked_ranking
         from workhold.model.requirements import Restrictions
 
         loads = asked_loads(self.load, self.loads, unit)
         names = None if self.rank_by is None else [word for word in self.rank_by.split(",") if word.strip()]
         return read_words(OF_SEARCHES, self, unit) | {
             "restrictions": Restrictions(**read_words(OF_RESTRICTIONS, self, unit)),
-            "rank_by": asked_ranking(names, self.prefer, bool(loads) or has_forces, has_program),
+            "rank_by": read_asked_ranking(names, self.prefer, bool(loads) or has_forces, has_program),
             "tolerance": asked_tolerance(self.tolerance, unit),
             "loads": loads,
         }

@@ -179,7 +179,7 @@ def first_supported(
     Supports that are known already go before others, and larger pads before smaller ones.
     """
     from workhold.model.support_triples import ChosenSupports
-    from workhold.supports.asking import requests_by_size
+    from workhold.supports.asking import try_smaller_requests
 
     query = result.query
     # What is known is for the jaw force that the loads ask for.
@@ -187,7 +187,7 @@ def first_supported(
     if not any(one.triples for one in found):
         # Fixtures that are alike stand in other holes, which three supports may find room between.
         fixtures = [result[k] for k in range(min(len(result), MOST_ASKED))]
-        requests = requests_by_size(query, thickness)
+        requests = try_smaller_requests(query, thickness)
         found, _ = supported_within(
             fixtures,
             query,
@@ -240,13 +240,13 @@ def chosen_supports(
     Refuses where there are none, and where nobody knows how thick the part is.
     """
     from workhold.model.support_triples import ChosenSupports
-    from workhold.supports.asking import requests_by_size, supported_by_size
+    from workhold.supports.asking import support_with_smaller_sizes, try_smaller_requests
 
     if thickness is None and result.workpiece.solid is None:
         raise InputError("the thickness of the part is not known: give --thickness.")
     query = result.query
-    requests = requests_by_size(query, thickness)
-    (found,), _ = supported_by_size(
+    requests = try_smaller_requests(query, thickness)
+    (found,), _ = support_with_smaller_sizes(
         [result[rank - 1]], query, requests, loads, jaw_force, drops_weak_force=True
     )
     if not found.triples:

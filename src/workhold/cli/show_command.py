@@ -281,7 +281,7 @@ def load_tables(
 ) -> tuple[Table | str, ...]:
     if not cases:
         return ()
-    from workhold.statics.loads import jaw_words
+    from workhold.statics.loads import describe_jaw
 
     noun = toolkit.moving.noun
     with_friction = cases[0].needed_with_friction is not None
@@ -315,9 +315,7 @@ def load_tables(
             "With friction the forces are not determined; the force that is then needed is the least "
             "to be hoped for."
         )
-    note = (
-        f"For {jaw_words(cases[0].jaw_stiffness, toolkit)}, without friction; docs/quality.md explains both."
-    )
+    note = f"For {describe_jaw(cases[0].jaw_stiffness, toolkit)}, without friction; docs/quality.md explains both."
     return (
         "",
         table,
@@ -336,10 +334,10 @@ def passing_data(
 
     Nothing without a program. Jaw force and jaw are as of :func:`passing_words`.
     """
-    from workhold.statics.program_clearance import passing_of
-    from workhold.statics.program_forces import cutting_need_of
+    from workhold.statics.program_clearance import find_nearest_passing
+    from workhold.statics.program_forces import find_cutting_need
 
-    near, need = passing_of(result, rank - 1), cutting_need_of(result, rank - 1, jaw_force, jaw)
+    near, need = find_nearest_passing(result, rank - 1), find_cutting_need(result, rank - 1, jaw_force, jaw)
     names = ("distance", "line", "tool", "element")
     passing = {} if near is None else {name: getattr(near, name) for name in names}
     data = {"program_clearance": passing} if passing else {}
@@ -360,13 +358,13 @@ def passing_words(
     Nothing without a program. The jaw force in N stands instead of the result's. For the jaw see
     :func:`workhold.statics.loads.jaw_stiffness`.
     """
-    from workhold.statics.program_clearance import passing_of
-    from workhold.statics.program_forces import cutting_need_of
+    from workhold.statics.program_clearance import find_nearest_passing
+    from workhold.statics.program_forces import find_cutting_need
 
     program = result.query.program
     if program is None:
         return []
-    near, need = passing_of(result, rank - 1), cutting_need_of(result, rank - 1, jaw_force, jaw)
+    near, need = find_nearest_passing(result, rank - 1), find_cutting_need(result, rank - 1, jaw_force, jaw)
     forces = [] if need is None else need.words(result.toolkit.moving.noun, unit, result.toolkit.travels)
     if near is None:
         return [

@@ -137,7 +137,7 @@ def read_question(words: StrapWords, result: Any, unit: Unit) -> StrapQuestion:
 
 def describe(found: StrappedHold, fixture: Fixture, asked: StrapQuestion) -> dict[str, Any]:
     """Data for other programs."""
-    from workhold.model.friction import COUNTED_BY_STRAPS, friction_of
+    from workhold.model.friction import COUNTED_BY_STRAPS, find_friction_coefficient
 
     return {
         "type": "strapped",
@@ -147,7 +147,7 @@ def describe(found: StrappedHold, fixture: Fixture, asked: StrapQuestion) -> dic
         ],
         "pose": {"theta_deg": fixture.pose.theta_deg, "x": fixture.pose.x, "y": fixture.pose.y},
         **found.as_data(),
-        "friction": {name: friction_of(asked.friction, name) for name in COUNTED_BY_STRAPS},
+        "friction": {name: find_friction_coefficient(asked.friction, name) for name in COUNTED_BY_STRAPS},
         "safety": asked.safety,
         "weight": asked.weight,
     }

@@ -37,9 +37,9 @@ def supported_within(
 ) -> tuple[tuple[Supports, ...], tuple[Supports, ...]]:
     """The best supports of some fixtures as far as a limit of the work allows, with a bar on a terminal.
 
-    For the arguments see :func:`workhold.supports.asking.supported_by_size`.
+    For the arguments see :func:`workhold.supports.asking.support_with_smaller_sizes`.
     """
-    from workhold.supports.asking import supported_by_size
+    from workhold.supports.asking import support_with_smaller_sizes
     from workhold.supports.choosing import WorkLimit
 
     with progress_bar("Looking for supports", f"of {plural(len(fixtures), 'fixture')}") as show:
@@ -47,7 +47,7 @@ def supported_within(
         def progress(fraction: float) -> None:
             show(fraction, int(fraction * len(fixtures)))
 
-        return supported_by_size(
+        return support_with_smaller_sizes(
             fixtures, query, requests, cancel=WorkLimit(MOST_PLACES), progress=progress, **how
         )
 
@@ -92,7 +92,7 @@ def size_notes(
     Of each fixture in order ``found`` are those that are listed, ``usual`` those of the usual sizes. ``bare``
     are the ranks of those without supports among the listed ones.
     """
-    from workhold.supports.words import why_no_set
+    from workhold.supports.words import explain_no_set
 
     pad, tip = unit.text(found[0].request.pad_radius), unit.text(found[0].request.tip_radius)
     if len(bare) == len(found):
@@ -101,7 +101,7 @@ def size_notes(
         which = "usual" if found is usual else "least"
         return [
             f"Under {runs_of(bare)} no three supports hold the part, with {sizes}.",
-            f"Under {bare[0]}, with the {which} sizes: {why_no_set(found[0], unit)}",
+            f"Under {bare[0]}, with the {which} sizes: {explain_no_set(found[0], unit)}",
         ]
     notes = [
         f"Pads of radius {pad} and a tip of radius {tip}; the command supports lists more, with other sizes."
@@ -111,10 +111,10 @@ def size_notes(
     if found is not usual:
         notes.append(
             "Larger pads and tips hold the part under none of these fixtures. Under 1: "
-            f"{why_no_set(usual[0], unit)}"
+            f"{explain_no_set(usual[0], unit)}"
         )
     elif bare:
-        notes.append(f"Under {bare[0]}: {why_no_set(found[bare[0] - 1], unit)}")
+        notes.append(f"Under {bare[0]}: {explain_no_set(found[bare[0] - 1], unit)}")
     return notes
 
 

@@ -221,11 +221,11 @@ def parse(
     friction = None if words.friction is None else positive_number("--friction", words.friction)
     raised = optional_length("--support-height", words.support_height, shown)
     result = result_with(result_file, rank)
-    from workhold.supports.asking import requests_by_size
+    from workhold.supports.asking import try_smaller_requests
 
     high = asked_thickness(True, words.thickness, result.workpiece, shown)
     assert high is not None
-    request, *smaller = requests_by_size(result.query, high, words.sizes(shown))
+    request, *smaller = try_smaller_requests(result.query, high, words.sizes(shown))
     request.refuse_fat_pads(result.toolkit)
     loads = [spatial_load(text, high, shown) for text in words.load] if words.load else None
     printed = printed_unit(unit, result.toolkit)
@@ -249,13 +249,13 @@ def parse(
 
 def ask(asked: SupportsTask) -> Supports:
     """Look for the supports."""
-    from workhold.supports.asking import supported_by_size
+    from workhold.supports.asking import support_with_smaller_sizes
 
     with (
         ask_to_stop("the best of the sets so far is kept") as cancel,
         progress_bar("Looking for supports", "of 1 fixture") as show,
     ):
-        (found,), _ = supported_by_size(
+        (found,), _ = support_with_smaller_sizes(
             [asked.fixture],
             asked.result.query,
             [asked.request, *asked.smaller],
@@ -288,9 +288,9 @@ def write(asked: SupportsTask, found: Supports) -> None:
     from workhold.presenting.assembly import Assembly, shape_in
 
     if not found.triples:
-        from workhold.supports.words import why_no_set
+        from workhold.supports.words import explain_no_set
 
-        why = why_no_set(found, asked.printed)
+        why = explain_no_set(found, asked.printed)
         raise InputError(f"{why[:1].lower()}{why[1:]}")
     best, shape = ChosenSupports.of(found), shape_in(asked.part, asked.result.workpiece)
     lengths = {"support_height": asked.raised}
@@ -318,13 +318,13 @@ def report_supported(result: Result, thickness: float, unit: Unit, stream: TextI
 
     They are of the usual sizes, or where these hold up none of the fixtures, of smaller ones.
     """
-    from workhold.supports.asking import requests_by_size
-    from workhold.supports.words import flat_faces_notes, place_notes, set_headings, set_row
+    from workhold.supports.asking import try_smaller_requests
+    from workhold.supports.words import place_notes, set_headings, set_row, write_flat_faces_notes
 
     fixtures = [result[k] for k in range(min(MOST_SUPPORTED, len(result)))]
     if not fixtures:
         return ()
-    requests = requests_by_size(result.query, thickness)
+    requests = try_smaller_requests(result.query, thickness)
     found, usual = supported_within(fixtures, result.query, requests)
     with_loads = result.query.is_loaded
     table = Table((">rank", *set_headings(unit, with_loads)))
@@ -342,7 +342,7 @@ def report_supported(result: Result, thickness: float, unit: Unit, stream: TextI
         *notes,
         *place_notes({rank: one.triples[0] for rank, one in enumerate(found, 1) if one.triples}),
         *before_first(best),
-        *flat_faces_notes(result.workpiece, KEEP_OFF, unit),
+        *write_flat_faces_notes(result.workpiece, KEEP_OFF, unit),
         stream=stream,
     )
     return found
@@ -373,9 +373,9 @@ def report(
         print_json(fixture=rank, jaw_force=found.jaw_force, **counts, triples=rows, written=written, **more)
         return
     if not found.triples:
-        from workhold.supports.words import why_no_set
+        from workhold.supports.words import explain_no_set
 
-        print_tables(f"Fixture {rank}: {why_no_set(found, unit)}")
+        print_tables(f"Fixture {rank}: {explain_no_set(found, unit)}")
     else:
         print_sets(found, listed, rank, unit)
         if friction is not None:
@@ -402,11 +402,11 @@ def print_sets(found: Supports, listed: Sequence[Triple], rank: int, unit: Unit)
 
 def notes_of(found: Supports, listed: Sequence[Triple], unit: Unit) -> list[str]:
     from workhold.conventions import STEADY
-    from workhold.supports.words import listing_notes
+    from workhold.supports.words import write_listing_notes
 
     notes = [
         "The clamp presses at this point of the part's coordinates. Its force times the tipping "
         "arm is the tipping moment that it resists. If the last figure is at least "
         f"{unit.text(STEADY)}, the part stands before it is clamped."
     ]
-    return notes + before_first(listed) + listing_notes(found, listed, unit, KEEP_OFF)
+    return notes + before_first(listed) + write_listing_notes(found, listed, unit, KEEP_OFF)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from workhold.cli.hold_tables import first_hold_sentence, hold_fixture_tables, hold_table
 from workhold.cli.table import Table, plural
 from workhold.fixels.contacts import FLAT_PIN
-from workhold.model.solid import other_way_up
+from workhold.model.solid import flip_up_axis
 from workhold.presenting.figure_words import (
     counted_text,
     edgeless,
@@ -147,7 +147,7 @@ def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILL
     """
     if result.toolkit.flat_jaws is not None:
         return hold_table(result, entries, count, unit)
-    from workhold.model.setup import settings_of
+    from workhold.model.setup import list_length_settings
     from workhold.statics.judging import unfit
 
     figures, ranked = figures_shown(result)
@@ -173,7 +173,9 @@ def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILL
                 for names in groups.values()
             ),
             *(f"{result.table.pairs[index]:,}" for _ in pairs),
-            " ".join(unit.number(setting.length, decimals) for setting in settings_of(fixture, toolkit)),
+            " ".join(
+                unit.number(setting.length, decimals) for setting in list_length_settings(fixture, toolkit)
+            ),
             rounded(fixture.pose.written_deg, degrees_decimals),
             *(
                 (counted_text if figure in ranked[:-1] else figure_text)(
@@ -219,10 +221,12 @@ def quality_table(
 def standing_sentences(fixture: Fixture, result: Result, unit: Unit) -> list[str]:
     """Say how far the part stands out or hangs over, and where on its plate the setup sheet has it."""
     from workhold.drawing.panel import moved_words
-    from workhold.model.moved_setup import middle_move, moved_on, overhang_words
+    from workhold.model.moved_setup import describe_overhang, find_move_to_middle, move_fixture_by_holes
 
-    toolkit, move = result.toolkit, middle_move(fixture, result.toolkit, result.workpiece)
-    words = overhang_words(moved_on(fixture, toolkit, move), toolkit, result.workpiece, unit.text)
+    toolkit, move = result.toolkit, find_move_to_middle(fixture, result.toolkit, result.workpiece)
+    words = describe_overhang(
+        move_fixture_by_holes(fixture, toolkit, move), toolkit, result.workpiece, unit.text
+    )
     moved = ""
     if move != (0, 0):
         moved = f"The setup sheet puts the whole set-up in the middle of the {toolkit.plates[0].noun}, "
@@ -236,7 +240,7 @@ def fixture_tables(
     """Say how to set up one fixture, with lengths in a unit: what to turn, and where each peg goes."""
     if fixture.hold is not None:
         return hold_fixture_tables(fixture, rank, total, unit)
-    from workhold.model.setup import settings_of
+    from workhold.model.setup import list_length_settings
 
     noun, several = toolkit.moving.noun, len(toolkit.plates) > 1
     x, y = f">x {unit.abbreviation}", f">y {unit.abbreviation}"
@@ -251,7 +255,7 @@ def fixture_tables(
     pose = fixture.pose
     return (
         f"Fixture {rank} of {total}, type {toolkit.arrangement(fixture.type, fixture.direction).title}",
-        *(setting_sentence(setting, unit) for setting in settings_of(fixture, toolkit)),
+        *(setting_sentence(setting, unit) for setting in list_length_settings(fixture, toolkit)),
         *pair_sentences(fixture),
         f"The part is turned by {rounded(pose.written_deg, 3)} degrees, its origin lies at "
         f"{place((pose.x, pose.y), unit)} {unit.abbreviation} from {toolkit.datum.full}",
@@ -269,14 +273,14 @@ def setting_sentence(setting: LengthSetting, unit: Unit) -> str:
 
 def pair_sentences(fixture: Fixture) -> list[str]:
     """Say in which order two clamps are tightened and with what forces; empty for other fixtures."""
-    from workhold.model.clamps import clamp_names, clamp_shares, order_words
+    from workhold.model.clamps import compute_clamp_shares, name_clamps, order_words
 
     order = order_words(fixture)
     if not order:
         return []
     each = [
         f"{share:.0%} at {name}"
-        for name, share in zip(clamp_names(fixture), clamp_shares(fixture), strict=True)
+        for name, share in zip(name_clamps(fixture), compute_clamp_shares(fixture), strict=True)
     ]
     return [
         order,
@@ -414,7 +418,7 @@ def other_heights(workpiece: Workpiece, rows: Sequence[HeightRow], unit: Unit) -
     ]
     longest = sorted(others, key=lambda row: (-row.touchable, -row.high))[:MOST_NAMED]
     named = [f"--peg-height {unit.number(row.high)}" for row in longest]
-    turned = other_way_up(solid.axis)
+    turned = flip_up_axis(solid.axis)
     offers = f"its other side up (--axis={turned}): workhold features shows what pegs can touch in each."
     if not named:
         return [f"This may help: {offers}"]

@@ -289,11 +289,11 @@ def put_in(result: Result, rank: int, order: WorkbenchOrder, folder: Path) -> di
 def supported(fixture: Fixture, query: Query) -> tuple[ChosenSupports | None, str]:
     """Return the best three supports under a fixture with a clamp on top; where there are none, why."""
     from workhold.model.support_triples import ChosenSupports
-    from workhold.supports.asking import requests_by_size, supported_by_size
-    from workhold.supports.words import why_no_set
+    from workhold.supports.asking import support_with_smaller_sizes, try_smaller_requests
+    from workhold.supports.words import explain_no_set
 
-    (found,), _ = supported_by_size([fixture], query, requests_by_size(query, None))
-    return (ChosenSupports.of(found), "") if found.triples else (None, why_no_set(found, MILLIMETRE))
+    (found,), _ = support_with_smaller_sizes([fixture], query, try_smaller_requests(query, None))
+    return (ChosenSupports.of(found), "") if found.triples else (None, explain_no_set(found, MILLIMETRE))
 
 
 def draw_nearest_miss(result: Result, folder: Path) -> None:

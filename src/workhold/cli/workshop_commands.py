@@ -235,9 +235,9 @@ def asked_plates(held_in: ToolkitWords, words: DrillWords, unit: Unit) -> tuple[
         )
     if diameter is None and tolerance is not None and tolerance.fit is not None:
         diameter = sum(tolerance.fit.hole) / 2
-    from workhold.model.dowels import jaw_plates
+    from workhold.model.dowels import list_jaw_plates
 
-    return jaw_plates(toolkit, hole_diameter=diameter, edge=edge, bolts=bolts, unit=unit)
+    return list_jaw_plates(toolkit, hole_diameter=diameter, edge=edge, bolts=bolts, unit=unit)
 
 
 def write_plates(path: Path, plates: tuple[JawPlate, ...], thickness: float | None) -> None:

@@ -31,7 +31,7 @@ from workhold.kernels.base.tables import (
 from workhold.kernels.chord.coincidences import are_concentric
 from workhold.kernels.curves.table import make_curve_space, write_tail_curves
 
-__all__ = ["ANY_TURN", "CurveTable", "LatticeSteps", "center_numbers", "curve_table", "joined", "loosened"]
+__all__ = ["ANY_TURN", "CurveTable", "LatticeSteps", "number_centers", "curve_table", "joined", "loosened"]
 
 CURVE_CAPACITY = Capacity(256)
 # Rules nothing out.
@@ -101,7 +101,7 @@ def loosened(rows: NDArray[np.float64]) -> NDArray[np.float64]:
     return out
 
 
-def center_numbers(rows: NDArray[np.float64]) -> NDArray[np.int64]:
+def number_centers(rows: NDArray[np.float64]) -> NDArray[np.int64]:
     """Index of the first feature with the same centre for each of (F, 10) rows, -1 for lines."""
     numbers = np.full(len(rows), -1, dtype=np.int64)
     arcs = np.flatnonzero(rows[:, IS_ARC] != 0.0)
@@ -126,11 +126,11 @@ def curve_table(
     ----------
     threads : how many threads share the work; the outcome does not depend on it.
     cancel : when set, curves whose turn has not come are left out.
-    centers : as of ``center_numbers``, for who asks again and again.
+    centers : as of ``number_centers``, for who asks again and again.
     near : leaves out what no locators of interest touch.
     within : (K, 2) ranges of psi in radians beside which curves may be left out; none for everywhere.
     """
-    centers = center_numbers(rows) if centers is None else centers
+    centers = number_centers(rows) if centers is None else centers
 
     def curves_from(tail: int) -> tuple[NDArray[Any], ...]:
         few = steps if cancel is None or not cancel.is_set() else steps.none
@@ -151,7 +151,7 @@ def curve_table(
 
         return CURVE_CAPACITY.give(write)
 
-    parts = made_by_threads(curves_from, range(len(rows)) if tails is None else tails, threads)
+    parts = map_in_threads(curves_from, range(len(rows)) if tails is None else tails, threads)
     before = 0
     for integers, _, _, _, stretches in parts:
         integers[:, [FIRST_STRETCH, END_STRETCH]] += before
@@ -162,7 +162,7 @@ def curve_table(
     return CurveTable(Curves(integers, reals, stretches), SlidingPairs(whole, sliding))
 
 
-def made_by_threads(make: Callable[[int], Any], numbers: Sequence[int], threads: int) -> list[Any]:
+def map_in_threads(make: Callable[[int], Any], numbers: Sequence[int], threads: int) -> list[Any]:
     """What is made of each number, by this thread and some more.
 
     Where memory runs out a thread may end without a word, and an executor would wait for it for ever.

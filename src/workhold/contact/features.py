@@ -15,12 +15,12 @@ from attrs import evolve, field, frozen
 from numpy.typing import NDArray
 
 from workhold.contact.swept import Swept
-from workhold.contact.trimming import most_in_the_way, parts_clear_of
+from workhold.contact.trimming import find_line_most_in_the_way, trim_to_clear_parts
 from workhold.conventions import END_SLACK, JOINT, TANGENT
 from workhold.errors import InputError
 from workhold.fixels.carrier import Carrier
 from workhold.fixels.pegs import Flat
-from workhold.geometry.offset import clear_parts, trimmed_offsets
+from workhold.geometry.offset import clear_parts, list_trimmed_offsets
 from workhold.geometry.segment import Segment, segment_rows
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
 from workhold.model.requirements import Restrictions
@@ -29,14 +29,14 @@ from workhold.model.workpiece import Workpiece
 __all__ = [
     "ContactFeature",
     "allowed_features",
-    "avoided_faces",
-    "contact_features",
-    "end_distances",
+    "list_avoided_faces",
+    "list_contact_features",
+    "measure_end_distances",
     "end_slacks",
-    "face_of_segment",
-    "feature_rows",
-    "features_met",
-    "meeting_ends",
+    "find_face_of_segment",
+    "make_feature_rows",
+    "list_features_met",
+    "find_meeting_ends",
 ]
 
 # Pairs of ends looked at together.
@@ -63,25 +63,25 @@ class ContactFeature:
         return self.segment
 
 
-def contact_features(
+def list_contact_features(
     workpiece: Workpiece, peg_radius: float, flat: Flat | None = None
 ) -> list[ContactFeature]:
     """Contact features of a workpiece for pegs of a radius in mm, round or with a flat, by face."""
     faces = workpiece.faces
-    pieces = trimmed_offsets(
+    pieces = list_trimmed_offsets(
         [face.segment for face in faces], peg_radius, None if flat is None else flat.distance
     )
     return [ContactFeature(faces[index].number, piece) for index, piece in pieces]
 
 
-def features_met(workpiece: Workpiece, carrier: Carrier) -> list[ContactFeature]:
+def list_features_met(workpiece: Workpiece, carrier: Carrier) -> list[ContactFeature]:
     """Contact features of a workpiece for the pegs of a carrier, by face, on the outline that it meets."""
     own, first = workpiece.outline_of(carrier.role)
-    features = contact_features(own, carrier.peg_radius, carrier.flat)
+    features = list_contact_features(own, carrier.peg_radius, carrier.flat)
     return [evolve(one, face=first + one.face) for one in features] if first else features
 
 
-def avoided_faces(workpiece: Workpiece, restrictions: Restrictions) -> set[int]:
+def list_avoided_faces(workpiece: Workpiece, restrictions: Restrictions) -> set[int]:
     """The numbers of faces that nothing may touch: those to be avoided, and those without a band.
 
     Where there are outlines of carriers, faces with a face of the solid over them that an avoided one has are
@@ -92,7 +92,9 @@ def avoided_faces(workpiece: Workpiece, restrictions: Restrictions) -> set[int]:
     InputError
         For a face that does not exist.
     """
-    avoided = {face_of_segment(workpiece, number) for number in restrictions.avoid} | workpiece.untouchable
+    avoided = {
+        find_face_of_segment(workpiece, number) for number in restrictions.avoid
+    } | workpiece.untouchable
     if not workpiece.outlines:
         return avoided
     every = workpiece.numbered
@@ -123,7 +125,7 @@ def allowed_features(
     InputError
         For a face that does not exist, and when nothing is left.
     """
-    avoided = avoided_faces(workpiece, restrictions)
+    avoided = list_avoided_faces(workpiece, restrictions)
     touched = [feature for feature in features if feature.face not in avoided]
     if not touched:
         raise InputError(
@@ -147,7 +149,7 @@ def allowed_features(
     for pieces, beyond in swept:
         clear = [kept for feature in clear for kept in passed_by(feature, pieces, beyond)]
     if not clear:
-        line = most_in_the_way([feature.segment for feature in left], *swept[0])
+        line = find_line_most_in_the_way([feature.segment for feature in left], *swept[0])
         raise InputError(
             f"the program's tools pass every place along {workpiece.name} where a peg could stand, line "
             f"{line} most of them: lower the pegs, machine less in this set-up, or ask for less clearance."
@@ -155,7 +157,7 @@ def allowed_features(
     return clear
 
 
-def face_of_segment(workpiece: Workpiece, number: int) -> int:
+def find_face_of_segment(workpiece: Workpiece, number: int) -> int:
     """The number of the face that a segment belongs to.
 
     Raises
@@ -175,15 +177,15 @@ def face_of_segment(workpiece: Workpiece, number: int) -> int:
 
 def passed_by(feature: ContactFeature, swept: Swept, beyond: float) -> list[ContactFeature]:
     """The parts of a contact feature that tools pass at their radius and so many mm ``beyond``."""
-    return [evolve(feature, segment=part) for part in parts_clear_of(feature.segment, swept, beyond)]
+    return [evolve(feature, segment=part) for part in trim_to_clear_parts(feature.segment, swept, beyond)]
 
 
-def feature_rows(features: list[ContactFeature]) -> NDArray[np.float64]:
+def make_feature_rows(features: list[ContactFeature]) -> NDArray[np.float64]:
     """Kernel rows (N, 10) of contact features."""
     return segment_rows([feature.segment for feature in features])
 
 
-def end_distances(rows: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.float64]:
+def measure_end_distances(rows: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.float64]:
     """Distances (..., 2) in mm along features from the feet of points to the low and to the high end.
 
     Negative past an end, infinite on a whole circle, which has none.
@@ -222,7 +224,9 @@ def end_slacks(
     """
     everything = [feature.segment for feature in (features if locus is None else locus)]
     ends = dict(
-        zip(map(id, everything), np.minimum(joint_slacks(everything) + margin, END_SLACK), strict=True)
+        zip(
+            map(id, everything), np.minimum(measure_joint_slacks(everything) + margin, END_SLACK), strict=True
+        )
     )
     slack = np.array([ends[id(feature.cut_from)] for feature in features]).reshape(-1, 2)
     for index, feature in enumerate(features):
@@ -230,12 +234,12 @@ def end_slacks(
         if feature.segment is not piece:
             half = feature.segment.half_extent
             points = np.array([feature.segment.at(-half), feature.segment.at(half)])
-            to_ends = end_distances(segment_rows([piece]), points)[[0, 1], [0, 1]]
+            to_ends = measure_end_distances(segment_rows([piece]), points)[[0, 1], [0, 1]]
             slack[index] = np.minimum(slack[index] + to_ends, margin + END_SLACK)
     return slack
 
 
-def joint_slacks(pieces: list[Segment]) -> NDArray[np.float64]:
+def measure_joint_slacks(pieces: list[Segment]) -> NDArray[np.float64]:
     """How far in mm a contact may lie past the low and the high end of pieces of the locus, shape (F, 2)."""
     ends = np.array([[piece.at(-piece.half_extent), piece.at(piece.half_extent)] for piece in pieces])
     normals = np.array(
@@ -243,13 +247,13 @@ def joint_slacks(pieces: list[Segment]) -> NDArray[np.float64]:
     )
     points, directions = ends.reshape(-1, 2), normals.reshape(-1, 2)
     slack = np.full(len(points), -END_SLACK)
-    one, other = meeting_ends(points)
+    one, other = find_meeting_ends(points)
     smooth = (np.abs(directions[one] - directions[other]) <= TANGENT).all(axis=1)
     slack[one[smooth]] = END_SLACK
     return slack.reshape(-1, 2)
 
 
-def meeting_ends(
+def find_meeting_ends(
     points: NDArray[np.float64], within: float = JOINT
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Which ends (2 F, 2), low and high ones of features after each other, meet which of other features.

@@ -20,10 +20,10 @@ from workhold.contact.features import (
     ContactFeature,
     allowed_features,
     end_slacks,
-    feature_rows,
-    features_met,
+    list_features_met,
+    make_feature_rows,
 )
-from workhold.contact.swept import Swept, keeps_of, swept_of
+from workhold.contact.swept import Swept, find_swept_at_pegs, list_swept_clearances
 from workhold.errors import InputError
 from workhold.fixels.carrier import Holes
 from workhold.fixels.toolkit import Carrier, Toolkit, Travel
@@ -31,7 +31,7 @@ from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.feature import IS_ARC, RADIUS, REST_X, REST_Y, X, Y
 from workhold.kernels.base.tables import Lattice, Limits, Setting
 from workhold.limits import refuse_many_steps
-from workhold.model.own_outlines import outline_diameter
+from workhold.model.own_outlines import measure_outline_diameter
 from workhold.model.query import Query
 from workhold.model.requirements import Restrictions
 from workhold.model.workpiece import Workpiece
@@ -140,7 +140,7 @@ class Frame:
         """
         if self.quarters == 0:
             return column, row
-        places = [hole_back(carrier, self.quarters, column, row) for carrier in self.carriers]
+        places = [map_hole_to_toolkit(carrier, self.quarters, column, row) for carrier in self.carriers]
         out = [np.where(standing, one, other) for one, other in zip(*places, strict=True)]
         if self.standing.rows is None:
             across = self.quarters % 2 == 0
@@ -153,7 +153,7 @@ def flipped(k: Any, count: int | None) -> Any:
     return -k if count is None else count - 1 - k
 
 
-def hole_back(carrier: Carrier, quarters: int, column: Any, row: Any) -> tuple[Any, Any]:
+def map_hole_to_toolkit(carrier: Carrier, quarters: int, column: Any, row: Any) -> tuple[Any, Any]:
     """Column and row in the toolkit of a hole of a carrier in the frame."""
     if quarters == 2:
         return flipped(column, carrier.columns), flipped(row, carrier.rows)
@@ -183,13 +183,13 @@ def turned(carrier: Carrier, quarters: int, farthest: float) -> Carrier:
         columns = int(farthest / pitch[0]) + 1
     travel = carrier.travel and Travel(0.0, carrier.travel.least, carrier.travel.most)
     out = evolve(carrier, pitch=pitch, columns=columns, rows=rows, travel=travel)
-    x, y = evolve(carrier, travel=None).place(*hole_back(out, quarters, 0, 0))
+    x, y = evolve(carrier, travel=None).place(*map_hole_to_toolkit(out, quarters, 0, 0))
     cosine, sine = QUARTERS[quarters]
     offset = (cosine * x + sine * y, cosine * y - sine * x)
-    return evolve(out, offset=offset, blocked=tuple(turned_holes(carrier, quarters)))
+    return evolve(out, offset=offset, blocked=tuple(map_blocked_holes_to_frame(carrier, quarters)))
 
 
-def turned_holes(carrier: Carrier, quarters: int) -> Iterator[Holes]:
+def map_blocked_holes_to_frame(carrier: Carrier, quarters: int) -> Iterator[Holes]:
     """The blocked holes of a carrier as they are in the frame."""
     if quarters == 0:
         yield from carrier.blocked
@@ -197,7 +197,7 @@ def turned_holes(carrier: Carrier, quarters: int) -> Iterator[Holes]:
     for holes in carrier.blocked:
         for k in range(carrier.rows or 0) if holes.row is None else [holes.row]:
             # Turning on by the rest of a whole turn is the way there.
-            column, row = hole_back(carrier, -quarters % 4, holes.column, k)
+            column, row = map_hole_to_toolkit(carrier, -quarters % 4, holes.column, k)
             yield evolve(holes, column=column, row=row)
 
 
@@ -252,19 +252,19 @@ class Problem:
         """
         workpiece, restrictions = query.workpiece, query.restrictions
         radius = max(carrier.peg_radius for carrier in query.toolkit.carriers)
-        diameter = outline_diameter(workpiece) + 2 * radius
+        diameter = measure_outline_diameter(workpiece) + 2 * radius
         carriers = Frame.of(query.toolkit, diameter).carriers
         met = [workpiece.outline_of(each.role) for each in carriers]
         one, other = (
             (each.peg_radius, each.body_radius, each.flat, each.heights, first)
             for each, (_, first) in zip(carriers, met, strict=True)
         )
-        loci = [locus_of(workpiece, carrier) for carrier in carriers[: 1 if one == other else 2]]
+        loci = [list_peg_features(workpiece, carrier) for carrier in carriers[: 1 if one == other else 2]]
         allowed = loci
         if restrictions or workpiece.untouchable or workpiece.outlines or query.program is not None:
             allowed = [
                 allowed_features(
-                    locus, workpiece, restrictions, carrier.body_radius, keeps_of(query, carrier)
+                    locus, workpiece, restrictions, carrier.body_radius, list_swept_clearances(query, carrier)
                 )
                 for locus, carrier in zip(loci, carriers, strict=False)
             ]
@@ -274,11 +274,11 @@ class Problem:
         )
         center = workpiece.center
         rows = {first: segment_rows([face.segment for face in own.faces]) for own, first in met}
-        rows = {first: centered(values, center) for first, values in rows.items()}
+        rows = {first: move_rows_to_origin(values, center) for first, values in rows.items()}
         return cls(
             query,
             (tuple(loci[0]), tuple(loci[-1])),
-            rows=np.concatenate([centered(feature_rows(features), center), slacks], axis=1),
+            rows=np.concatenate([move_rows_to_origin(make_feature_rows(features), center), slacks], axis=1),
             faces=np.array([feature.face for feature in features], dtype=np.int64),
             standing=(0, len(allowed[0])),
             moving=(len(features) - len(allowed[-1]), len(features)),
@@ -309,7 +309,7 @@ class Problem:
 
     def swept(self, carrier: Carrier) -> tuple[Swept, float] | None:
         """What the program sweeps beside a carrier, in the part's coordinates, and the clearance in mm."""
-        return swept_of(self.query, carrier)
+        return find_swept_at_pegs(self.query, carrier)
 
     @property
     def wrench_length(self) -> float:
@@ -352,7 +352,7 @@ class Problem:
         return Setting(frame.lattice, self.limits, standing, moving, self.backward_error)
 
 
-def locus_of(workpiece: Workpiece, carrier: Carrier) -> list[ContactFeature]:
+def list_peg_features(workpiece: Workpiece, carrier: Carrier) -> list[ContactFeature]:
     """All contact features of a workpiece for the pegs of a carrier.
 
     Raises
@@ -360,7 +360,7 @@ def locus_of(workpiece: Workpiece, carrier: Carrier) -> list[ContactFeature]:
     InputError
         When such a peg fits nowhere along the part.
     """
-    features = features_met(workpiece, carrier)
+    features = list_features_met(workpiece, carrier)
     if not features:
         raise InputError(
             f"a peg of radius {carrier.peg_radius:g} mm fits nowhere along {workpiece.name}: every face is "
@@ -369,7 +369,7 @@ def locus_of(workpiece: Workpiece, carrier: Carrier) -> list[ContactFeature]:
     return features
 
 
-def centered(rows: NDArray[np.float64], center: tuple[float, float]) -> NDArray[np.float64]:
+def move_rows_to_origin(rows: NDArray[np.float64], center: tuple[float, float]) -> NDArray[np.float64]:
     """Rows (N, 10) of segments moved so that a point becomes the origin; read-only."""
     out, is_arc = np.array(rows), rows[:, IS_ARC] != 0.0
     for column, rest, coordinate in ((X, REST_X, center[0]), (Y, REST_Y, center[1])):

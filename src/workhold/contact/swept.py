@@ -23,8 +23,8 @@ from numpy.typing import NDArray
 
 from workhold.conventions import STRAIGHT
 from workhold.fixels.carrier import Carrier
-from workhold.geometry.segment import ends_of_rows
-from workhold.geometry.symmetry import rotated
+from workhold.geometry.segment import find_row_ends
+from workhold.geometry.symmetry import rotate_vectors
 from workhold.kernels.base.distance import DEPTH, LEAF, SweptTree, nearest_swept
 from workhold.kernels.base.feature import (
     AXIS_X,
@@ -43,7 +43,15 @@ from workhold.kernels.base.feature import (
 from workhold.model.program import PathVertex, Program, SweptPiece
 from workhold.model.query import Query
 
-__all__ = ["Swept", "keeps_of", "path_of", "span_boxes", "swept_below", "swept_beside", "swept_of"]
+__all__ = [
+    "Swept",
+    "list_swept_clearances",
+    "path_of",
+    "bound_spans",
+    "find_swept_below",
+    "find_swept_beside_carrier",
+    "find_swept_at_pegs",
+]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -107,9 +115,9 @@ class Swept:
     @classmethod
     def of_spans(cls, rows: Array, named: IntArray, inside: Array, filled_lines: IntArray) -> Swept:
         """Spans from rows (N, 6), with line and tool (N, 2) of each, and filled boxes (B, 4)."""
-        kept = each_path_once(rows)
+        kept = drop_repeated_paths(rows)
         rows, named = rows[kept], named[kept]
-        order, boxes = tree_order(rows, (segments := span_rows(rows)))
+        order, boxes = order_tree_leaves(rows, (segments := make_span_rows(rows)))
         count = len(order)
         filling = order < 0
         out, radius = np.zeros((count, SEGMENT_LENGTH)), np.full(count, -inf)
@@ -120,7 +128,7 @@ class Swept:
         line[~filling], tool[~filling] = named[chosen].T
         around[~filling] = boxes[chosen]
         out.setflags(write=False)
-        tree = SweptTree(out, radius, nodes_of(around, radius))
+        tree = SweptTree(out, radius, make_tree_nodes(around, radius))
         return cls(tree, line, tool, around, inside, filled_lines)
 
     def nearest(self, starts: Array, ends: Array) -> tuple[Array, IntArray]:
@@ -161,7 +169,7 @@ class Swept:
         """A point (N, 2) of each span: where an arc or a line begins."""
         rows = self.tree.rows
         is_clockwise = (rows[:, IS_ARC] != 0.0) & (rows[:, SIGN] < 0.0)
-        return np.asarray(ends_of_rows(rows)[np.arange(len(rows)), is_clockwise.astype(np.int64)])
+        return np.asarray(find_row_ends(rows)[np.arange(len(rows)), is_clockwise.astype(np.int64)])
 
     def reach_of_box(self, corners: Array) -> tuple[float, int]:
         """Least reach to a box with corners (4, 2) counterclockwise, inside and out, and the line of the program.
@@ -183,12 +191,12 @@ class Swept:
 
 
 @lru_cache(maxsize=16)
-def swept_below(program: Program, height: float) -> Swept:
+def find_swept_below(program: Program, height: float) -> Swept:
     """What a program sweeps at heights up to one in mm, above which nothing of a fixture reaches."""
     return Swept.below(program, height)
 
 
-def each_path_once(spans: Array) -> IntArray:
+def drop_repeated_paths(spans: Array) -> IntArray:
     """The numbers of the spans (N, 6) to keep, in order: of those of one path the one of the largest radius.
 
     What a smaller cylinder sweeps on a path, the largest sweeps as well.
@@ -203,10 +211,10 @@ def each_path_once(spans: Array) -> IntArray:
     return np.sort(order[fresh])
 
 
-def span_rows(spans: Array) -> Array:
+def make_span_rows(spans: Array) -> Array:
     """Rows (N, 10) as kernels take them of spans (N, 6); a span of no length is a line of none.
 
-    Formulas as in ``geometry.segment.segment_from_bulge``. The centres of shallow arcs are worked out with
+    Formulas as in ``geometry.segment.make_segment_from_bulge``. The centres of shallow arcs are worked out with
     eleven bits more, and what is left of them stands beside them.
     """
     out = np.zeros((len(spans), SEGMENT_LENGTH))
@@ -244,7 +252,7 @@ def path_of(row: Array) -> tuple[PathVertex, ...]:
     middle, axis, half = row[[X, Y]], row[[AXIS_X, AXIS_Y]], float(row[HALF_EXTENT])
     if row[IS_ARC]:
         ends = [
-            middle + row[RADIUS] * np.array(rotated(axis[0], axis[1], way * float(row[SIGN]) * half))
+            middle + row[RADIUS] * np.array(rotate_vectors(axis[0], axis[1], way * float(row[SIGN]) * half))
             for way in (-1, 1)
         ]
         bulge = float(row[SIGN]) * tan(half / 2)
@@ -254,7 +262,7 @@ def path_of(row: Array) -> tuple[PathVertex, ...]:
     return ((x, y, 0.0),) if half == 0.0 else ((x, y, bulge), (to_x, to_y, 0.0))
 
 
-def span_boxes(rows: Array) -> Array:
+def bound_spans(rows: Array) -> Array:
     """Boxes (N, 4) around rows (N, 10), x0, y0, x1, y1, a hair too wide."""
     is_arc, half = rows[:, IS_ARC] != 0.0, rows[:, HALF_EXTENT]
     out = np.empty((len(rows), 4))
@@ -269,9 +277,9 @@ def span_boxes(rows: Array) -> Array:
     return out
 
 
-def tree_order(spans: Array, rows: Array) -> tuple[IntArray, Array]:
+def order_tree_leaves(spans: Array, rows: Array) -> tuple[IntArray, Array]:
     """Numbers of spans in the order of the leaves, -1 for places left over, and the boxes (N, 4) of all."""
-    boxes = span_boxes(rows)
+    boxes = bound_spans(rows)
     leaves = 1
     while leaves * LEAF < len(spans):
         leaves *= 2
@@ -287,7 +295,7 @@ def tree_order(spans: Array, rows: Array) -> tuple[IntArray, Array]:
     return order, boxes
 
 
-def nodes_of(boxes: Array, radius: Array) -> Array:
+def make_tree_nodes(boxes: Array, radius: Array) -> Array:
     """The nodes (2 L, 5) of a tree with leaves of ``LEAF`` boxes (N, 4) and radii (N,) each."""
     level = np.column_stack(
         [
@@ -310,22 +318,22 @@ def nodes_of(boxes: Array, radius: Array) -> Array:
     return np.ascontiguousarray(np.concatenate([np.full((1, 5), -inf), *levels[::-1]]))
 
 
-def keeps_of(query: Query, carrier: Carrier) -> list[tuple[Swept, float]]:
+def list_swept_clearances(query: Query, carrier: Carrier) -> list[tuple[Swept, float]]:
     """What a query's program sweeps at the heights of a carrier's pegs, and what their centres keep besides.
 
     Where pegs have a shoulder below the part, what is swept there follows, with what that keeps.
     """
-    swept = swept_of(query, carrier)
+    swept = find_swept_at_pegs(query, carrier)
     if swept is None or query.program is None:
         return []
     pieces, clearance = swept
     keeps = [(pieces, clearance + carrier.peg_radius)]
     if carrier.body_radius > carrier.peg_radius:
-        keeps.append((swept_below(query.program, 0.0), clearance + carrier.body_radius))
+        keeps.append((find_swept_below(query.program, 0.0), clearance + carrier.body_radius))
     return keeps
 
 
-def swept_of(query: Query, carrier: Carrier) -> tuple[Swept, float] | None:
+def find_swept_at_pegs(query: Query, carrier: Carrier) -> tuple[Swept, float] | None:
     """What a query's program sweeps at the heights of a carrier's pegs, and the clearance in mm.
 
     None without a program.
@@ -333,10 +341,10 @@ def swept_of(query: Query, carrier: Carrier) -> tuple[Swept, float] | None:
     if query.passed is None:
         return None
     program, height = query.passed
-    return swept_beside(program, height, carrier), program.clearance
+    return find_swept_beside_carrier(program, height, carrier), program.clearance
 
 
-def swept_beside(program: Program, peg_height: float, carrier: Carrier) -> Swept:
+def find_swept_beside_carrier(program: Program, peg_height: float, carrier: Carrier) -> Swept:
     """What a program sweeps at the heights of what stands on a carrier.
 
     Parameters
@@ -344,10 +352,10 @@ def swept_beside(program: Program, peg_height: float, carrier: Carrier) -> Swept
     peg_height : up to which a carrier without heights of its own reaches, in mm.
     """
     low, high = carrier.heights or (0.0, peg_height)
-    return swept_between(program, low, high) if low > 0.0 else swept_below(program, high)
+    return find_swept_between(program, low, high) if low > 0.0 else find_swept_below(program, high)
 
 
 @lru_cache(maxsize=16)
-def swept_between(program: Program, low: float, high: float) -> Swept:
+def find_swept_between(program: Program, low: float, high: float) -> Swept:
     """What a program sweeps between two heights in mm."""
     return Swept.of(program.iter_swept(low, high))

@@ -28,7 +28,7 @@ from workhold.contact.swept import Swept
 from workhold.geometry.segment import Arc, Segment, bounding_box
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
 
-__all__ = ["covered_parts", "most_in_the_way", "parts_clear_of"]
+__all__ = ["find_covered_parts", "find_line_most_in_the_way", "trim_to_clear_parts"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -37,14 +37,14 @@ IntArray = NDArray[np.int64]
 LEAST_PART = 1e-6
 
 
-def parts_clear_of(segment: Segment, swept: Swept, beyond: float) -> list[Segment]:
+def trim_to_clear_parts(segment: Segment, swept: Swept, beyond: float) -> list[Segment]:
     """The parts of a segment on which a peg's centre is clear of what is swept.
 
     Parameters
     ----------
     beyond : clearance and radius of the peg together, in mm.
     """
-    return left_of(segment, covered_parts(segment, swept, beyond)[0])
+    return left_of(segment, find_covered_parts(segment, swept, beyond)[0])
 
 
 def left_of(segment: Segment, covered: Array) -> list[Segment]:
@@ -59,7 +59,7 @@ def left_of(segment: Segment, covered: Array) -> list[Segment]:
     return [segment.part(a, b) for a, b in zip(ends.tolist(), begins.tolist(), strict=True) if b - a > least]
 
 
-def most_in_the_way(segments: Sequence[Segment], swept: Swept, beyond: float) -> int | None:
+def find_line_most_in_the_way(segments: Sequence[Segment], swept: Swept, beyond: float) -> int | None:
     """The line of the program that covers the longest parts of segments; None where none does.
 
     Parameters
@@ -68,7 +68,7 @@ def most_in_the_way(segments: Sequence[Segment], swept: Swept, beyond: float) ->
     """
     lengths: dict[int, float] = {}
     for segment in segments:
-        covered, lines = covered_parts(segment, swept, beyond)
+        covered, lines = find_covered_parts(segment, swept, beyond)
         scale = segment.radius if isinstance(segment, Arc) else 1.0
         for line in np.unique(lines).tolist():
             free = sum(2 * part.half_extent for part in left_of(segment, covered[lines == line]))
@@ -76,7 +76,7 @@ def most_in_the_way(segments: Sequence[Segment], swept: Swept, beyond: float) ->
     return max(lengths, key=lambda line: (lengths[line], -line)) if lengths else None
 
 
-def covered_parts(segment: Segment, swept: Swept, beyond: float) -> tuple[Array, IntArray]:
+def find_covered_parts(segment: Segment, swept: Swept, beyond: float) -> tuple[Array, IntArray]:
     """Ranges (K, 2) of a segment's parameter nearer to the paths of swept pieces than radius and some more.
 
     Parameters
@@ -93,16 +93,20 @@ def covered_parts(segment: Segment, swept: Swept, beyond: float) -> tuple[Array,
     near = np.flatnonzero((gap < keep) & (swept.line >= 0))
     own = np.array(segment.row())
     rows, keep = swept.tree.rows[near], keep[near]
-    cuts = np.concatenate([on_circles(own, rows, keep), on_parallels(own, rows, keep)], axis=1)
-    ranges, piece = parts_where(own, cuts, lambda x, y: distances(rows, x, y) < keep[:, None])
+    cuts = np.concatenate(
+        [on_circles(own, rows, keep), find_crossings_with_parallels(own, rows, keep)], axis=1
+    )
+    ranges, piece = list_covered_parts_between_cuts(
+        own, cuts, lambda x, y: distances(rows, x, y) < keep[:, None]
+    )
     lines = swept.line[near][piece]
     if len(swept.filled):
-        inside, box = inside_boxes(own, swept.filled)
+        inside, box = find_parts_inside_boxes(own, swept.filled)
         ranges, lines = np.concatenate([ranges, inside]), np.concatenate([lines, swept.filled_line[box]])
     return ranges, lines
 
 
-def parts_where(
+def list_covered_parts_between_cuts(
     own: Array, cuts: Array, is_covered: Callable[[Array, Array], NDArray[np.bool_]]
 ) -> tuple[Array, IntArray]:
     """Ranges (K, 2) between neighbouring cuts (P, C) of a segment's row whose middles are covered, and of
@@ -172,7 +176,7 @@ def on_circle(own: Array, center: Array, radius: Array) -> Array:
     return in_one_turn(np.stack([middle - turn, middle + turn], axis=1))
 
 
-def on_parallels(own: Array, rows: Array, keep: Array) -> Array:
+def find_crossings_with_parallels(own: Array, rows: Array, keep: Array) -> Array:
     """Parameters (P, 4) at which a segment meets the parallels, ``keep`` (P,) away, of straight rows."""
     normal = np.stack([-rows[:, AXIS_Y], rows[:, AXIS_X]], axis=1)
     level = (normal * rows[:, [X, Y]]).sum(axis=1)
@@ -215,11 +219,11 @@ def distances(rows: Array, x: Array, y: Array) -> Array:
     return np.where(rows[:, IS_ARC, None] != 0.0, bent, straight)
 
 
-def inside_boxes(own: Array, boxes: Array) -> tuple[Array, IntArray]:
+def find_parts_inside_boxes(own: Array, boxes: Array) -> tuple[Array, IntArray]:
     """Ranges (K, 2) of a segment's parameter inside filled boxes (B, 4), and of which (K,) each is."""
     normals = np.tile(np.array([[1.0, 0.0], [0.0, 1.0]]), (2, 1))
     cuts = np.hstack(
         [on_line(own, np.tile(normals[k], (len(boxes), 1)), boxes[:, k]) for k in range(len(normals))]
     )
     x0, y0, x1, y1 = (boxes[:, k, None] for k in range(4))
-    return parts_where(own, cuts, lambda x, y: (x0 < x) & (x < x1) & (y0 < y) & (y < y1))
+    return list_covered_parts_between_cuts(own, cuts, lambda x, y: (x0 < x) & (x < x1) & (y0 < y) & (y < y1))

@@ -31,7 +31,7 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Line, Point, Segment, bounding_box
 from workhold.model.fixture import Fixture
 from workhold.model.jaw_hold import JawHold
-from workhold.model.setup import hole_centers
+from workhold.model.setup import find_hole_centers
 from workhold.model.shown import Shown, shown
 from workhold.model.workpiece import Workpiece
 
@@ -384,7 +384,7 @@ def draw_inset(
 
 def number_holes(scene: Scene, view: View, workpiece: Workpiece) -> None:
     for count, (loop, center) in enumerate(
-        zip(workpiece.hole_segments, hole_centers(workpiece), strict=True), 1
+        zip(workpiece.hole_segments, find_hole_centers(workpiece), strict=True), 1
     ):
         extent = reduce(Box.union, (Box(*bounding_box(segment)) for segment in loop))
         if min(extent.width, extent.height) * view.scale >= NUMBER + 2:

@@ -12,7 +12,7 @@ from math import atan2, cos, inf, pi, sin
 from workhold.drawing.annotation import LabelPlacer
 from workhold.drawing.scene import BLACK, GREY, Box, Scene, View
 from workhold.geometry.segment import Point
-from workhold.geometry.symmetry import rotated
+from workhold.geometry.symmetry import rotate_vectors
 from workhold.model.clamps import ShownClamp
 from workhold.model.shown import Shown, ShownCarrier, ShownJaws, Side
 
@@ -167,7 +167,7 @@ def block_arrow(
 ) -> None:
     """Draws an outlined arrow about a page point in a direction of the plan, whose y runs up."""
     turn = atan2(direction[1], -direction[0])
-    corners = [rotated(size * x, size * y, turn) for x, y in ARROW]
+    corners = [rotate_vectors(size * x, size * y, turn) for x, y in ARROW]
     scene.polygon([(middle[0] + dx, middle[1] + dy) for dx, dy in corners], "#ffffff", BLACK, 1.4 * weight)
 
 

@@ -10,7 +10,7 @@ from workhold.drawing.panel import TextColumn
 from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, SheetHeights, heading, usual_dowel
 from workhold.fixels.contacts import CLAMP_TIP, WALL_END
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.dowel_lengths import dowel_for
+from workhold.model.dowel_lengths import find_shortest_dowel
 from workhold.model.fixture import Fixture
 
 __all__ = ["HardwareItem", "hardware_of", "write_hardware"]
@@ -70,7 +70,7 @@ def write_hardware(column: TextColumn, sheet: Sheet) -> None:
         )
     pressed = pressed_up_to(sheet, heights)
     if pressed is not None:
-        shorter = dowel_for(sheet.toolkit.peg_diameter or 0.0, pressed + heights.supported_by)
+        shorter = find_shortest_dowel(sheet.toolkit.peg_diameter or 0.0, pressed + heights.supported_by)
         what = "shorter ones" if shorter is None else f"dowels of {shorter.name}"
         column.paragraph(
             f"No {plate.peg} is pressed above {lengths.words(pressed)}, so {what} are long enough too.", NOTE

@@ -11,14 +11,14 @@ from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, Writer, fact_or_fi
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.hold_words import (
-    coefficient_words,
-    faces_words,
+    describe_coefficients,
+    describe_touched_faces,
+    describe_work_stop,
     force_words,
     hold_reasons,
     set_force,
-    setup_sentences,
-    stop_words,
-    warning_sentences,
+    write_setup_sentences,
+    write_warnings,
 )
 from workhold.model.query import Query
 from workhold.model.workpiece import Workpiece
@@ -39,18 +39,18 @@ def draw_hold_panel(
     column.words("Opening S of the jaws", 13, fill=GREY, gap=0.8)
     column.words(lengths.words(hold.opening), 30, bold=True, gap=0.4)
     column.fact("Parallels", lengths.short(hold.parallels) if hold.parallels else "none, on the bed")
-    column.fact("Fixed jaw on", faces_words(hold.fixed))
-    column.fact("Moving jaw on", faces_words(hold.moving))
-    column.fact("Work stop", stop_words(hold, jaws.stop_offset, lengths.unit) or "none")
+    column.fact("Fixed jaw on", describe_touched_faces(hold.fixed))
+    column.fact("Moving jaw on", describe_touched_faces(hold.moving))
+    column.fact("Work stop", describe_work_stop(hold, jaws.stop_offset, lengths.unit) or "none")
     column.fact("Part turned by θ", degrees_text(fixture.pose.written_deg, 3))
     column.rule()
     write_figures(column, fixture, lengths)
     height = None if query is None else query.part_height
     draw_jaw_side(column, fixture, jaws, height, lengths)
-    for sentence in warning_sentences(hold):
+    for sentence in write_warnings(hold):
         column.item("▲", sentence, 12.5)
     if query is not None and query.loads:
-        column.paragraph(coefficient_words(query), 11.5, fill=GREY)
+        column.paragraph(describe_coefficients(query), 11.5, fill=GREY)
     column.rule()
 
 
@@ -108,9 +108,9 @@ def write_setting(column: TextColumn, sheet: Sheet) -> None:
         "parallels", lengths.short(hold.parallels) if hold.parallels else "none, on the bed", 20, bold=True
     )
     column.fact("opening S", lengths.words(hold.opening), 20, bold=True)
-    column.fact("on the fixed jaw", faces_words(hold.fixed), bold=True)
-    column.fact("the moving jaw presses", faces_words(hold.moving), bold=True)
-    column.fact("work stop", stop_words(hold, jaws.stop_offset, lengths.unit) or "none", bold=True)
+    column.fact("on the fixed jaw", describe_touched_faces(hold.fixed), bold=True)
+    column.fact("the moving jaw presses", describe_touched_faces(hold.moving), bold=True)
+    column.fact("work stop", describe_work_stop(hold, jaws.stop_offset, lengths.unit) or "none", bold=True)
     ends = min(hold.fixed.ends[0], hold.moving.ends[0]), max(hold.fixed.ends[1], hold.moving.ends[1])
     column.fact(
         "gripped along the jaws",
@@ -159,12 +159,12 @@ def write_force(column: TextColumn, sheet: Sheet) -> None:
     query = query_of(sheet)
     if hold.program_need is not None and query.program is not None:
         column.paragraph(asked_words(hold.program_need, query.program, unit), NOTE)
-    column.paragraph(coefficient_words(query), NOTE)
+    column.paragraph(describe_coefficients(query), NOTE)
 
 
 def write_hold_steps(column: TextColumn, sheet: Sheet) -> None:
     heading(column, "Setting up")
-    steps = list(setup_sentences(sheet.fixture, query_of(sheet), sheet.lengths.unit))
+    steps = list(write_setup_sentences(sheet.fixture, query_of(sheet), sheet.lengths.unit))
     steps.insert(0, "Clean jaws, parallels and part; break the edges that lie on them")
     steps.append("Tap the part down until no parallel slides, and close again")
     steps.append(f"Set the machine's zero, G54, from {sheet.datum.point} as given under part zero X0 Y0")

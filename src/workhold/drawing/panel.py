@@ -27,7 +27,7 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Point
 from workhold.model.clamps import order_words
 from workhold.model.fixture import Fixture
-from workhold.model.setup import contact_names, settings_of
+from workhold.model.setup import list_length_settings, name_contacts
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -230,7 +230,11 @@ def draw_title(
 
 
 def draw_settings(column: TextColumn, fixture: Fixture, toolkit: Toolkit, lengths: LengthUnit) -> None:
-    first, settings, several = toolkit.plates[0], settings_of(fixture, toolkit), len(fixture.travels) > 1
+    first, settings, several = (
+        toolkit.plates[0],
+        list_length_settings(fixture, toolkit),
+        len(fixture.travels) > 1,
+    )
     # What moves in this fixture, which of several clamps the toolkit has need not be its first.
     moving = settings[0].carrier
     for setting in settings:
@@ -284,7 +288,7 @@ def diameter_words(carrier: Carrier, lengths: LengthUnit) -> str:
 def draw_peg_table(column: TextColumn, fixture: Fixture, toolkit: Toolkit, lengths: LengthUnit) -> None:
     """Writes the pegs: hole, face, place and force."""
     first, rows = toolkit.plates[0], []
-    for peg, name in zip(fixture.pegs, contact_names(fixture, toolkit), strict=True):
+    for peg, name in zip(fixture.pegs, name_contacts(fixture, toolkit), strict=True):
         carrier, force = toolkit.carrier(peg.carrier), f"{peg.force:z.3f}".replace("-", "−")
         named = name.removeprefix(f"{carrier.noun} ") if carrier.measure == "tip" else name
         rows.append([named, peg.touched, lengths.number(peg.x), lengths.number(peg.y), force])

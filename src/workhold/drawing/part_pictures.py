@@ -9,7 +9,7 @@ from math import atan2, hypot, pi
 import numpy as np
 from numpy.typing import NDArray
 
-from workhold.contact.features import contact_features
+from workhold.contact.features import list_contact_features
 from workhold.drawing.annotation import Label, LabelPlacer, Place, around, dimension, joined, scale_bar
 from workhold.drawing.bench import ARROW, PART_FILL, outline_path, sampled, sampled_loop, segment_path
 from workhold.drawing.panel import plural
@@ -65,7 +65,7 @@ def draw_features(workpiece: Workpiece, *, peg_radius: float | None = None, unit
     draw_outline(scene, workpiece, view)
     features = list[Segment]()
     if peg_radius is not None:
-        features = [feature.segment for feature in contact_features(workpiece, peg_radius)]
+        features = [feature.segment for feature in list_contact_features(workpiece, peg_radius)]
         group = scene.group("contact-features", view)
         for segment in features:
             group.path(segment_path(segment, view), ARROW, 1.4, stroke_dasharray="7 4")

@@ -19,9 +19,9 @@ from workhold.model.fixture import Fixture
 from workhold.model.moves import Moves, along
 from workhold.model.pose import Pose
 from workhold.model.program import Program
-from workhold.model.program_figures import tip_box, tool_figures
+from workhold.model.program_figures import bound_tip, measure_tools
 from workhold.model.result import Result
-from workhold.statics.program_clearance import Passing, passing_of
+from workhold.statics.program_clearance import Passing, find_nearest_passing
 
 __all__ = [
     "COLOURS",
@@ -181,7 +181,7 @@ class PathLook:
 
 def moves_by_look(program: Program) -> Iterator[tuple[PathLook, NDArray[np.int64]]]:
     """The numbers of moves that look alike, in drawing order: bands, rapids, then cuts from above."""
-    moves, figures = program.moves, tool_figures(program)
+    moves, figures = program.moves, measure_tools(program)
     for place, one in enumerate(figures):
         yield PathLook("band", place, one.tool), np.flatnonzero((moves.tool == one.tool) & moves.cutting)
     flat = (moves.start[:, :2] != moves.end[:, :2]).any(axis=1)
@@ -267,7 +267,7 @@ class PlannedPath:
         moves, cut = program.moves, program.moves.cutting
         if not cut.any():
             return extent
-        low, high = tip_box(Moves(*(values[cut] for values in astuple(moves, recurse=False))))
+        low, high = bound_tip(Moves(*(values[cut] for values in astuple(moves, recurse=False))))
         around_path = max(tool.diameter for tool in program.tools.values()) / 2
         xs, ys = self.fixture.pose.apply(
             np.array([low[0], high[0], high[0], low[0]]), np.array([low[1], low[1], high[1], high[1]])
@@ -342,4 +342,4 @@ def planned_path(result: Result, index: int) -> PlannedPath | None:
     query = result.query
     if query.program is None:
         return None
-    return PlannedPath(query.program, result[index], passing_of(result, index), query.peg_height)
+    return PlannedPath(query.program, result[index], find_nearest_passing(result, index), query.peg_height)

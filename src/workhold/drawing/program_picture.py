@@ -25,7 +25,7 @@ from workhold.drawing.scene import BLACK, GREY, LANDSCAPE, Box, LengthUnit, Scen
 from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, heading
 from workhold.errors import listed
 from workhold.model.program import Program
-from workhold.model.program_figures import tip_box, tool_figures
+from workhold.model.program_figures import bound_tip, measure_tools
 from workhold.model.workpiece import Workpiece
 from workhold.units import MILLIMETRE, Unit
 
@@ -54,7 +54,7 @@ def draw_program(program: Program, *, workpiece: Workpiece | None = None, unit: 
     str
         SVG text; the group of class ``paths`` carries the map from mm to the page.
     """
-    figures = tool_figures(program)
+    figures = measure_tools(program)
     bounds = bounds_of(program, workpiece)
     lengths = LengthUnit.suiting(unit, max(bounds.width, bounds.height))
     width, height = LANDSCAPE
@@ -75,7 +75,7 @@ def draw_program(program: Program, *, workpiece: Workpiece | None = None, unit: 
 
 def bounds_of(program: Program, workpiece: Workpiece | None) -> Box:
     """What is shown, in mm: all that the flutes sweep at their paths, the zero and the part."""
-    low, high = tip_box(program.moves)
+    low, high = bound_tip(program.moves)
     around = max(tool.diameter for tool in program.tools.values()) / 2
     swept = Box(*low[:2].tolist(), *high[:2].tolist()).grown(around)
     bounds = swept.union(Box(*program.zero, *program.zero))
@@ -93,7 +93,7 @@ def draw_zero(scene: Scene, at: tuple[float, float]) -> None:
 
 
 def draw_legend(scene: Scene, program: Program, lengths: LengthUnit, box: Box) -> None:
-    group, figures, y = scene.group("legend"), tool_figures(program), box.y0 + 8
+    group, figures, y = scene.group("legend"), measure_tools(program), box.y0 + 8
     for place, one in enumerate(figures[:MOST_LISTED]):
         tool = program.tools[one.tool]
         group.line([(box.x0, y), (box.x0 + 26, y)], COLOURS[place % len(COLOURS)], 8, stroke_linecap="round")
@@ -161,7 +161,7 @@ def write_path(column: TextColumn, path: PlannedPath, lengths: LengthUnit, fill:
 
 def write_tools(column: TextColumn, program: Program, lengths: LengthUnit, fill: str) -> None:
     ends = [column.x + SWATCH + 8 + share * (column.width - SWATCH - 8) for share in COLUMNS]
-    figures = tool_figures(program)
+    figures = measure_tools(program)
     header = ("", "tool", f"Ø {lengths.sign}", "lines", "lowest cut z")
     column.y += 0.75 * SIZE
     for at, words in zip(ends[1:], header[1:], strict=True):
@@ -195,7 +195,7 @@ def tools_above(path: PlannedPath) -> list[str]:
     """The tools that never come down to the pegs; none where nobody knows how high these are."""
     if path.peg_height is None:
         return []
-    return [f"T{one.tool}" for one in tool_figures(path.program) if one.lowest > path.peg_height]
+    return [f"T{one.tool}" for one in measure_tools(path.program) if one.lowest > path.peg_height]
 
 
 def passing_sentence(path: PlannedPath, lengths: LengthUnit) -> str:

@@ -50,8 +50,14 @@ from workhold.drawing.upper_side import write_part, write_side, write_side_up
 from workhold.errors import listed
 from workhold.fixels.carrier import Carrier, Measure, column_letters, hole_name
 from workhold.fixels.contacts import WALL_END
-from workhold.model.clamps import clamp_names, clamp_shares, freedom_words, order_words, second_over_first
-from workhold.model.moved_setup import overhang_words, spare_holes
+from workhold.model.clamps import (
+    compute_clamp_force_ratio,
+    compute_clamp_shares,
+    describe_clamp_freedom,
+    name_clamps,
+    order_words,
+)
+from workhold.model.moved_setup import count_spare_holes, describe_overhang
 from workhold.model.quality import (
     CLAMP_AMPLIFICATION,
     CLOSURE_MARGIN,
@@ -62,8 +68,8 @@ from workhold.model.quality import (
     WRENCH_RADIUS,
 )
 from workhold.model.requirements import ANY_DIRECTION, Load
-from workhold.model.setup import LengthSetting, contact_names
-from workhold.statics.loads import jaw_words
+from workhold.model.setup import LengthSetting, name_contacts
+from workhold.statics.loads import describe_jaw
 from workhold.units import INCH
 
 __all__ = ["blocks_of"]
@@ -88,7 +94,7 @@ def write_pegs(column: TextColumn, sheet: Sheet) -> None:
     )
     for wall in (carrier for carrier in toolkit.carriers if carrier.contact is WALL_END):
         write_flush(column, sheet, wall)
-    if words := overhang_words(sheet.fixture, toolkit, sheet.workpiece, sheet.lengths.words):
+    if words := describe_overhang(sheet.fixture, toolkit, sheet.workpiece, sheet.lengths.words):
         column.paragraph(words, NOTE, bold=True)
     added = "" if sheet.is_closed_at_once else f"; this force is the sum of both {noun}s, in the ratio below"
     column.paragraph(f"{per} of {noun} force{added}, without friction.", NOTE)
@@ -188,7 +194,7 @@ OPENING = MovingBlocks(lambda sheet: [write_opening], opening_steps)
 
 def clamp_writers(sheet: Sheet) -> list[Writer]:
     """The blocks about the clamp, or about each of two and the order in which they are tightened."""
-    shares = clamp_shares(sheet.fixture)
+    shares = compute_clamp_shares(sheet.fixture)
     each: list[Writer] = [
         partial(write_clamp, setting=one, share=share)
         for one, share in zip(sheet.settings, shares, strict=True)
@@ -225,14 +231,14 @@ def needed_force(sheet: Sheet) -> float:
 
 
 def write_order(column: TextColumn, sheet: Sheet) -> None:
-    fixture, (first, second) = sheet.fixture, clamp_names(sheet.fixture)
+    fixture, (first, second) = sheet.fixture, name_clamps(sheet.fixture)
     heading(column, "Order of tightening")
     column.paragraph(order_words(fixture), BODY, bold=True)
-    ratio = second_over_first(fixture)
+    ratio = compute_clamp_force_ratio(fixture)
     freedom = fixture.quality["clamp_freedom"]
     column.fact("clamp freedom, of 90°", f"{freedom:.1f}°", bold=True)
     column.paragraph(
-        f"{freedom_words(freedom).capitalize()}. The forces on this sheet are for {second} with "
+        f"{describe_clamp_freedom(freedom).capitalize()}. The forces on this sheet are for {second} with "
         f"{ratio:.2f} times the force of {first}, the middle of the range that holds.",
         NOTE,
     )
@@ -269,7 +275,7 @@ def clamping_words(sheet: Sheet) -> str:
         return f"Clamp{'' if force is None else f' with {unit.force_words(force)}'}."
     if force is None:
         return order_words(fixture)
-    shares = zip(clamp_names(fixture), clamp_shares(fixture), strict=True)
+    shares = zip(name_clamps(fixture), compute_clamp_shares(fixture), strict=True)
     each = [f"{unit.force_words(share * force)} at {name}" for name, share in shares]
     return f"{order_words(fixture)} {listed(each)} add up to the {unit.force_words(force)} given."
 
@@ -333,7 +339,7 @@ def place_words(sheet: Sheet) -> str:
 
 def moving_words(sheet: Sheet) -> str:
     ways = []
-    spares = spare_holes(sheet.fixture, sheet.toolkit)
+    spares = count_spare_holes(sheet.fixture, sheet.toolkit)
     words = (("column", "left", "right"), ("row", "down", "up"))
     for (back, ahead), (noun, down, up) in zip(spares, words, strict=True):
         for spare, way in ((ahead, up), (back, down)):
@@ -422,7 +428,7 @@ def write_loads(column: TextColumn, sheet: Sheet) -> None:
     heading(column, f"Loads and reactions, {unit.force}")
     cases = sorted(enumerate(details.loads, 1), key=lambda numbered: -numbered[1].needed.value)
     friction = [] if details.friction is None else [f"µ {details.friction:g}"]
-    names = [name.removeprefix(f"{moving.noun} ") for name in contact_names(sheet.fixture, sheet.toolkit)]
+    names = [name.removeprefix(f"{moving.noun} ") for name in name_contacts(sheet.fixture, sheet.toolkit)]
     header = ["Load", "needs" if sheet.toolkit.tips else moving.pushers, *friction, *names]
     rows = []
     for number, case in cases[:MOST_LOADS]:
@@ -441,7 +447,7 @@ def write_loads(column: TextColumn, sheet: Sheet) -> None:
         )
     at = unit.force_words(cases[0][1].jaw_force)
     what = f"the {moving.noun} force below which a peg lets go in "
-    what += jaw_words(cases[0][1].jaw_stiffness, sheet.toolkit)
+    what += describe_jaw(cases[0][1].jaw_stiffness, sheet.toolkit)
     column.paragraph(f"{header[1].capitalize()}: {what}, without friction.", NOTE)
     if not sheet.is_closed_at_once:
         column.paragraph(

@@ -21,13 +21,13 @@ from workhold.model.bodies import SUPPORT_HEIGHT
 from workhold.model.first_side import FirstSide
 from workhold.model.fixture import Fixture
 from workhold.model.hold_words import hold_cautions
-from workhold.model.moved_setup import middle_move, move_to, moved_on
+from workhold.model.moved_setup import find_move_to_middle, move_fixture_by_holes, move_to
 from workhold.model.program import Program
 from workhold.model.requirements import Load, Tolerance
 from workhold.model.result import Result
 from workhold.model.seating import Seating
 from workhold.model.setup import PartZero, part_zero
-from workhold.model.support_bodies import height_of_supports
+from workhold.model.support_bodies import find_support_height
 from workhold.model.support_triples import ChosenSupports
 from workhold.model.workpiece import Workpiece
 from workhold.seating.clamping import ByHand, by_hand
@@ -35,8 +35,8 @@ from workhold.statics.bent_pegs import BentPegs, bent_pegs
 from workhold.statics.contact_matrix import Touched
 from workhold.statics.judging import is_astray, is_near_edge, is_strong, is_unfit, is_weak, lets_go
 from workhold.statics.loads import LoadCase, load_cases
-from workhold.statics.program_clearance import Passing, passing_of
-from workhold.statics.program_forces import CuttingNeed, cutting_need_of
+from workhold.statics.program_clearance import Passing, find_nearest_passing
+from workhold.statics.program_forces import CuttingNeed, find_cutting_need
 from workhold.statics.why_first import why_first
 from workhold.units import MILLIMETRE, Unit
 from workhold.version import __version__
@@ -298,7 +298,7 @@ def cautions_of(
 def placing_of(fixture: Fixture, result: Result, at: str | None) -> tuple[int, int]:
     """Columns and rows by which a fixture of a result stands further on where it is asked to."""
     if at is None:
-        return middle_move(fixture, result.toolkit, result.workpiece)
+        return find_move_to_middle(fixture, result.toolkit, result.workpiece)
     return move_to(fixture, result.toolkit, at)
 
 
@@ -306,7 +306,7 @@ def lift_of(supports: ChosenSupports | None, support_height: float | None) -> fl
     """How far the part lies above the plates in mm: as high as its supports, or 0 without any."""
     if supports is None:
         return 0.0
-    own = height_of_supports(supports.supports.query.toolkit) if support_height is None else support_height
+    own = find_support_height(supports.supports.query.toolkit) if support_height is None else support_height
     return SUPPORT_HEIGHT if own is None else own
 
 
@@ -406,7 +406,7 @@ def result_details(
         For a jaw force, a coefficient of friction, a part zero or a place on the plate that cannot be.
     """
     from workhold.seating.solver import Solver
-    from workhold.statics.quality import measured_fixture
+    from workhold.statics.quality import measure_fixture
 
     question = SheetQuestion(**asked)
     if result.toolkit.flat_jaws is not None:
@@ -415,13 +415,13 @@ def result_details(
     peg_height, support_height = question.peg_height, question.support_height
     loads = result.query.loads if loads is None else loads
     jaw_force = result.query.jaw_force if question.jaw_force is None else question.jaw_force
-    fixture = measured_fixture(result, rank - 1, loads, jaw_force)
+    fixture = measure_fixture(result, rank - 1, loads, jaw_force)
     workpiece, toolkit = result.workpiece, result.toolkit
     known, not_seated = result[rank - 1].seating if seating is not False else None, ""
     if supports is not None and at is not None:
         supports = supports.standing_at(at)
     move = placing_of(fixture, result, at) if supports is None else supports.recounted.move
-    placed = moved_on(fixture, toolkit, move) if supports is None else supports.recounted.fixture
+    placed = move_fixture_by_holes(fixture, toolkit, move) if supports is None else supports.recounted.fixture
     if placed.pegs != fixture.pegs:
         # The readings of its seats would be those of other holes.
         seating, known = seating or known is not None, None
@@ -438,7 +438,10 @@ def result_details(
     if peg_height is None and reach is not None:
         # The query's height is above where the part lies, the sheet's above the plates.
         peg_height = reach + lift_of(supports, support_height)
-    cutting, passing = cutting_need_of(result, rank - 1, jaw_force, jaw), passing_of(result, rank - 1)
+    cutting, passing = (
+        find_cutting_need(result, rank - 1, jaw_force, jaw),
+        find_nearest_passing(result, rank - 1),
+    )
     named = [peg.hole for peg in result[rank - 1].pegs], [peg.hole for peg in fixture.pegs]
     if cutting is not None:
         cutting = cutting.in_holes(*named)

@@ -26,13 +26,13 @@ from workhold.fixels.setup_words import Datum
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Point
 from workhold.model.bodies import THICKNESS
-from workhold.model.dowel_lengths import SoldDowel, dowel_for, standouts
-from workhold.model.dowels import fit_words
+from workhold.model.dowel_lengths import SoldDowel, find_shortest_dowel, standouts
+from workhold.model.dowels import describe_fit
 from workhold.model.fixture import Fixture
 from workhold.model.own_outlines import numbered_solid
-from workhold.model.setup import LengthSetting, PartZero, contact_names, part_zero, settings_of
+from workhold.model.setup import LengthSetting, PartZero, list_length_settings, name_contacts, part_zero
 from workhold.model.solid import Band
-from workhold.model.support_bodies import height_of_supports
+from workhold.model.support_bodies import find_support_height
 from workhold.model.support_request import pressed_by
 from workhold.model.support_triples import ChosenSupports
 from workhold.model.workpiece import Workpiece
@@ -137,7 +137,7 @@ def heights_of(
             "plates: give a larger peg height, or lower supports."
         )
     diameter, length = toolkit.peg_diameter or 0.0, details.peg_length
-    dowel = None if length is not None else dowel_for(diameter, top + lift)
+    dowel = None if length is not None else find_shortest_dowel(diameter, top + lift)
     if length is None:
         # A peg that is not sold is made as long as it must be to sit as deep as one that is.
         deep = DOWEL_DEPTH * diameter or plate
@@ -145,7 +145,7 @@ def heights_of(
     is_assumed = {
         "supported_by": supports is not None
         and details.support_height is None
-        and height_of_supports(toolkit) is None,
+        and find_support_height(toolkit) is None,
         "plate_thickness": details.plate_thickness is None,
         "peg_top": details.peg_height is None and solid is None,
         "peg_length": details.peg_length is None and dowel is None,
@@ -252,7 +252,7 @@ class Sheet:
     def dowel(self) -> str | None:
         """What the pegs are and how they fit their holes; None where nobody knows."""
         fit, diameter = self.details.tolerance.fit, 2 * self.toolkit.plates[0].peg_radius
-        return self.details.dowel or (None if fit is None else fit_words(fit, diameter))
+        return self.details.dowel or (None if fit is None else describe_fit(fit, diameter))
 
     @property
     def is_closed_at_once(self) -> bool:
@@ -261,7 +261,7 @@ class Sheet:
 
     @property
     def settings(self) -> tuple[LengthSetting, ...]:
-        return settings_of(self.fixture, self.toolkit)
+        return list_length_settings(self.fixture, self.toolkit)
 
 
 Writer = Callable[[TextColumn, Sheet], None]
@@ -321,7 +321,7 @@ def peg_rows(sheet: Sheet) -> tuple[list[str], list[list[str]], str]:
     if force is not None:
         header.append(f"at {unit.force_alone(force)}")
     rows = []
-    for name, peg in zip(contact_names(sheet.fixture, sheet.toolkit), sheet.fixture.pegs, strict=True):
+    for name, peg in zip(name_contacts(sheet.fixture, sheet.toolkit), sheet.fixture.pegs, strict=True):
         looks = "–" if peg.flat_deg is None else f"{peg.flat_deg:.2f}°"
         row = [name, peg.touched, *[looks] * flats, number(peg.x), number(peg.y), f"{KILO * peg.force:.0f}"]
         rows.append(row if force is None else [*row, unit.force_alone(force * peg.force)])
@@ -392,4 +392,4 @@ def usual_dowel(sheet: Sheet, heights: SheetHeights) -> SoldDowel | None:
     diameter = sheet.toolkit.peg_diameter or 0.0
     usual = min(DOWEL_STANDOUT * diameter, heights.peg_top) + SAME_HEIGHT
     low = [one for one in standouts(diameter) if one <= usual]
-    return dowel_for(diameter, max(low)) if low else None
+    return find_shortest_dowel(diameter, max(low)) if low else None

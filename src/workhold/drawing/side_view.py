@@ -22,7 +22,7 @@ from workhold.drawing.bench import Bench, contact_of
 from workhold.drawing.scene import View
 from workhold.drawing.sheet_writing import SheetHeights
 from workhold.fixels.contacts import CLAMP_TIP
-from workhold.geometry.loop import checked_vertices, loop_segments
+from workhold.geometry.loop import check_vertices, loop_segments
 from workhold.geometry.segment import Box, Point
 from workhold.model.solid import Band
 from workhold.model.support_triples import ChosenSupports
@@ -238,7 +238,7 @@ def spans_of(loops: Iterable[Sequence[Sequence[float]]], bench: Bench, way: View
     found = []
     for number, loop in enumerate(loops):
         rows = [list(vertex) for vertex in loop]
-        vertices = checked_vertices(rows, f"face {number}", lambda side: f"side {side}")
+        vertices = check_vertices(rows, f"face {number}", lambda side: f"side {side}")
         placed = map(bench.fixture.pose.carry, loop_segments(vertices))
         places = [way.across(one.at(share * one.half_extent)) for one in placed for share in SHARES]
         found.append((min(places), max(places)))

@@ -24,7 +24,7 @@ from workhold.geometry.segment import Arc, Point
 from workhold.geometry.symmetry import is_own_mirror_image, middle_of
 from workhold.model.first_side import FirstSide
 from workhold.model.fixture import Fixture
-from workhold.model.setup import hole_centers
+from workhold.model.setup import find_hole_centers
 from workhold.model.solid import SolidOutline
 from workhold.model.workpiece import Workpiece
 
@@ -107,7 +107,9 @@ def marks_of(workpiece: Workpiece) -> list[Mark]:
     outer, (x, y) = workpiece.outer_count, workpiece.center
     segments = {face.number: face.segment for face in workpiece.faces}
     holes, number = [], outer
-    for count, (loop, at) in enumerate(zip(workpiece.hole_segments, hole_centers(workpiece), strict=True), 1):
+    for count, (loop, at) in enumerate(
+        zip(workpiece.hole_segments, find_hole_centers(workpiece), strict=True), 1
+    ):
         face = segments.get(number)
         radius = face.radius if isinstance(face, Arc) and face.is_full else 0.0
         holes.append(Mark(count, (at[0] - x, at[1] - y), sum(segment.length for segment in loop), radius, 2))

@@ -35,9 +35,9 @@ from workhold.family.solver import ROUNDING, best_choice, load_solver
 from workhold.fixels.carrier import Carrier, column_letters
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Line
-from workhold.model.clamps import shown_clamps
+from workhold.model.clamps import list_shown_clamps
 from workhold.model.fixture import Fixture
-from workhold.model.fixture_table import FixtureTable, fixture_at
+from workhold.model.fixture_table import FixtureTable, make_fixture_of_row
 from workhold.model.workpiece import Workpiece
 from workhold.units import MILLIMETRE, Unit
 
@@ -95,7 +95,7 @@ def bodies_of(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Bodie
             ends = [placed.at(placed.half_extent * (2 * k / count - 1)) for k in range(count + 1)]
             chords += list(pairwise(ends))
     locators = [peg for peg in fixture.pegs if toolkit.carrier(peg.carrier).has_lattice]
-    clamps = list(shown_clamps(fixture, toolkit))
+    clamps = list(list_shown_clamps(fixture, toolkit))
     cores = [((peg.x, peg.y), (peg.x, peg.y)) for peg in locators]
     cores += [(clamp.back, (clamp.tip.x, clamp.tip.y)) for clamp in clamps]
     radius = [toolkit.carrier(peg.carrier).body_radius for peg in locators]
@@ -292,7 +292,7 @@ WEIGHT = 0.6
 def copies_of(row: FixtureTable, toolkit: Toolkit, workpiece: Workpiece, packing: Packing) -> list[Fixture]:
     """Return every copy of a fixture, a table of one row, where it stands."""
     moved = (shifted(row, toolkit, {0: columns}, rows) for columns, rows in packing.shifts)
-    return [fixture_at(one, toolkit, 0, workpiece) for one in moved]
+    return [make_fixture_of_row(one, toolkit, 0, workpiece) for one in moved]
 
 
 def draw_copies(

@@ -28,9 +28,9 @@ from workhold.files.result.writer import toolkit_fields
 from workhold.fixels.contacts import CLAMP_TIP
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture, Peg
-from workhold.model.quality import FIGURES, Figure, figure_number
+from workhold.model.quality import FIGURES, Figure, find_figure_number
 from workhold.model.query import Query
-from workhold.model.setup import PartZero, part_zero, settings_of
+from workhold.model.setup import PartZero, list_length_settings, part_zero
 from workhold.model.workpiece import Workpiece
 from workhold.search.design import answer
 from workhold.version import __version__
@@ -210,7 +210,7 @@ def family_of(
             members.append(member)
         else:
             out.append(LeftOut(one.name, one.path, reason_of(member, bool(len(member.words)))))
-    figure = FIGURES[figure_number(first.rank_by[0]) or 0]
+    figure = FIGURES[find_figure_number(first.rank_by[0]) or 0]
     if not members:
         return Family(first.toolkit, figure, (), tuple(out), (), None)
     table = table_of(members)
@@ -332,7 +332,7 @@ def holding_entry(one: Holding, toolkit: Toolkit, number: int) -> dict[str, Any]
 
 def opening_entry(fixture: Fixture, toolkit: Toolkit) -> dict[str, Any]:
     """Return what is set for a part: the opening of a vise, or the strokes or places of clamps."""
-    lengths = [length(setting.length) for setting in settings_of(fixture, toolkit)]
+    lengths = [length(setting.length) for setting in list_length_settings(fixture, toolkit)]
     return {"opening": lengths[0] if len(lengths) == 1 else lengths}
 
 

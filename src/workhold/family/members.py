@@ -28,11 +28,18 @@ from workhold.model.quality import (
     FIGURES,
     PAIR_FIGURES,
     Figure,
-    figure_column,
-    figure_number,
+    find_figure_number,
+    select_figure_column,
 )
 from workhold.model.query import Query
-from workhold.model.requirements import ANY_DIRECTION, Load, Restrictions, Tolerance, are_within, zone_of
+from workhold.model.requirements import (
+    ANY_DIRECTION,
+    Load,
+    Restrictions,
+    Tolerance,
+    lie_in_angle_ranges,
+    make_zone,
+)
 from workhold.model.result import Result
 from workhold.model.setup import PartZero, part_zero
 from workhold.model.workpiece import Workpiece
@@ -84,7 +91,7 @@ def threshold(name: str, value: float) -> Threshold:
     InputError
         For a name that is no figure.
     """
-    number = figure_number(name)
+    number = find_figure_number(name)
     if number is None:
         raise InputError(
             f"{name!r} is no figure: choose among {', '.join(figure.option for figure in FIGURES)}."
@@ -132,7 +139,7 @@ def may_be_used(
     """
     good = np.ones(len(table), np.bool_) if with_unfit else ~unfit(table.quality, tolerance)
     for one in thresholds:
-        values = np.round(figure_column(table.quality, one.figure), FIGURE_DECIMALS)
+        values = np.round(select_figure_column(table.quality, one.figure), FIGURE_DECIMALS)
         good &= values >= one.value if one.figure.more_is_better else values <= one.value
     return good
 
@@ -210,7 +217,7 @@ def other_side(query: Query, read: Workpiece | None = None) -> Query:
         workpiece=workpiece,
         restrictions=Restrictions(
             avoid=avoid,
-            zones=[zone_of(mirrored(zone.loop).tolist()) for zone in asked.zones],
+            zones=[make_zone(mirrored(zone.loop).tolist()) for zone in asked.zones],
             angles=asked.angles,
             touch=touch,
         ),
@@ -283,9 +290,9 @@ def member_of(
     whether patterns also differ where the zero lies elsewhere or the part is turned otherwise.
     """
     query = result.query
-    figure = FIGURES[figure_number(query.rank_by[0]) or 0]
+    figure = FIGURES[find_figure_number(query.rank_by[0]) or 0]
     table, number = with_half_turns(result.table, query)
-    values = figure_column(table.quality, figure)
+    values = select_figure_column(table.quality, figure)
     if figure.key == LOCATION:
         # A part that is held to a hundredth, but aslant, is not held well.
         values = EffectiveErrors.of(query).errors(table)
@@ -351,7 +358,7 @@ def with_half_turns(table: FixtureTable, query: Query) -> tuple[FixtureTable, In
 
 def at_angle(degrees: NDArray[np.float64], query: Query) -> NDArray[np.bool_]:
     """Return whether orientations (N,) in degrees lie in a range allowed; without ranges all do."""
-    return np.asarray(are_within(degrees, query.restrictions.angles))
+    return np.asarray(lie_in_angle_ranges(degrees, query.restrictions.angles))
 
 
 def spilled(table: FixtureTable) -> FixtureTable:

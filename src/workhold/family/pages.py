@@ -37,7 +37,7 @@ from workhold.family.family import Family
 from workhold.family.members import loss_figure_words, loss_text
 from workhold.family.plan import Holding, Plan, SetUp
 from workhold.model.quality import Figure
-from workhold.model.setup import settings_of
+from workhold.model.setup import list_length_settings
 from workhold.units import MILLIMETRE, Unit
 from workhold.version import __version__
 
@@ -307,7 +307,7 @@ def grid(count: int, room: Box) -> list[Box]:
 
 def table_head(one: Holding, titles: Titles) -> list[str]:
     sign, of = titles.lengths.sign, titles.figure.unit
-    settings = settings_of(one.fixture, one.member.query.toolkit)
+    settings = list_length_settings(one.fixture, one.member.query.toolkit)
     unit = sign if of == "mm" else of
     lengths = [
         f"{name} {sign}"
@@ -321,7 +321,7 @@ def table_row(one: Holding, titles: Titles) -> list[str]:
     x, y = fixture.pose.apply(*one.member.zero.point)
     return [
         one.member.name,
-        *(number(setting.length) for setting in settings_of(fixture, one.member.query.toolkit)),
+        *(number(setting.length) for setting in list_length_settings(fixture, one.member.query.toolkit)),
         number(x),
         number(y),
         f"{fixture.pose.written_deg:z.4f}°",

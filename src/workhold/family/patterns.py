@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from workhold.conventions import GAP_SLACK
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.symmetry import rotated
+from workhold.geometry.symmetry import rotate_vectors
 from workhold.listing.canonical_form import packed
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.setup import PartZero
@@ -100,7 +100,7 @@ def zero_words(table: FixtureTable, toolkit: Toolkit, zero: PartZero) -> IntArra
     pitch = toolkit.carriers[0].pitch
     column = least(table.column.astype(np.int64), counts[:, :, 0] & still)[:, 0]
     row = 0 if toolkit.datum.fixes_rows else least(table.row.astype(np.int64), counts[:, :, 1])[:, 0]
-    x, y = rotated(zero.point[0], zero.point[1], table.theta)
+    x, y = rotate_vectors(zero.point[0], zero.point[1], table.theta)
     degrees = np.degrees(table.theta) + SAME_TURN / 2
     places = [
         (x + table.position[:, 0] - column * pitch[0]) / SAME_ZERO,

@@ -22,8 +22,8 @@ from workhold.family.members import Member
 from workhold.family.patterns import NOTHING, holes_of, moved_onto, shifted
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
-from workhold.model.fixture_table import FixtureTable, fixture_at
-from workhold.model.quality import figure_number
+from workhold.model.fixture_table import FixtureTable, make_fixture_of_row
+from workhold.model.quality import find_figure_number
 
 __all__ = ["MOST_EXACT", "Freedom", "Holding", "Plan", "SetUp", "Step", "best_order", "freedom_of", "plan_of"]
 
@@ -171,11 +171,11 @@ class Holding:
     @property
     def fixture(self) -> Fixture:
         """The fixture as it stands in the set-up."""
-        return fixture_at(self.row, self.member.query.toolkit, 0, self.member.query.workpiece)
+        return make_fixture_of_row(self.row, self.member.query.toolkit, 0, self.member.query.workpiece)
 
     @property
     def figure(self) -> float:
-        return float(self.row.quality[0, figure_number(self.member.query.rank_by[0]) or 0])
+        return float(self.row.quality[0, find_figure_number(self.member.query.rank_by[0]) or 0])
 
 
 @frozen(eq=False)

@@ -27,7 +27,7 @@ from workhold.model.fixture import Fixture
 from workhold.model.query import Query
 from workhold.model.requirements import Zone
 from workhold.model.result import Result
-from workhold.model.support_request import Loops, SupportRequest, usual_head
+from workhold.model.support_request import Loops, SupportRequest, compute_usual_head
 from workhold.model.support_triples import ClampFigures, SupportPad, Supports, Triple
 
 __all__ = ["query_of", "read_supports", "supports_entry", "write_supports"]
@@ -183,7 +183,7 @@ def beside_tip(request: SupportRequest) -> dict[str, Any]:
     entry: dict[str, Any] = {}
     if request.tip_margin != 0.0:
         entry["tip_margin"] = request.tip_margin
-    if request.head_radius != usual_head(request.tip_radius):
+    if request.head_radius != compute_usual_head(request.tip_radius):
         entry["head_radius"] = request.head_radius
     for name in ("rising", "hanging"):
         if loops := getattr(request, name):

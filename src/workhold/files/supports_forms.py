@@ -13,8 +13,8 @@ from workhold.files.budget import LIMITS
 from workhold.files.input_forms import LONGEST_NAME
 from workhold.files.result.forms import FormPart
 from workhold.files.text import json_value, read_text
-from workhold.model.requirements import ANY_DIRECTION, Zone, circle_zone, polygon_zone, zone_of
-from workhold.model.support_request import SpatialLoad, SupportRequest, usual_head
+from workhold.model.requirements import ANY_DIRECTION, Zone, circle_zone, make_zone, polygon_zone
+from workhold.model.support_request import SpatialLoad, SupportRequest, compute_usual_head
 
 __all__ = ["FORMAT", "ReadFigures", "ReadTriple", "SupportsPart", "read_supports_part"]
 
@@ -41,7 +41,7 @@ class ZonePart(FormPart):
             return circle_zone(*self.circle)
         if self.polygon is not None:
             return polygon_zone(self.polygon)
-        return zone_of(self.loop or [])
+        return make_zone(self.loop or [])
 
 
 class HeightsPart(FormPart):
@@ -260,7 +260,7 @@ class SupportsPart(FormPart):
             reach=tip.reach,
             point=tip.point,
             tip_margin=tip.tip_margin,
-            head_radius=usual_head(tip.tip_radius) if tip.head_radius is None else tip.head_radius,
+            head_radius=compute_usual_head(tip.tip_radius) if tip.head_radius is None else tip.head_radius,
             rising=tip.rising,
             rising_heights=tip.rising_heights,
             hanging=tip.hanging,

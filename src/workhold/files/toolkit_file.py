@@ -36,7 +36,7 @@ from workhold.fixels.kinds import KINDS, USUAL, kind_of, toolkit_of
 from workhold.fixels.support_hardware import HARDWARE, TOP_CLAMP, TopClamp, hardware_of
 from workhold.fixels.table import Form
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.dowels import DowelSize, Fit, Limits, peg_error, refuse_limits
+from workhold.model.dowels import DowelSize, Fit, Limits, compute_peg_error, refuse_limits
 from workhold.model.requirements import Tolerance
 from workhold.units import Unit, unit_named
 
@@ -266,7 +266,9 @@ def tolerance_of(entries: Mapping[str, Any], unit: Unit, peg_radius: float) -> T
     """
     usual, fit = Tolerance(), fit_of(entries, unit, peg_radius)
     # Rounded to where a difference of decimal figures is exact again.
-    peg = usual.peg if fit is None else round(peg_error(peg_radius, fit.pin, fit.hole, fit.position), 9)
+    peg = (
+        usual.peg if fit is None else round(compute_peg_error(peg_radius, fit.pin, fit.hole, fit.position), 9)
+    )
     given = {key: unit.length(entries[key]) for key in ("peg_tolerance", "face_tolerance") if key in entries}
     return Tolerance(given.get("peg_tolerance", peg), given.get("face_tolerance", usual.face), fit)
 

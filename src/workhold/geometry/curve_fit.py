@@ -25,19 +25,19 @@ from numpy.typing import NDArray
 from workhold.conventions import AS_ARC, CORNER, CURVATURE_JUMP, DISGUISE, SHORTEST
 from workhold.geometry.rational import (
     Pieces,
+    compute_end_curvatures,
+    compute_end_directions,
     cut,
     departure,
     direction_at,
-    end_curvatures,
-    end_directions,
+    drop_point_pieces,
     point_at,
     points_along,
-    without_points,
 )
-from workhold.geometry.segment import Arc, Line, Point, segment_from_bulge
+from workhold.geometry.segment import Arc, Line, Point, make_segment_from_bulge
 from workhold.limits import MOST_RADIUS
 
-__all__ = ["FittedCurve", "biarcs", "circle_of_points", "corners_of", "fitted_curve", "go_on"]
+__all__ = ["FittedCurve", "biarcs", "fit_circle", "corners_of", "fit_curve", "never_interrupt"]
 
 # A biarc is as long as it can be but for this share, and so many lengths are tried.
 STEP, MOST_STEPS = 0.02, 60
@@ -61,11 +61,13 @@ class FittedCurve:
     is_disguise: bool = False
 
 
-def go_on() -> None:
+def never_interrupt() -> None:
     """Interrupt nothing."""
 
 
-def biarcs(pieces: Pieces, tolerance: float, interrupt: Callable[[], None] = go_on) -> list[FittedCurve]:
+def biarcs(
+    pieces: Pieces, tolerance: float, interrupt: Callable[[], None] = never_interrupt
+) -> list[FittedCurve]:
     """Biarcs in place of a curve, each as long as the tolerance allows, tangent to the curve where they meet.
 
     Corners of the curve stay corners.
@@ -73,21 +75,25 @@ def biarcs(pieces: Pieces, tolerance: float, interrupt: Callable[[], None] = go_
     corners = [0, *corners_of(pieces)]
     found: list[FittedCurve] = []
     for first, last in zip(corners, [*corners[1:], len(pieces)], strict=True):
-        found += smooth_biarcs(pieces[first:last], tolerance, interrupt)
+        found += fit_smooth_biarcs(pieces[first:last], tolerance, interrupt)
     return found
 
 
-def smooth_biarcs(pieces: Pieces, tolerance: float, interrupt: Callable[[], None]) -> Iterator[FittedCurve]:
+def fit_smooth_biarcs(
+    pieces: Pieces, tolerance: float, interrupt: Callable[[], None]
+) -> Iterator[FittedCurve]:
     total = float(len(pieces))
     place, step = 0.0, total
     while place < total:
         interrupt()
-        run, reach = longest_biarc(pieces, place, step, tolerance)
+        run, reach = fit_longest_biarc(pieces, place, step, tolerance)
         yield run
         step, place = 1.2 * (reach - place), reach
 
 
-def longest_biarc(pieces: Pieces, place: float, step: float, tolerance: float) -> tuple[FittedCurve, float]:
+def fit_longest_biarc(
+    pieces: Pieces, place: float, step: float, tolerance: float
+) -> tuple[FittedCurve, float]:
     """The biarc that reaches farthest from a place of a curve, to a share of ``STEP``, and its end.
 
     ``step`` is the first length tried. What is smaller than the tolerance may be a line instead.
@@ -98,7 +104,7 @@ def longest_biarc(pieces: Pieces, place: float, step: float, tolerance: float) -
     step = min(step, room)
     for _ in range(MOST_STEPS):
         reach = total if step == room else place + step
-        run = biarc(pieces, place, reach, tolerance) or small_line(pieces, place, reach, tolerance)
+        run = biarc(pieces, place, reach, tolerance) or fit_small_line(pieces, place, reach, tolerance)
         if run is None:
             high = step
         else:
@@ -106,12 +112,12 @@ def longest_biarc(pieces: Pieces, place: float, step: float, tolerance: float) -
         if best is not None and (low == room or high - low < STEP * high):
             return best, total if low == room else place + low
         step = min(2.0 * step, room) if high == inf else (low + high) / 2
-    line = small_line(pieces, place, reach, inf)
+    line = fit_small_line(pieces, place, reach, inf)
     assert line is not None
     return line, reach
 
 
-def small_line(pieces: Pieces, first: float, last: float, tolerance: float) -> FittedCurve | None:
+def fit_small_line(pieces: Pieces, first: float, last: float, tolerance: float) -> FittedCurve | None:
     """The line for a stretch of a curve smaller than the tolerance, such as a cusp; None for others."""
     stretch = cut(pieces, first, last)
     places = (stretch[..., :2] / stretch[..., 2:]).reshape(-1, 2)
@@ -128,7 +134,7 @@ def biarc(pieces: Pieces, first: float, last: float, tolerance: float) -> Fitted
     """
     start, end = point_at(pieces, first), point_at(pieces, last)
     begins, ends = direction_at(pieces, first, after=True), direction_at(pieces, last, after=False)
-    joint = joint_of(start, end, begins, ends)
+    joint = find_biarc_joint(start, end, begins, ends)
     if joint is None or min(dist(start, joint), dist(joint, end)) < SHORTEST:
         return None
     one, other = turn(begins, less(joint, start)), turn(less(end, joint), ends)
@@ -146,7 +152,7 @@ def biarc(pieces: Pieces, first: float, last: float, tolerance: float) -> Fitted
         (first, middle, start, joint, bulges[0]),
         (middle, last, joint, end, bulges[1]),
     ):
-        away = max(away, departure(cut(pieces, low, high), segment_from_bulge(p, q, bulge), tolerance))
+        away = max(away, departure(cut(pieces, low, high), make_segment_from_bulge(p, q, bulge), tolerance))
         if away > tolerance:
             return None
     return FittedCurve((start, joint, end), bulges, away)
@@ -161,7 +167,7 @@ def turn(u: Point, v: Point) -> float:
     return atan2(u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1])
 
 
-def joint_of(start: Point, end: Point, begins: Point, ends: Point) -> Point | None:
+def find_biarc_joint(start: Point, end: Point, begins: Point, ends: Point) -> Point | None:
     """The joint of a biarc with equally long tangents up to their corners; None where there is none.
 
     The length d solves |end - start - d (begins + ends)| = 2 d.
@@ -209,13 +215,13 @@ def crossing(pieces: Pieces, first: float, last: float, joint: Point, across: Po
 
 def corners_of(pieces: Pieces) -> list[int]:
     """Numbers of the pieces that begin in another direction than the piece before ends in."""
-    leaving, entering = end_directions(pieces)
+    leaving, entering = compute_end_directions(pieces)
     turned = np.hypot(*(entering[:-1] - leaving[1:]).T) > CORNER
     return [int(k) + 1 for k in np.flatnonzero(turned)]
 
 
-def fitted_curve(
-    pieces: Pieces, tolerance: float, interrupt: Callable[[], None] = go_on
+def fit_curve(
+    pieces: Pieces, tolerance: float, interrupt: Callable[[], None] = never_interrupt
 ) -> FittedCurve | None:
     """Lines and arcs for a curve: its own where it is a disguise, else biarcs within a tolerance in mm.
 
@@ -228,25 +234,25 @@ def fitted_curve(
     FittedCurve or None
         None for a curve of no length.
     """
-    pieces = without_points(pieces, SHORTEST)
+    pieces = drop_point_pieces(pieces, SHORTEST)
     if not len(pieces):
         return None
     whole = whole_circle(pieces, DISGUISE)
     if whole is not None:
         return evolve(whole, is_disguise=True)
-    runs = disguised(pieces, [0, *breaks_of(pieces), len(pieces)], interrupt)
+    runs = disguised(pieces, [0, *find_breaks(pieces), len(pieces)], interrupt)
     if all(run is not None for _, _, run in runs):
-        return put_together([run for _, _, run in runs if run is not None], True)
+        return join_fitted_curves([run for _, _, run in runs if run is not None], True)
     whole = whole_circle(pieces, tolerance)
     if whole is not None:
         return whole
     fitted: list[FittedCurve] = []
     for first, last, run in runs:
         fitted += [run] if run is not None else biarcs(pieces[first:last], tolerance, interrupt)
-    return put_together(fitted, False)
+    return join_fitted_curves(fitted, False)
 
 
-def put_together(runs: list[FittedCurve], is_disguise: bool) -> FittedCurve:
+def join_fitted_curves(runs: list[FittedCurve], is_disguise: bool) -> FittedCurve:
     points = [runs[0].points[0]]
     for run in runs:
         points += run.points[1:]
@@ -254,9 +260,9 @@ def put_together(runs: list[FittedCurve], is_disguise: bool) -> FittedCurve:
     return FittedCurve(tuple(points), bulges, max(run.departure for run in runs), is_disguise)
 
 
-def breaks_of(pieces: Pieces) -> list[int]:
+def find_breaks(pieces: Pieces) -> list[int]:
     """Numbers of the pieces that begin with another direction or curvature than the last ends with."""
-    begin, end = end_curvatures(pieces)
+    begin, end = compute_end_curvatures(pieces)
     jump, most = np.abs(begin[1:] - end[:-1]), np.maximum(np.abs(begin[1:]), np.abs(end[:-1]))
     smooth = jump <= CURVATURE_JUMP * most
     corners = set(corners_of(pieces))
@@ -274,11 +280,18 @@ def disguised(
     k = 0
     while k < len(places) - 1:
         interrupt()
-        run, taken, step, growing = one_segment(pieces[places[k] : places[k + 1]], DISGUISE), k + 1, 1, True
+        run, taken, step, growing = (
+            fit_one_segment(pieces[places[k] : places[k + 1]], DISGUISE),
+            k + 1,
+            1,
+            True,
+        )
         # Steps that double and then halve: as many stretches as one line or arc takes in.
         while run is not None and step >= 1:
             further = min(taken + step, len(places) - 1)
-            longer = None if further == taken else one_segment(pieces[places[k] : places[further]], DISGUISE)
+            longer = (
+                None if further == taken else fit_one_segment(pieces[places[k] : places[further]], DISGUISE)
+            )
             if longer is None:
                 growing, step = False, step // 2
             else:
@@ -289,7 +302,7 @@ def disguised(
     return found
 
 
-def one_segment(pieces: Pieces, tolerance: float) -> FittedCurve | None:
+def fit_one_segment(pieces: Pieces, tolerance: float) -> FittedCurve | None:
     """The line or arc, through both ends, that a curve is to within a tolerance; None where there is none."""
     start, end = point_at(pieces, 0.0), point_at(pieces, float(len(pieces)))
     chord = dist(start, end)
@@ -299,7 +312,7 @@ def one_segment(pieces: Pieces, tolerance: float) -> FittedCurve | None:
     away = departure(pieces, line, tolerance)
     if isfinite(away):
         return FittedCurve((start, end), (0.0,), away)
-    circle = circle_near(pieces)
+    circle = fit_circle_to_curve(pieces)
     if circle is None:
         return None
     (cx, cy), _ = circle
@@ -313,7 +326,7 @@ def one_segment(pieces: Pieces, tolerance: float) -> FittedCurve | None:
         return None
     mid_angle, sign = atan2(start[1] - cy, start[0] - cx) + sweep / 2, 1.0 if sweep > 0 else -1.0
     arc = Arc((cx, cy), radius, mid_angle, abs(sweep) / 2, sign)
-    away = departure(pieces, arc, max(tolerance, as_arcs_are_written(pieces, arc)))
+    away = departure(pieces, arc, max(tolerance, allow_for_written_arcs(pieces, arc)))
     return FittedCurve(*halves((start, end), sweep, (cx, cy)), away) if isfinite(away) else None
 
 
@@ -334,7 +347,7 @@ def whole_circle(pieces: Pieces, tolerance: float) -> FittedCurve | None:
     start = point_at(pieces, 0.0)
     if dist(start, point_at(pieces, float(len(pieces)))) > SHORTEST:
         return None
-    circle = circle_near(pieces)
+    circle = fit_circle_to_curve(pieces)
     if circle is None:
         return None
     (cx, cy), radius = circle
@@ -344,14 +357,14 @@ def whole_circle(pieces: Pieces, tolerance: float) -> FittedCurve | None:
     sign = 1.0 if sweep > 0 else -1.0
     angle = atan2(start[1] - cy, start[0] - cx)
     arc = Arc((cx, cy), radius, angle + pi, pi, sign)
-    away = departure(pieces, arc, max(tolerance, as_arcs_are_written(pieces, arc)))
+    away = departure(pieces, arc, max(tolerance, allow_for_written_arcs(pieces, arc)))
     if not isfinite(away):
         return None
     first, second = ((cx + radius * cos(t), cy + radius * sin(t)) for t in (angle, angle + pi))
     return FittedCurve((first, second, first), (sign, sign), away)
 
 
-def as_arcs_are_written(pieces: Pieces, arc: Arc) -> float:
+def allow_for_written_arcs(pieces: Pieces, arc: Arc) -> float:
     """How far cubics may be from an arc when they are how programs write it, in mm; 0 where they are not.
 
     The cubic whose handles are 4/3 tan(sweep / 4) radii long is off by 2.73e-4 radii for a quarter turn, and
@@ -368,17 +381,17 @@ def as_arcs_are_written(pieces: Pieces, arc: Arc) -> float:
     return AS_ARC * arc.radius * (widest / (pi / 2)) ** 6
 
 
-def circle_near(pieces: Pieces) -> tuple[Point, float] | None:
+def fit_circle_to_curve(pieces: Pieces) -> tuple[Point, float] | None:
     """Centre and radius of the circle of least squares through points of a curve; None for a line.
 
     They are the ends of cubics, where those that stand for arcs meet them, with one or two their middles too;
     and quarters of other pieces.
     """
     each = 4 if pieces.shape[1] != 4 else 1 if len(pieces) > 2 else 2
-    return circle_of_points(points_along(pieces, each))
+    return fit_circle(points_along(pieces, each))
 
 
-def circle_of_points(points: NDArray[np.float64]) -> tuple[Point, float] | None:
+def fit_circle(points: NDArray[np.float64]) -> tuple[Point, float] | None:
     """Centre and radius of the circle of least squares through (N, 2) points (Kasa 1976); None for a line."""
     middle = points.mean(axis=0)
     x, y = (points - middle).T

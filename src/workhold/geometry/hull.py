@@ -24,10 +24,10 @@ from numpy.typing import NDArray
 from workhold.conventions import LEAST_HULL_EDGE, TOUCHING
 from workhold.geometry.segment import Arc, Line, Point, Segment
 
-__all__ = ["HullEdge", "HullEnd", "HullTouch", "convex_hull", "hull_edges", "touches_along"]
+__all__ = ["HullEdge", "HullEnd", "HullTouch", "compute_convex_hull", "hull_edges", "find_touches_along"]
 
 
-def convex_hull(points: Iterable[Point]) -> list[Point]:
+def compute_convex_hull(points: Iterable[Point]) -> list[Point]:
     """Corners of the convex hull, counter-clockwise from the leftmost; points on its sides are left out.
 
     Reference: A. M. Andrew, *Another efficient algorithm for convex hulls in two dimensions*, Information
@@ -35,17 +35,17 @@ def convex_hull(points: Iterable[Point]) -> list[Point]:
 
     Examples
     --------
-    >>> convex_hull([(0, 0), (2, 0), (1, 1), (2, 2), (0, 2), (1, 0)])
+    >>> compute_convex_hull([(0, 0), (2, 0), (1, 1), (2, 2), (0, 2), (1, 0)])
     [(0, 0), (2, 0), (2, 2), (0, 2)]
     """
     ordered = sorted(set(points))
     if len(ordered) <= 2:
         return ordered
-    lower, upper = half_hull(ordered), half_hull(ordered[::-1])
+    lower, upper = compute_half_hull(ordered), compute_half_hull(ordered[::-1])
     return lower[:-1] + upper[:-1]
 
 
-def half_hull(ordered: list[Point]) -> list[Point]:
+def compute_half_hull(ordered: list[Point]) -> list[Point]:
     """The chain of left turns from the first of some ordered points to the last."""
     chain: list[Point] = []
     for x, y in ordered:
@@ -144,7 +144,7 @@ class HullPieces:
                 cosine = -2.0 if segment.is_full else np.cos(segment.half_sweep)
                 rows.append((*segment.center, segment.radius, *middle, cosine))
                 faces.append((k,))
-        for point in convex_hull(joints):
+        for point in compute_convex_hull(joints):
             rows.append((*point, 0.0, 1.0, 0.0, -2.0))
             faces.append(joints[point])
         table = np.array(rows).reshape(-1, 6)
@@ -226,7 +226,7 @@ def hull_edges(segments: Sequence[Segment], counts: Sequence[int] | None = None)
     for edge in found:
         if edge.length >= LEAST_HULL_EDGE and not any(is_part(edge, other) for other in kept):
             kept.append(edge)
-    with_faces = [with_faces_along(edge, segments) for edge in kept]
+    with_faces = [assign_faces_along(edge, segments) for edge in kept]
     return tuple(sorted(with_faces, key=lambda edge: (edge.start.faces[-1], edge.end.faces)))
 
 
@@ -245,7 +245,7 @@ class HullTouch:
     faces: tuple[int, ...]
 
 
-def touches_along(
+def find_touches_along(
     edge: HullEdge, segments: Sequence[Segment], counts: Sequence[int] | None = None
 ) -> tuple[HullTouch, ...]:
     """Where an outline touches the line of a hull edge, from its start on; what touches alone comes last.
@@ -259,7 +259,7 @@ def touches_along(
     >>> from workhold.geometry.segment import Line
     >>> points = [(0, 0), (2, 0), (3, 1), (5, 1), (6, 0), (9, 0), (9, 4), (0, 4)]
     >>> outline = [Line(a, b) for a, b in zip(points, points[1:] + points[:1])]
-    >>> [(one.low, one.high, one.faces) for one in touches_along(hull_edges(outline)[0], outline)][:2]
+    >>> [(one.low, one.high, one.faces) for one in find_touches_along(hull_edges(outline)[0], outline)][:2]
     [(0.0, 2.0, (0,)), (6.0, 9.0, (4,))]
     """
     (x, y), (tx, ty), length = edge.start.point, edge.tangent, edge.length
@@ -319,7 +319,7 @@ def is_part(edge: HullEdge, other: HullEdge) -> bool:
     return (bx - ax) * tx + (by - ay) * ty > 0
 
 
-def with_faces_along(edge: HullEdge, segments: Sequence[Segment]) -> HullEdge:
+def assign_faces_along(edge: HullEdge, segments: Sequence[Segment]) -> HullEdge:
     """A hull edge whose end at a corner belongs to the face that lies along the edge, if one does."""
     ends = []
     # Outline and edge run the same way: at its start the face after the corner may lie along it, at its end

@@ -36,8 +36,8 @@ from workhold.geometry.segment import (
     Line,
     Segment,
     bounding_box,
-    common_points,
-    segment_from_bulge,
+    find_common_points,
+    make_segment_from_bulge,
     segment_rows,
 )
 from workhold.kernels.base.distance import turns_around
@@ -47,18 +47,18 @@ __all__ = [
     "Comparisons",
     "Face",
     "LoopShape",
-    "checked_vertices",
+    "check_vertices",
     "encloses",
-    "faces_of_loop",
+    "list_loop_faces",
     "loop_segments",
-    "near_pairs",
+    "find_near_pairs",
     "refuse_meeting",
     "refuse_meeting_loops",
     "refuse_no_area",
     "refuse_self_crossing",
-    "reversed_vertices",
-    "runs_around",
-    "signed_area",
+    "reverse_vertices",
+    "cut_into_runs",
+    "compute_signed_area",
 ]
 
 Place = Callable[[int], str]
@@ -120,7 +120,7 @@ class LoopShape:
     def chords(self) -> NDArray[np.float64]:
         """(N, 5) starts, ends, and how far each segment is from its chord at most."""
         return np.array(
-            [(*segment.start, *segment.end, depth_of(segment)) for segment in self.segments]
+            [(*segment.start, *segment.end, measure_depth(segment)) for segment in self.segments]
         ).reshape(-1, 5)
 
     @cached_property
@@ -129,7 +129,7 @@ class LoopShape:
         return np.concatenate([self.boxes[:, :2].min(axis=0), self.boxes[:, 2:].max(axis=0)])
 
 
-def checked_vertices(vertices: ArrayLike, loop: str, place: Place) -> NDArray[np.float64]:
+def check_vertices(vertices: ArrayLike, loop: str, place: Place) -> NDArray[np.float64]:
     """Copy the vertices of one loop after checking that each number and each segment can be used.
 
     Parameters
@@ -216,22 +216,22 @@ def loop_segments(vertices: NDArray[np.float64]) -> tuple[Segment, ...]:
     points = [(float(x), float(y)) for x, y in vertices[:, :2]]
     ends = points[1:] + points[:1]
     return tuple(
-        segment_from_bulge(p, q, float(b)) for p, q, b in zip(points, ends, vertices[:, 2], strict=True)
+        make_segment_from_bulge(p, q, float(b)) for p, q, b in zip(points, ends, vertices[:, 2], strict=True)
     )
 
 
-def signed_area(segments: Sequence[Segment]) -> float:
+def compute_signed_area(segments: Sequence[Segment]) -> float:
     """Area in mm² of a loop, positive counter-clockwise (shoelace formula plus circular segments)."""
     area = 0.0
     for segment in segments:
         (x0, y0), (x1, y1) = segment.start, segment.end
         area += (x0 * y1 - x1 * y0) / 2
         if isinstance(segment, Arc):
-            area += segment.sign * segment.radius**2 * circular_segment(2 * segment.half_sweep) / 2
+            area += segment.sign * segment.radius**2 * compute_circular_segment(2 * segment.half_sweep) / 2
     return area
 
 
-def circular_segment(sweep: float) -> float:
+def compute_circular_segment(sweep: float) -> float:
     """sweep - sin(sweep) without cancellation (Taylor series below 0.1 rad, exact to rounding)."""
     if sweep > 0.1:
         return sweep - sin(sweep)
@@ -239,7 +239,7 @@ def circular_segment(sweep: float) -> float:
     return sweep * square / 6 * (1 - square / 20 * (1 - square / 42 * (1 - square / 72)))
 
 
-def reversed_vertices(vertices: NDArray[np.float64]) -> NDArray[np.float64]:
+def reverse_vertices(vertices: NDArray[np.float64]) -> NDArray[np.float64]:
     """The vertices of a loop run the other way round, from the same first vertex."""
     out = np.empty_like(vertices)
     order = np.concatenate(([0], np.arange(len(vertices) - 1, 0, -1)))
@@ -251,11 +251,13 @@ def reversed_vertices(vertices: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def refuse_no_area(shape: LoopShape, loop: str) -> None:
     """Refuses a loop that runs back along itself."""
-    if abs(signed_area(shape.segments)) <= TOUCHING * sum(segment.length for segment in shape.segments):
+    if abs(compute_signed_area(shape.segments)) <= TOUCHING * sum(
+        segment.length for segment in shape.segments
+    ):
         raise InputError(f"{loop} encloses no area, it runs back along itself: draw the outline of the part.")
 
 
-def near_pairs(boxes_a: NDArray[np.float64], boxes_b: NDArray[np.float64]) -> Iterator[tuple[int, int]]:
+def find_near_pairs(boxes_a: NDArray[np.float64], boxes_b: NDArray[np.float64]) -> Iterator[tuple[int, int]]:
     """Pairs (i, j) whose (N, 4) bounding boxes come within the touching distance."""
     for i, (x0, y0, x1, y1) in enumerate(boxes_a):
         apart = (
@@ -268,7 +270,7 @@ def near_pairs(boxes_a: NDArray[np.float64], boxes_b: NDArray[np.float64]) -> It
             yield i, int(j)
 
 
-def depth_of(segment: Segment) -> float:
+def measure_depth(segment: Segment) -> float:
     """How far a segment reaches from its chord: the rise of an arc, 0 of a line."""
     return segment.radius * (1 - cos(segment.half_sweep)) if isinstance(segment, Arc) else 0.0
 
@@ -277,7 +279,9 @@ def depth_of(segment: Segment) -> float:
 MANY_NEAR = 32
 
 
-def near_segments(one: LoopShape, k: int, others: LoopShape, comparisons: Comparisons) -> NDArray[np.int64]:
+def find_near_segments(
+    one: LoopShape, k: int, others: LoopShape, comparisons: Comparisons
+) -> NDArray[np.int64]:
     """Numbers of the segments of another shape that segment ``k`` of one may come near to.
 
     Boxes of slanted segments overlap though these run side by side, so that where there are many such boxes
@@ -319,11 +323,11 @@ def refuse_self_crossing(shape: LoopShape, place: Place, comparisons: Comparison
     # Tangent neighbours meet again within rounding of their joint; that is no crossing.
     backward_error = max(*(MEETS_AGAIN * float(np.ptp(box[:, ends])) for ends in ([0, 2], [1, 3])), TOUCHING)
     for i in range(count):
-        for j in near_segments(shape, i, shape, comparisons).tolist():
+        for j in find_near_segments(shape, i, shape, comparisons).tolist():
             if j <= i:
                 continue
             joints = [segments[k].end for k, after in ((i, j), (j, i)) if (k + 1) % count == after]
-            for x, y in common_points(segments[i], segments[j], TOUCHING):
+            for x, y in find_common_points(segments[i], segments[j], TOUCHING):
                 if all(dist((x, y), joint) > backward_error for joint in joints):
                     raise InputError(
                         f"{place(i)} and {place(j)} cross or touch at ({x:.6g}, {y:.6g}): an outline may "
@@ -343,8 +347,8 @@ def refuse_meeting_loops(
     """
     comparisons = comparisons or Comparisons("the outline")
     for i in range(len(a.segments)):
-        for j in near_segments(a, i, b, comparisons).tolist():
-            for x, y in common_points(a.segments[i], b.segments[j], TOUCHING):
+        for j in find_near_segments(a, i, b, comparisons).tolist():
+            for x, y in find_common_points(a.segments[i], b.segments[j], TOUCHING):
                 raise InputError(
                     f"{place_a(i)} and {place_b(j)} cross or touch at ({x:.6g}, {y:.6g}): loops must stay "
                     "apart from each other; trim both where they cross, or leave one out."
@@ -366,7 +370,7 @@ def refuse_meeting(
         Naming both segments and the point; also for more comparisons than may be made.
     """
     boxes = np.array([shape.box for shape in shapes])
-    for a, b in near_pairs(boxes, boxes):
+    for a, b in find_near_pairs(boxes, boxes):
         comparisons.spend(1)
         if a < b:
             refuse_meeting_loops(shapes[a], shapes[b], partial(place, a), partial(place, b), comparisons)
@@ -378,7 +382,7 @@ def encloses(around: LoopShape, inner: LoopShape) -> bool:
     return bool(abs(turns_around(x, y, around.rows)) > pi)
 
 
-def same_carrier(a: Segment, b: Segment) -> bool:
+def have_same_carrier(a: Segment, b: Segment) -> bool:
     """Whether neighbour ``b`` continues the line or circle of ``a`` in the same sense."""
     if isinstance(a, Line) and isinstance(b, Line):
         (tx, ty), (ux, uy) = a.tangent, b.tangent
@@ -427,7 +431,7 @@ def merged(run: Sequence[Segment]) -> Segment:
     return evolve(first, mid_angle=start + first.sign * half_sweep, half_sweep=half_sweep)
 
 
-def runs_around(items: Sequence[Item], continues: Callable[[Item, Item], bool]) -> list[list[Item]]:
+def cut_into_runs(items: Sequence[Item], continues: Callable[[Item, Item], bool]) -> list[list[Item]]:
     """A closed row cut into runs of neighbours of which each continues the one before it.
 
     The first run begins with the first item that does not continue its neighbour, or else with the first.
@@ -442,7 +446,7 @@ def runs_around(items: Sequence[Item], continues: Callable[[Item, Item], bool]) 
     return runs
 
 
-def faces_of_loop(
+def list_loop_faces(
     segments: Sequence[Segment], first_number: int, marks: Sequence[object] | None = None
 ) -> list[Face]:
     """Faces of one loop whose segments are numbered from ``first_number``; ordered by their numbers.
@@ -453,10 +457,12 @@ def faces_of_loop(
     """
 
     def continues(one: int, other: int) -> bool:
-        return same_carrier(segments[one], segments[other]) and (marks is None or marks[one] == marks[other])
+        return have_same_carrier(segments[one], segments[other]) and (
+            marks is None or marks[one] == marks[other]
+        )
 
     faces = []
-    for run in runs_around(range(len(segments)), continues):
+    for run in cut_into_runs(range(len(segments)), continues):
         numbers = tuple(first_number + k for k in run)
         faces.append(Face(min(numbers), numbers, merged([segments[k] for k in run])))
     return sorted(faces, key=lambda face: face.number)

@@ -21,17 +21,24 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import DISGUISE, DRAWN_ON, READING, SHORTEST
-from workhold.geometry.curve_fit import circle_of_points, go_on
-from workhold.geometry.loop import runs_around
-from workhold.geometry.rational import arc_pieces, departure, joined_pieces
-from workhold.geometry.segment import Arc, Line, Point, Segment, segment_from_bulge
+from workhold.geometry.curve_fit import fit_circle, never_interrupt
+from workhold.geometry.loop import cut_into_runs
+from workhold.geometry.rational import departure, join_pieces, split_arc
+from workhold.geometry.segment import Arc, Line, Point, Segment, make_segment_from_bulge
 
-__all__ = ["ChordedArcs", "MergedLoop", "chorded_arcs", "chords_remark", "merged_chords", "on_one_circle"]
+__all__ = [
+    "ChordedArcs",
+    "MergedLoop",
+    "find_chorded_arcs",
+    "describe_chords",
+    "merge_chords",
+    "put_arcs_on_one_circle",
+]
 
 Array = NDArray[np.float64]
 
 
-def on_one_circle(vertices: Array, segments: Sequence[Segment]) -> tuple[Array, int]:
+def put_arcs_on_one_circle(vertices: Array, segments: Sequence[Segment]) -> tuple[Array, int]:
     """Puts each chain of arcs that lies within ``READING`` of a circle onto it.
 
     The ends of a chain stay where they are, unless the whole loop is one. Done twice it changes nothing more.
@@ -48,7 +55,7 @@ def on_one_circle(vertices: Array, segments: Sequence[Segment]) -> tuple[Array, 
     out, changed = np.array(vertices), 0
     for chain in chains(segments):
         arcs = [segment for k in chain if isinstance(segment := segments[k], Arc)]
-        circle = None if is_one_already(arcs) else circle_of(arcs, len(chain) == len(segments))
+        circle = None if is_one_already(arcs) else fit_common_circle(arcs, len(chain) == len(segments))
         if circle is not None:
             write_chain(out, chain, circle, len(segments))
             changed += len(chain)
@@ -82,11 +89,11 @@ def chains(segments: Sequence[Segment]) -> list[list[int]]:
     def continues(one: int, other: int) -> bool:
         return follows(segments[one], segments[other])
 
-    found = runs_around(range(len(segments)), continues)
+    found = cut_into_runs(range(len(segments)), continues)
     return [chain for chain in found if len(chain) > 1 and isinstance(segments[chain[0]], Arc)]
 
 
-def circle_of(arcs: Sequence[Arc], whole: bool) -> tuple[Point, float] | None:
+def fit_common_circle(arcs: Sequence[Arc], whole: bool) -> tuple[Point, float] | None:
     """Centre and radius of a circle within ``READING`` of arcs, through both ends unless they are ``whole``.
 
     The circle of least squares through ends and middles (I. Kasa, "A circle fitting procedure and its error
@@ -174,11 +181,11 @@ class Piece:
     departure: float = 0.0
 
 
-def merged_chords(
+def merge_chords(
     vertices: Array,
     fit: float | None = None,
     kept: Sequence[bool] = (),
-    interrupt: Callable[[], None] = go_on,
+    interrupt: Callable[[], None] = never_interrupt,
 ) -> MergedLoop:
     """One line or arc for each run of segments that is nowhere farther from it than ``DISGUISE``.
 
@@ -200,11 +207,11 @@ def merged_chords(
         pieces = whole
     elif count > 2:
         drawn = from_a_corner(pieces)
-        pieces = all_merged(drawn, tolerance, interrupt)
+        pieces = merge_all_runs(drawn, tolerance, interrupt)
         if 1 < len(pieces) < count:
             # Where a run has ended the loop can begin: no other goes across.
             number = next(k for k, piece in enumerate(drawn) if piece.first == pieces[1].first)
-            pieces = all_merged(drawn[number:] + drawn[:number], tolerance, interrupt)
+            pieces = merge_all_runs(drawn[number:] + drawn[:number], tolerance, interrupt)
     if len(pieces) == count:
         return MergedLoop(vertices, tuple(range(count)), 0, 0.0)
     begin = min(range(len(pieces)), key=lambda k: pieces[k].first)
@@ -232,7 +239,7 @@ class ChordedArcs:
     chords : how many.
     radii : of the arcs, in mm.
     departure : how far the chords are from the arcs, in mm.
-    fit : with which :func:`merged_chords` makes them arcs, in mm.
+    fit : with which :func:`merge_chords` makes them arcs, in mm.
     """
 
     chords: int
@@ -241,8 +248,8 @@ class ChordedArcs:
     fit: float
 
 
-def chorded_arcs(
-    vertices: Array, kept: Sequence[bool] = (), interrupt: Callable[[], None] = go_on
+def find_chorded_arcs(
+    vertices: Array, kept: Sequence[bool] = (), interrupt: Callable[[], None] = never_interrupt
 ) -> ChordedArcs | None:
     """The arcs that a loop has as chords; None where it has none.
 
@@ -253,7 +260,7 @@ def chorded_arcs(
 
     Parameters
     ----------
-    vertices, kept, interrupt : as in :func:`merged_chords`.
+    vertices, kept, interrupt : as in :func:`merge_chords`.
     """
     if len(vertices) <= LEAST_CHORDS:
         return None
@@ -263,7 +270,7 @@ def chorded_arcs(
     ]
     found = whole_circle(pieces, inf, CHORDS_ON)
     if found is None:
-        found = runs_merged(from_a_corner(pieces), CHORDS_ON, inf, LEAST_CHORDS, interrupt)
+        found = merge_longest_runs(from_a_corner(pieces), CHORDS_ON, inf, LEAST_CHORDS, interrupt)
     arcs = [
         (piece, after)
         for piece, after in zip(found, found[1:] + found[:1], strict=True)
@@ -275,13 +282,13 @@ def chorded_arcs(
     scale = 10.0 ** floor(log10(away))
     fit = next(step * scale for step in FITS if step * scale >= 1.05 * away)
     fit = float(f"{fit:.1g}")
-    merged = merged_chords(vertices, fit, kept, interrupt)
+    merged = merge_chords(vertices, fit, kept, interrupt)
     chords = len(vertices) - len(merged.vertices)
     if chords <= 0 or not merged.vertices[:, 2].any():
         return None
     radii = list[float]()
     for piece, after in arcs:
-        arc = segment_from_bulge(piece.start, after.start, piece.bulge)
+        arc = make_segment_from_bulge(piece.start, after.start, piece.bulge)
         if isinstance(arc, Arc) and not any(abs(arc.radius - radius) < CHORDS_ON for radius in radii):
             radii.append(arc.radius)
     return ChordedArcs(chords + len(arcs), tuple(radii), away, fit)
@@ -289,11 +296,11 @@ def chorded_arcs(
 
 def is_coarse(piece: Piece, after: Piece) -> bool:
     """Whether the chords of an arc are the sides of a polygon that somebody meant."""
-    arc = segment_from_bulge(piece.start, after.start, piece.bulge)
+    arc = make_segment_from_bulge(piece.start, after.start, piece.bulge)
     return isinstance(arc, Arc) and piece.departure > max(COARSE, COARSE_SHARE * arc.radius)
 
 
-def chords_remark(found: Sequence[ChordedArcs], fit: str) -> list[str]:
+def describe_chords(found: Sequence[ChordedArcs], fit: str) -> list[str]:
     """What to say of arcs that came as chords.
 
     Parameters
@@ -311,11 +318,11 @@ def chords_remark(found: Sequence[ChordedArcs], fit: str) -> list[str]:
     ]
 
 
-def all_merged(pieces: list[Piece], tolerance: float, interrupt: Callable[[], None]) -> list[Piece]:
+def merge_all_runs(pieces: list[Piece], tolerance: float, interrupt: Callable[[], None]) -> list[Piece]:
     """A row of pieces with its runs merged, first those with vertices on them to a file's digits."""
     for near in (min(DRAWN_ON, tolerance), tolerance):
-        pieces = runs_merged(pieces, near, tolerance, LEAST_CHORDS, interrupt)
-    return runs_merged(pieces, DISGUISE, DISGUISE, 2, interrupt)
+        pieces = merge_longest_runs(pieces, near, tolerance, LEAST_CHORDS, interrupt)
+    return merge_longest_runs(pieces, DISGUISE, DISGUISE, 2, interrupt)
 
 
 def from_a_corner(pieces: list[Piece]) -> list[Piece]:
@@ -352,9 +359,7 @@ def whole_circle(pieces: list[Piece], tolerance: float, near: float | None = Non
     if (np.abs(turns_of(pieces)) > CORNER_OF_CHORDS).any():
         return None
     points = points_of([*pieces, pieces[0]])
-    circle = circle_of_points(
-        points[:-1] if all(p.bulge == 0.0 for p in pieces) else with_middles(pieces, points)
-    )
+    circle = fit_circle(points[:-1] if all(p.bulge == 0.0 for p in pieces) else with_middles(pieces, points))
     if circle is None:
         return None
     (cx, cy), radius = circle
@@ -375,12 +380,12 @@ def worth(pieces: Sequence[Piece], least: int) -> bool:
     return len(pieces) >= (2 if arcs == len(pieces) else least)
 
 
-def runs_merged(
+def merge_longest_runs(
     pieces: list[Piece],
     near: float,
     tolerance: float,
     least: int,
-    interrupt: Callable[[], None] = go_on,
+    interrupt: Callable[[], None] = never_interrupt,
 ) -> list[Piece]:
     """The longest runs one after the other; those of fewer than ``LEAST_CHORDS`` chords are lines only.
 
@@ -402,10 +407,10 @@ def runs_merged(
         for fewest in (2, least):
             if best is None and k + fewest <= stop:
                 taken = k + fewest
-                best = one_piece(pieces[k:taken], points[k : taken + 1], near, tolerance, least)
+                best = make_one_piece(pieces[k:taken], points[k : taken + 1], near, tolerance, least)
         while best is not None and step and taken < stop:
             further = min(taken + step, stop)
-            longer = one_piece(pieces[k:further], points[k : further + 1], near, tolerance, least)
+            longer = make_one_piece(pieces[k:further], points[k : further + 1], near, tolerance, least)
             growing = growing and longer is not None
             step = 2 * step if growing else step // 2
             if longer is not None:
@@ -417,7 +422,7 @@ def runs_merged(
     return out
 
 
-def one_piece(
+def make_one_piece(
     pieces: Sequence[Piece], points: Array, near: float, tolerance: float, least: int
 ) -> Piece | None:
     """The line or arc that a run is; None where it is none.
@@ -437,7 +442,7 @@ def one_piece(
         return Piece(start, 0.0, pieces[0].first, False, before + away)
     if not worth(pieces, LEAST_CHORDS):
         return None
-    arc = arc_near(pieces, points, line)
+    arc = fit_arc(pieces, points, line)
     if arc is None:
         return None
     away = off(pieces, points, arc, near, tolerance)
@@ -455,9 +460,9 @@ def with_middles(pieces: Sequence[Piece], points: Array) -> Array:
     return np.concatenate([points, middles[bulges[:, 0] != 0.0]])
 
 
-def arc_near(pieces: Sequence[Piece], points: Array, line: Line) -> Arc | None:
-    """Arc of least squares through both ends of a run; see ``curve_fit.circle_of_points``."""
-    circle = circle_of_points(with_middles(pieces, points))
+def fit_arc(pieces: Sequence[Piece], points: Array, line: Line) -> Arc | None:
+    """Arc of least squares through both ends of a run; see ``curve_fit.fit_circle``."""
+    circle = fit_circle(with_middles(pieces, points))
     if circle is None:
         return None
     (cx, cy), _ = circle
@@ -499,5 +504,5 @@ def off(pieces: Sequence[Piece], points: Array, segment: Segment, near: float, t
         found = max(float(away.max()), float(np.abs(feet - segment.radius).max()))
         return found if found <= tolerance else inf
     ends = [(float(x), float(y)) for x, y in points]
-    curves = [arc_pieces(ends[k], ends[k + 1], piece.bulge) for k, piece in enumerate(pieces)]
-    return departure(joined_pieces(curves), segment, min(tolerance, DISGUISE))
+    curves = [split_arc(ends[k], ends[k + 1], piece.bulge) for k, piece in enumerate(pieces)]
+    return departure(join_pieces(curves), segment, min(tolerance, DISGUISE))

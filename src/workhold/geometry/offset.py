@@ -28,15 +28,15 @@ from workhold.geometry.segment import (
     Point,
     Segment,
     bounding_box,
-    carrier_intersections,
+    find_carrier_crossings,
     segment_rows,
 )
 from workhold.kernels.base.distance import is_inside, outline_distances
 
-__all__ = ["clear_parts", "joint_circle", "kept_parts", "raw_offset", "trimmed_offsets"]
+__all__ = ["clear_parts", "make_joint_circle", "keep_clear_parts", "offset_segment", "list_trimmed_offsets"]
 
 
-def raw_offset(segment: Segment, radius: float) -> Segment | None:
+def offset_segment(segment: Segment, radius: float) -> Segment | None:
     """A segment moved outward by ``radius`` mm, or None for a concave arc that vanishes."""
     if isinstance(segment, Line):
         nx, ny = segment.normal()
@@ -47,7 +47,7 @@ def raw_offset(segment: Segment, radius: float) -> Segment | None:
     return segment.grown(segment.sign * radius)
 
 
-def trimmed_offsets(
+def list_trimmed_offsets(
     segments: Sequence[Segment], radius: float, flat: float | None = None
 ) -> list[tuple[int, Segment]]:
     """Boundary pieces of (part + disc of ``radius`` mm) that face the segments, without rolled corners.
@@ -64,9 +64,9 @@ def trimmed_offsets(
     list of (index of the segment, piece), in the order of the segments and of the parameter along each.
     """
     rows = segment_rows(segments)
-    raw = [raw_offset(segment, radius) for segment in segments]
+    raw = [offset_segment(segment, radius) for segment in segments]
     joints = [s.start for s in segments if not (isinstance(s, Arc) and s.is_full)]
-    circles = [joint_circle(joint, radius) for joint in joints]
+    circles = [make_joint_circle(joint, radius) for joint in joints]
     boxes = np.array([bounding_box(segment) for segment in segments])
     joint_boxes = np.array([(*joint, *joint) for joint in joints]).reshape(-1, 4)
     pieces: list[tuple[int, Segment]] = []
@@ -76,11 +76,11 @@ def trimmed_offsets(
 
     # Beside a flat the disc reaches over the line, and behind an acute corner into what lies on the other
     # side of the part.
-    behind = [None if flat is None else raw_offset(segment, -radius) for segment in segments]
+    behind = [None if flat is None else offset_segment(segment, -radius) for segment in segments]
     for index, segment in enumerate(segments):
         piece, beside, sides = raw[index], rows, [raw]
         if flat is not None and isinstance(segment, Line):
-            piece, beside, sides = raw_offset(segment, flat), np.delete(rows, index, 0), [raw, behind]
+            piece, beside, sides = offset_segment(segment, flat), np.delete(rows, index, 0), [raw, behind]
         # A hollow that the disc fills is none of its own, and cuts its neighbours all the same.
         if piece is None or (isinstance(piece, Arc) and piece.radius <= FILLED):
             continue
@@ -89,7 +89,7 @@ def trimmed_offsets(
         others = [r for side in sides for k in near if k != index and (r := side[k]) is not None]
         close = np.flatnonzero(boxes_apart(joint_boxes, bounding_box(piece)) <= radius + CLEARANCE)
         others += [circles[k] for k in close]
-        pieces += [(index, kept) for kept in kept_parts(piece, others, partial(is_clear, beside))]
+        pieces += [(index, kept) for kept in keep_clear_parts(piece, others, partial(is_clear, beside))]
     return pieces
 
 
@@ -100,22 +100,22 @@ def clear_parts(piece: Segment, zone: Sequence[Segment], radius: float) -> list[
     an outline.
     """
     rows = segment_rows(zone)
-    others = [raw for segment in zone if (raw := raw_offset(segment, radius)) is not None]
-    others += [joint_circle(segment.start, radius) for segment in zone]
+    others = [raw for segment in zone if (raw := offset_segment(segment, radius)) is not None]
+    others += [make_joint_circle(segment.start, radius) for segment in zone]
 
     def is_clear(middles: NDArray[np.float64]) -> NDArray[np.bool_]:
         outside = np.array([not is_inside(x, y, rows) for x, y in middles], np.bool_)
         return np.asarray(outside & (outline_distances(middles, rows) >= radius - CLEARANCE))
 
-    return kept_parts(piece, others, is_clear)
+    return keep_clear_parts(piece, others, is_clear)
 
 
-def joint_circle(joint: Point, radius: float) -> Segment:
+def make_joint_circle(joint: Point, radius: float) -> Segment:
     """The circle on which the centre of a disc rolls around a joint."""
     return Arc(joint, radius, 0.0, pi, 1.0)
 
 
-def kept_parts(
+def keep_clear_parts(
     piece: Segment,
     others: Sequence[Segment],
     is_clear: Callable[[NDArray[np.float64]], NDArray[np.bool_]],
@@ -125,7 +125,7 @@ def kept_parts(
     It may enter or leave the boundary only where it meets the line or the circle of another piece.
     """
     half = piece.half_extent
-    points = [point for other in others for point in carrier_intersections(piece, other)]
+    points = [point for other in others for point in find_carrier_crossings(piece, other)]
     inner = sorted(p for p in (piece.parameter(point) for point in points) if -half < p < half)
     cuts = [-half, *inner, half]
     scale = piece.radius if isinstance(piece, Arc) else 1.0

@@ -28,25 +28,25 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from workhold.errors import InputError
-from workhold.geometry.segment import Arc, Point, Segment, segment_from_bulge
+from workhold.geometry.segment import Arc, Point, Segment, make_segment_from_bulge
 
 __all__ = [
     "Pieces",
-    "arc_pieces",
+    "split_arc",
     "cut",
     "departure",
     "direction_at",
-    "ellipse_pieces",
-    "end_curvatures",
-    "end_directions",
+    "split_ellipse",
+    "compute_end_curvatures",
+    "compute_end_directions",
     "halved",
-    "joined_pieces",
+    "join_pieces",
     "mapped",
     "point_at",
     "points_along",
-    "polynomial_pieces",
-    "spline_pieces",
-    "without_points",
+    "make_bezier_piece",
+    "split_spline",
+    "drop_point_pieces",
 ]
 
 Pieces = NDArray[np.float64]
@@ -54,7 +54,7 @@ Pieces = NDArray[np.float64]
 MOST_DEGREE = 12
 
 
-def spline_pieces(points: ArrayLike, weights: ArrayLike | None, knots: ArrayLike, degree: int) -> Pieces:
+def split_spline(points: ArrayLike, weights: ArrayLike | None, knots: ArrayLike, degree: int) -> Pieces:
     """The pieces of a B-spline between its knots.
 
     Parameters
@@ -106,13 +106,13 @@ def spline_pieces(points: ArrayLike, weights: ArrayLike | None, knots: ArrayLike
     return found
 
 
-def polynomial_pieces(points: ArrayLike) -> Pieces:
+def make_bezier_piece(points: ArrayLike) -> Pieces:
     """The one piece of a Bézier curve of (n + 1, 2) control points."""
     control = np.asarray(points, dtype=np.float64)
     return np.column_stack([control, np.ones(len(control))])[None]
 
 
-def ellipse_pieces(center: Point, major: Point, minor: Point, start: float, sweep: float) -> Pieces:
+def split_ellipse(center: Point, major: Point, minor: Point, start: float, sweep: float) -> Pieces:
     """Exact pieces of center + major cos t + minor sin t from ``start`` over a signed ``sweep`` in radians.
 
     Each covers an equal part of at most a quarter turn; its middle weight is the cosine of half of that
@@ -136,13 +136,13 @@ def ellipse_pieces(center: Point, major: Point, minor: Point, start: float, swee
     return found
 
 
-def arc_pieces(start: Point, end: Point, bulge: float) -> Pieces:
+def split_arc(start: Point, end: Point, bulge: float) -> Pieces:
     """The pieces of the arc of a bulge from one point to another, or of a line for a bulge of 0."""
-    segment = segment_from_bulge(start, end, bulge)
+    segment = make_segment_from_bulge(start, end, bulge)
     if not isinstance(segment, Arc):
-        return polynomial_pieces([start, end])
+        return make_bezier_piece([start, end])
     radius, first = segment.radius, segment.mid_angle - segment.sign * segment.half_sweep
-    found = ellipse_pieces(
+    found = split_ellipse(
         segment.center, (radius, 0.0), (0.0, radius), first, segment.sign * 2 * segment.half_sweep
     )
     found[0, 0], found[-1, -1] = (*start, 1.0), (*end, 1.0)
@@ -160,7 +160,7 @@ def raised(pieces: Pieces, degree: int) -> Pieces:
     return pieces
 
 
-def joined_pieces(curves: list[Pieces]) -> Pieces:
+def join_pieces(curves: list[Pieces]) -> Pieces:
     degree = max(pieces.shape[1] for pieces in curves) - 1
     return np.concatenate([raised(pieces, degree) for pieces in curves])
 
@@ -173,7 +173,7 @@ def mapped(pieces: Pieces, matrix: ArrayLike) -> Pieces:
     return out
 
 
-def without_points(pieces: Pieces, shortest: float) -> Pieces:
+def drop_point_pieces(pieces: Pieces, shortest: float) -> Pieces:
     """The pieces that reach farther than ``shortest``, their ends moved onto each other."""
     places = pieces[..., :2] / pieces[..., 2:]
     kept: Pieces = pieces[np.ptp(places, axis=1).max(axis=1) >= shortest].copy()
@@ -233,12 +233,12 @@ def direction_at(pieces: Pieces, parameter: float, after: bool) -> Point:
     one, t = pieces[number : number + 1], parameter - number
     if 0.0 < t < 1.0:
         one = split(one, t)[1 if after else 0]
-    leaving, entering = end_directions(one)
+    leaving, entering = compute_end_directions(one)
     x, y = (leaving if after else entering)[0]
     return float(x), float(y)
 
 
-def end_directions(pieces: Pieces) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def compute_end_directions(pieces: Pieces) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """(P, 2) unit tangents where each piece begins and where it ends, see :func:`direction_at`."""
 
     def leaving(rows: Pieces) -> NDArray[np.float64]:
@@ -264,7 +264,7 @@ def points_along(pieces: Pieces, each: int) -> NDArray[np.float64]:
     return found
 
 
-def end_curvatures(pieces: Pieces) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def compute_end_curvatures(pieces: Pieces) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """(P,) signed curvatures in 1/mm where each piece begins and ends; NaN where its derivative vanishes.
 
     kappa = (n - 1) / n * w0 w2 / w1² * cross(p1 - p0, p2 - p1) / |p1 - p0|³ (Farin, section 12.5).

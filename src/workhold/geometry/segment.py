@@ -41,12 +41,12 @@ __all__ = [
     "Line",
     "Point",
     "Segment",
-    "carrier_intersections",
-    "circle_circle",
-    "common_points",
+    "find_carrier_crossings",
+    "cross_carrying_circles",
+    "find_common_points",
     "holds",
-    "segment_from_bulge",
-    "ends_of_rows",
+    "make_segment_from_bulge",
+    "find_row_ends",
     "segment_rows",
 ]
 
@@ -214,7 +214,7 @@ def to_middle(radius: float, mid_angle: float) -> tuple[Fraction, Fraction]:
     return scale * x, scale * y
 
 
-def segment_from_bulge(start: Point, end: Point, bulge: float) -> Segment:
+def make_segment_from_bulge(start: Point, end: Point, bulge: float) -> Segment:
     """Builds the segment from ``start`` to ``end`` with a DXF bulge, tan(sweep / 4), 0 for a line.
 
     The points differ; a bulge that is nearly 0 is a line. Formula: chord c, sweep 4 atan(bulge), radius
@@ -249,7 +249,7 @@ def segment_rows(segments: Sequence[Segment]) -> NDArray[np.float64]:
     return rows
 
 
-def ends_of_rows(rows: NDArray[np.float64]) -> NDArray[np.float64]:
+def find_row_ends(rows: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the low and the high end (N, 2, 2) of segments, given their rows (N, 10), to which more may be added."""
     half, axis = rows[:, HALF_EXTENT, None] * np.array([-1.0, 1.0]), rows[:, None, AXIS_X : AXIS_Y + 1]
     cosine, sine = np.cos(half), np.sin(half)
@@ -259,7 +259,7 @@ def ends_of_rows(rows: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(rows[:, None, X : Y + 1] + np.where(is_arc, on_arc, axis * half[..., None]))
 
 
-def line_line(a: Line, b: Line) -> list[Point]:
+def cross_carrying_lines(a: Line, b: Line) -> list[Point]:
     """Common point of two carrying lines; none when they are parallel to within 1e-12 rad."""
     (ax, ay), (atx, aty) = a.middle, a.tangent
     (bx, by), (btx, bty) = b.middle, b.tangent
@@ -270,7 +270,7 @@ def line_line(a: Line, b: Line) -> list[Point]:
     return [(ax + s * atx, ay + s * aty)]
 
 
-def line_circle(line: Line, center: Point, radius: float) -> list[Point]:
+def cross_carrying_line_and_circle(line: Line, center: Point, radius: float) -> list[Point]:
     """Common points of a line and a circle; a touch within ``TOUCH`` gives one point."""
     (px, py), (tx, ty) = line.middle, line.tangent
     dx, dy = center[0] - px, center[1] - py
@@ -283,7 +283,7 @@ def line_circle(line: Line, center: Point, radius: float) -> list[Point]:
     return [(foot[0] - half * tx, foot[1] - half * ty), (foot[0] + half * tx, foot[1] + half * ty)]
 
 
-def circle_circle(center_a: Point, radius_a: float, center_b: Point, radius_b: float) -> list[Point]:
+def cross_carrying_circles(center_a: Point, radius_a: float, center_b: Point, radius_b: float) -> list[Point]:
     """Common points of two circles; a touch within ``TOUCH`` gives one, equal circles none."""
     dx, dy = center_b[0] - center_a[0], center_b[1] - center_a[1]
     distance = hypot(dx, dy)
@@ -303,13 +303,17 @@ def circle_circle(center_a: Point, radius_a: float, center_b: Point, radius_b: f
     return [(x - half * uy, y + half * ux), (x + half * uy, y - half * ux)]
 
 
-def carrier_intersections(a: Segment, b: Segment) -> list[Point]:
+def find_carrier_crossings(a: Segment, b: Segment) -> list[Point]:
     """Common points of the carrying lines or circles of two segments (none when they coincide)."""
     if isinstance(a, Line):
-        return line_line(a, b) if isinstance(b, Line) else line_circle(a, b.center, b.radius)
+        return (
+            cross_carrying_lines(a, b)
+            if isinstance(b, Line)
+            else cross_carrying_line_and_circle(a, b.center, b.radius)
+        )
     if isinstance(b, Line):
-        return line_circle(b, a.center, a.radius)
-    return circle_circle(a.center, a.radius, b.center, b.radius)
+        return cross_carrying_line_and_circle(b, a.center, a.radius)
+    return cross_carrying_circles(a.center, a.radius, b.center, b.radius)
 
 
 def holds(segment: Segment, point: Point, tolerance: float) -> bool:
@@ -318,7 +322,7 @@ def holds(segment: Segment, point: Point, tolerance: float) -> bool:
     return abs(segment.parameter(point)) <= segment.half_extent + slack
 
 
-def distance_to_segment(point: Point, segment: Segment) -> float:
+def measure_distance_to_segment(point: Point, segment: Segment) -> float:
     """Distance in mm from a point to a segment."""
     parameter, half = segment.parameter(point), segment.half_extent
     if abs(parameter) <= half:
@@ -326,14 +330,14 @@ def distance_to_segment(point: Point, segment: Segment) -> float:
     return min(dist(point, segment.at(end)) for end in (-half, half))
 
 
-def common_points(a: Segment, b: Segment, tolerance: float) -> list[Point]:
+def find_common_points(a: Segment, b: Segment, tolerance: float) -> list[Point]:
     """Points at which two segments meet or touch to within a tolerance in mm.
 
     Overlapping segments (same line or circle) give the ends of each that lie on the other.
     """
-    points = [p for p in carrier_intersections(a, b) if holds(a, p, tolerance) and holds(b, p, tolerance)]
-    points += [p for p in (a.start, a.end) if distance_to_segment(p, b) <= tolerance]
-    points += [p for p in (b.start, b.end) if distance_to_segment(p, a) <= tolerance]
+    points = [p for p in find_carrier_crossings(a, b) if holds(a, p, tolerance) and holds(b, p, tolerance)]
+    points += [p for p in (a.start, a.end) if measure_distance_to_segment(p, b) <= tolerance]
+    points += [p for p in (b.start, b.end) if measure_distance_to_segment(p, a) <= tolerance]
     if isinstance(a, Arc) and isinstance(b, Arc) and a.is_full and b.is_full:
         same = dist(a.center, b.center) <= tolerance and abs(a.radius - b.radius) <= tolerance
         points += [a.start] if same else []

@@ -27,16 +27,16 @@ from attrs import Factory, define, evolve, field, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
-from workhold.geometry.loop import Comparisons, near_pairs
-from workhold.geometry.segment import Arc, Line, Point, Segment, bounding_box, carrier_intersections
+from workhold.geometry.loop import Comparisons, find_near_pairs
+from workhold.geometry.segment import Arc, Line, Point, Segment, bounding_box, find_carrier_crossings
 
 __all__ = [
     "BorderPiece",
     "CutCarrier",
     "Inside",
-    "border_loops",
-    "border_pieces",
-    "distinct_sorted",
+    "join_border_loops",
+    "find_border_pieces",
+    "sort_distinct",
     "subdivide",
 ]
 
@@ -157,7 +157,7 @@ class CutCarrier:
             cuts = (cuts + pi) % tau - pi
             if len(cuts) == 0:
                 return [(-pi, 0.0), (0.0, pi)]
-        distinct = distinct_sorted(cuts, slack)
+        distinct = sort_distinct(cuts, slack)
         if isinstance(self.segment, Arc):
             if len(distinct) > 1 and distinct[0] + tau - distinct[-1] <= slack:
                 distinct.pop()
@@ -175,7 +175,7 @@ class CutCarrier:
         ]
 
 
-def distinct_sorted(values: NDArray[np.float64], slack: float) -> list[float]:
+def sort_distinct(values: NDArray[np.float64], slack: float) -> list[float]:
     """Sorted values without those that lie within the slack above another."""
     distinct: list[float] = []
     for value in np.sort(values):
@@ -205,20 +205,20 @@ def subdivide(
     carriers: list[CutCarrier] = []
     found: dict[tuple[int, ...], list[CutCarrier]] = {}
     for number, segment in enumerate(segments):
-        carrier = carrier_of(segment, carriers, found, comparisons)
+        carrier = find_or_make_carrier(segment, carriers, found, comparisons)
         carrier.add(segment)
         carrier.owners.append(number)
     further = []
     for segment, point in cuts:
-        carrier = carrier_of(segment, carriers, found)
+        carrier = find_or_make_carrier(segment, carriers, found)
         carrier.cuts.append(carrier.position(point))
         further.append((carrier, point))
     carriers = [carrier for carrier in carriers if carrier.spans]
     if comparisons is not None:
         # Every piece is asked for all spans.
         comparisons.spend(sum(len(one.spans) * (len(one.cuts) // 32 + 1) for one in carriers))
-    boxes = np.array([covered_box(carrier) for carrier in carriers]).reshape(-1, 4)
-    for a, b in near_pairs(boxes, boxes):
+    boxes = np.array([bound_covered(carrier) for carrier in carriers]).reshape(-1, 4)
+    for a, b in find_near_pairs(boxes, boxes):
         if comparisons is not None:
             # It takes about as long as so many others.
             comparisons.spend(10)
@@ -239,14 +239,14 @@ def cut_twins(carriers: Carriers, cuts: Sequence[tuple[CutCarrier, Point]]) -> N
             other.cuts.append(position)
 
 
-def carrier_of(
+def find_or_make_carrier(
     segment: Segment,
     carriers: list[CutCarrier],
     found: dict[tuple[int, ...], list[CutCarrier]],
     comparisons: Comparisons | None = None,
 ) -> CutCarrier:
     """The carrier of a segment, made if it is not there; ``found`` holds carriers by rough place."""
-    keys = rough_keys(segment)
+    keys = list_rough_keys(segment)
     for key in keys:
         if comparisons is not None:
             comparisons.spend(len(found.get(key, ())))
@@ -259,7 +259,7 @@ def carrier_of(
     return carrier
 
 
-def rough_keys(segment: Segment) -> list[tuple[int, ...]]:
+def list_rough_keys(segment: Segment) -> list[tuple[int, ...]]:
     """Where a carrier may be kept: the cell of its place first, then the neighbouring cells."""
     around = (0, -1, 1)
     if isinstance(segment, Arc):
@@ -271,7 +271,7 @@ def rough_keys(segment: Segment) -> list[tuple[int, ...]]:
     return [((cell + a) % last, 0) for a in around]
 
 
-def covered_box(carrier: CutCarrier) -> tuple[float, float, float, float]:
+def bound_covered(carrier: CutCarrier) -> tuple[float, float, float, float]:
     """A box around all that is covered, grown by ``ONE``."""
     own = carrier.segment
     if isinstance(own, Arc):
@@ -288,7 +288,7 @@ def cut_each_other(a: CutCarrier, b: CutCarrier) -> None:
     A circle that passes another or a line by so little that the two points are one gap touches it in the
     middle between them: the piece between would be closed like a gap, and move the ends of those beside it.
     """
-    points = list(carrier_intersections(a.segment, b.segment))
+    points = list(find_carrier_crossings(a.segment, b.segment))
     if len(points) == 2 and SHORT < dist(*points) <= REACH:
         (x0, y0), (x1, y1) = points
         points = [((x0 + x1) / 2, (y0 + y1) / 2)]
@@ -412,7 +412,7 @@ class BorderPiece:
         return (sin(quarter) / cos(quarter)) * (1.0 if self.forward else -1.0)
 
 
-def border_pieces(
+def find_border_pieces(
     carriers: Sequence[CutCarrier], inside: Inside, beside: float = BESIDE
 ) -> list[BorderPiece]:
     """Pieces with a region on one side only.
@@ -432,12 +432,12 @@ def border_pieces(
         if other is not every[number].carrier
         and known.distance(other, (float(middles[number, 0]), float(middles[number, 1]))) <= 2 * beside
     }
-    clear = clearest({number: every[number] for number in sorted(crowded)}, known, beside)
+    clear = find_clearest_positions({number: every[number] for number in sorted(crowded)}, known, beside)
     thin = {number: every[number] for number, (_, clearance) in clear.items() if clearance <= THIN}
     places = []
     for number, piece in enumerate(every):
         position, clearance = clear.get(number, ((piece.low + piece.high) / 2, inf))
-        places.append((piece.carrier, position, min(beside_of(piece, beside), clearance / 2)))
+        places.append((piece.carrier, position, min(choose_side_distance(piece, beside), clearance / 2)))
     found = [
         evolve(piece, forward=left) if left != right else None
         for piece, (left, right) in zip(every, sides(places, inside), strict=True)
@@ -445,7 +445,7 @@ def border_pieces(
     for group in twins(thin):
         first = thin[group[0]]
         position = (first.low + first.high) / 2
-        ((left, right),) = sides([(first.carrier, position, beside_of(first, beside))], inside)
+        ((left, right),) = sides([(first.carrier, position, choose_side_distance(first, beside))], inside)
         for number in group:
             found[number] = None
         if left != right:
@@ -475,7 +475,7 @@ def sides(places: Sequence[tuple[CutCarrier, float, float]], inside: Inside) -> 
     return list(zip(found[0::2], found[1::2], strict=True))
 
 
-def clearest(
+def find_clearest_positions(
     pieces: Mapping[int, BorderPiece], carriers: Carriers, beside: float
 ) -> dict[int, tuple[float, float]]:
     """By a piece's number its first position that is clear enough, else that with the most clearance.
@@ -483,7 +483,7 @@ def clearest(
     With it the clearance in mm, as far as it is looked at.
     """
     found: dict[int, tuple[float, float]] = {}
-    enough = {number: 2 * beside_of(piece, beside) for number, piece in pieces.items()}
+    enough = {number: 2 * choose_side_distance(piece, beside) for number, piece in pieces.items()}
     left = list(pieces)
     for share in SHARES:
         if not left:
@@ -503,7 +503,7 @@ def clearest(
     return found
 
 
-def beside_of(piece: BorderPiece, beside: float) -> float:
+def choose_side_distance(piece: BorderPiece, beside: float) -> float:
     """How far beside a piece its two sides are looked at, in mm, where nothing is near."""
     return min(beside, BESIDE_SHARE * piece.length)
 
@@ -526,7 +526,7 @@ def twins(pieces: Mapping[int, BorderPiece]) -> list[list[int]]:
     return [group for group in groups if len(group) > 1]
 
 
-def border_loops(pieces: Sequence[BorderPiece], reach: float = REACH) -> list[list[BorderPiece]]:
+def join_border_loops(pieces: Sequence[BorderPiece], reach: float = REACH) -> list[list[BorderPiece]]:
     """Pieces of a border joined to closed loops, each run with the region on the left.
 
     Where several runs leave a point, the one that turns farthest to the left is taken. So two corners of a

@@ -21,16 +21,16 @@ from workhold.geometry.segment import Arc, Line, Point, Segment
 
 __all__ = [
     "Rotation",
-    "centroid_of_joints",
+    "find_centroid_of_joints",
     "is_own_mirror_image",
     "middle_of",
-    "rotated",
-    "rotations_onto_itself",
+    "rotate_vectors",
+    "find_rotations_onto_itself",
     "symmetries",
 ]
 
 
-def rotated(x: Any, y: Any, angle: Any) -> tuple[Any, Any]:
+def rotate_vectors(x: Any, y: Any, angle: Any) -> tuple[Any, Any]:
     """Vectors turned counter-clockwise by angles in radians; numbers or arrays of matching shapes.
 
     >>> [round(float(v), 12) for v in rotated(3.0, 1.0, np.pi / 2)]
@@ -60,7 +60,7 @@ class Rotation:
     image: NDArray[np.int64]
 
 
-def centroid_of_joints(segments: Sequence[Segment]) -> Point:
+def find_centroid_of_joints(segments: Sequence[Segment]) -> Point:
     """Mean of the segments' middles, weighted by length: every rotation onto itself keeps this point."""
     total = sum(s.length for s in segments)
     middles = [middle_of(s) for s in segments]
@@ -99,7 +99,7 @@ class CenteredOutline:
             else:
                 points.append((s.at(0.0), s.start, s.end, s.at(0.0)))
                 kinds.append((0.0, 0.0, mark))
-        return cls(np.array(points) - centroid_of_joints(segments), np.array(kinds))
+        return cls(np.array(points) - find_centroid_of_joints(segments), np.array(kinds))
 
     @cached_property
     def levels(self) -> tuple[Array, NDArray[np.int64]]:
@@ -131,7 +131,7 @@ class CenteredOutline:
     def images(self, other: CenteredOutline, angle: float, chosen: slice) -> NDArray[np.int64]:
         """Segments of another outline that a rotation carries each of some to; -1 without an image."""
         points, kinds = self.points[chosen], self.kinds[chosen]
-        turned = np.stack(rotated(points[..., 0], points[..., 1], angle), axis=-1)
+        turned = np.stack(rotate_vectors(points[..., 0], points[..., 1], angle), axis=-1)
         level, order = other.levels
         # The anchor of an image is at most so far off, and so is its level, the direction being no longer
         # than 1.
@@ -150,7 +150,7 @@ class CenteredOutline:
         return found
 
 
-def rotations_onto_itself(segments: Sequence[Segment], marks: Sequence[int] = ()) -> list[Rotation]:
+def find_rotations_onto_itself(segments: Sequence[Segment], marks: Sequence[int] = ()) -> list[Rotation]:
     """All rotations that carry an outline, given by its faces, onto itself; the identity comes first.
 
     An outline of concentric circles alone turns onto itself at every angle; only the identity is returned for
@@ -175,21 +175,21 @@ def symmetries(segments: Sequence[Segment], marks: Sequence[int] = ()) -> list[N
     """Indices (N,) of segments' images under every rotation and mirror image of an outline onto itself.
 
     The identity comes first. Of concentric circles alone, which every motion about their centre carries, it
-    is the only one. Marks are those of :func:`rotations_onto_itself`.
+    is the only one. Marks are those of :func:`find_rotations_onto_itself`.
     """
-    images = [rotation.image for rotation in rotations_onto_itself(segments, marks)]
+    images = [rotation.image for rotation in find_rotations_onto_itself(segments, marks)]
     outline = CenteredOutline.of(segments, marks)
-    mirror = None if outline.first is None else mirrored_onto(outline, segments, marks)
+    mirror = None if outline.first is None else match_mirror_image(outline, segments, marks)
     return images if mirror is None else [*images, *(image[mirror] for image in images)]
 
 
 def is_own_mirror_image(segments: Sequence[Segment]) -> bool:
     """Whether an outline turned over looks as before, once it is turned round as well."""
     outline = CenteredOutline.of(segments)
-    return outline.first is None or mirrored_onto(outline, segments) is not None
+    return outline.first is None or match_mirror_image(outline, segments) is not None
 
 
-def mirrored_onto(
+def match_mirror_image(
     outline: CenteredOutline, segments: Sequence[Segment], marks: Sequence[int] = ()
 ) -> NDArray[np.int64] | None:
     """Indices of segments' mirror images in an outline; None where no mirror image maps it onto itself."""

@@ -48,7 +48,9 @@ def triangulate(loops: Sequence[Sequence[Point]]) -> list[Triangle]:
             sweep.before.append(first + (k - 1) % count)
         first += count
     sweep.run()
-    return [triangle for piece in sweep.pieces() for triangle in monotone_triangles(piece, sweep.points)]
+    return [
+        triangle for piece in sweep.pieces() for triangle in triangulate_monotone_piece(piece, sweep.points)
+    ]
 
 
 def turn(p: Point, q: Point, r: Point) -> float:
@@ -157,7 +159,7 @@ class Sweep:
         return min((w for w in (self.after[v], *others) if w != u), key=clockwise)
 
 
-def monotone_triangles(piece: Sequence[int], points: Sequence[Point]) -> list[Triangle]:
+def triangulate_monotone_piece(piece: Sequence[int], points: Sequence[Point]) -> list[Triangle]:
     """Triangles of a piece that every horizontal line meets in one span.
 
     The piece is given by the numbers of its vertices, counter-clockwise.

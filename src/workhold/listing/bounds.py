@@ -56,9 +56,9 @@ from workhold.model.quality import (
     TILT,
 )
 from workhold.model.query import Query
-from workhold.statics.contact_matrix import locators_inverse, outward_normals, wrenches
+from workhold.statics.contact_matrix import compute_outward_normals, invert_locator_matrices, wrenches
 from workhold.statics.judging import Judging
-from workhold.statics.quality import face_sizes, main_direction
+from workhold.statics.quality import main_direction, measure_faces
 
 __all__ = ["BOUNDED", "first_of_clamps", "pair_bounds", "preferred_angles", "tilted_keys"]
 
@@ -124,8 +124,8 @@ def clamp_forces(records: Array, c: Candidates, problem: Problem) -> Array:
     out[:, :LOCATORS] = np.take_along_axis(c.force[:, LOCATOR_CONTACTS], places, axis=1)
     out[:, FACE] = c.force[:, TIP]
     rows = problem.rows[c.feature]
-    each = wrenches(c.point, outward_normals(rows, c.point), problem.wrench_length)
-    norm = np.abs(locators_inverse(each)).sum(axis=2).max(axis=1, initial=0.0)
+    each = wrenches(c.point, compute_outward_normals(rows, c.point), problem.wrench_length)
+    norm = np.abs(invert_locator_matrices(each)).sum(axis=2).max(axis=1, initial=0.0)
     curved = (1.0 / np.where(rows[..., IS_ARC] != 0.0, rows[..., RADIUS], inf)).max(axis=1, initial=0.0)
     place = 16.0 * (records[:, record.LARGEST_RADIUS] + records[:, record.REACH] * problem.wrench_length)
     share = SHARE + 16.0 * norm * place * (1.0 / problem.wrench_length + curved) * out[:, FACE]
@@ -193,7 +193,7 @@ def shared_arcs(query: Query) -> list[int]:
 def least_keys(query: Query, problem: Problem, tilt: float) -> OrderKeys:
     """The least keys that fixtures of a tilt in degrees or more, at other than preferred angles, can have."""
     part, tolerance = query.workpiece, query.tolerance
-    sizes, off = face_sizes(part), tolerance.peg + tolerance.face
+    sizes, off = measure_faces(part), tolerance.peg + tolerance.face
     arcs = shared_arcs(query)
     # Whether two pegs share an arc or not.
     cases = [(sqrt(2.0) * off, np.nanmax(sizes))]

@@ -9,15 +9,15 @@ import numpy as np
 from attrs import define, fields
 from numpy.typing import NDArray
 
-from workhold.contact.features import meeting_ends
+from workhold.contact.features import find_meeting_ends
 from workhold.contact.problem import Problem
 from workhold.conventions import END_SLACK, JOINT, SAME_PLACE, SAME_POSE
-from workhold.geometry.segment import ends_of_rows
+from workhold.geometry.segment import find_row_ends
 from workhold.kernels.contact import record
 from workhold.kernels.contact.record import WORK_LENGTH
 from workhold.kernels.proof.canonical_form import contacts_of, to_canonical_form
 from workhold.listing.runs import key_of, order_of
-from workhold.proof.deciding import peg_integers
+from workhold.proof.deciding import read_peg_integers
 
 __all__ = [
     "NEAR_END",
@@ -91,7 +91,7 @@ class Candidates(Rows):
 
 def candidates_of(records: Array, problem: Problem) -> Candidates:
     count = len(records)
-    feature, column, row = peg_integers(records)
+    feature, column, row = read_peg_integers(records)
     point, gap, null, force = (np.empty((count, *shape)) for shape in ((4, 2), (), (4,), (4,)))
     work = np.empty((WORK_LENGTH, 4)), np.empty((2, 4, 2))
     contacts_of(records, problem.rows, problem.setting, point, gap, null, force, *work)
@@ -115,7 +115,7 @@ def on_each_face(records: Array, problem: Problem, pegs: int) -> tuple[IntArray,
 
     Of the first ``pegs`` those at a joint may touch either feature.
     """
-    ends = ends_of_rows(problem.rows)
+    ends = find_row_ends(problem.rows)
     # A feature shorter than that has others beside it that do not begin where it ends.
     one, other = joints(problem, 4.0 * NEAR_END)
     points, numbers = candidates_of(records, problem).point, np.arange(len(records))
@@ -140,13 +140,13 @@ def are_lowest(feature: IntArray, point: Array, problem: Problem) -> NDArray[np.
     one, other = joints(problem, JOINT)
     is_lowest = np.ones((len(problem.rows), 2), np.bool_)
     is_lowest.reshape(-1)[one[other // 2 < one // 2]] = False
-    at_end = np.abs(point[:, :, None] - ends_of_rows(problem.rows)[feature]).max(axis=3) <= END_SLACK
+    at_end = np.abs(point[:, :, None] - find_row_ends(problem.rows)[feature]).max(axis=3) <= END_SLACK
     return np.asarray((is_lowest[feature] | ~at_end).all(axis=(1, 2)))
 
 
 def joints(problem: Problem, within: float) -> tuple[IntArray, IntArray]:
     """Which ends of features, two for each, meet which of others that the same pegs touch, within so many mm."""
-    one, other = meeting_ends(ends_of_rows(problem.rows).reshape(-1, 2), within)
+    one, other = find_meeting_ends(find_row_ends(problem.rows).reshape(-1, 2), within)
     begin, last = problem.moving
     alike = ((one // 2 >= begin) & (one // 2 < last)) == ((other // 2 >= begin) & (other // 2 < last))
     return one[alike], other[alike]

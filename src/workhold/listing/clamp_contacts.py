@@ -18,14 +18,14 @@ from numpy.typing import NDArray
 
 from workhold.contact.problem import QUARTERS, ROUNDINGS, Problem
 from workhold.conventions import FORCES_OFF, MOST_FORCE, NO_REACTION, SAME_POSE
-from workhold.geometry.symmetry import rotated
+from workhold.geometry.symmetry import rotate_vectors
 from workhold.kernels.base.feature import IS_ARC, RADIUS, X, Y
 from workhold.listing.canonical_form import Candidates
 from workhold.listing.clamp_placement import axis_of, direction_number
 from workhold.listing.placing import LOCATOR_CONTACTS, TIP, clamp_placement
 from workhold.listing.wall_fixtures import WallFixtures
 from workhold.proof.deciding import BALLS
-from workhold.statics.contact_matrix import outward_normals, wrenches
+from workhold.statics.contact_matrix import compute_outward_normals, wrenches
 
 if TYPE_CHECKING:
     from workhold.proof.ball_contacts import CandidateBox
@@ -124,11 +124,11 @@ def contacts_of_candidates(c: Candidates, problem: Problem) -> ClampContacts:
     """Return the contacts of three locators and a clamp that the search of one direction proved."""
     frame = problem.frame
     rows = problem.rows[c.feature]
-    wrench = wrenches(c.point, outward_normals(rows, c.point), problem.wrench_length)
+    wrench = wrenches(c.point, compute_outward_normals(rows, c.point), problem.wrench_length)
     inverse = np.asarray(np.linalg.inv(np.swapaxes(wrench[:, LOCATOR_CONTACTS], 1, 2)), np.float64)
     taken = -(inverse @ wrench[:, TIP, :, None])[..., 0]
     axis = np.array(frame.toolkit.moving_axis) * frame.toolkit.clamping
-    turned = np.stack(rotated(axis[0], axis[1], -(c.theta + frame.quarters * np.pi / 2)), axis=1)
+    turned = np.stack(rotate_vectors(axis[0], axis[1], -(c.theta + frame.quarters * np.pi / 2)), axis=1)
     push = (turned * wrench[:, TIP, :2]).sum(axis=1)
     taken, push, doubt = sharpened(c, taken, push, *doubts(inverse, taken, rows, push, problem), problem)
     column, row = frame.step_back(c.column[:, LOCATOR_CONTACTS], c.row[:, LOCATOR_CONTACTS])
@@ -183,7 +183,7 @@ def sharpened(
     They are computed in balls where doubles leave forces in doubt. ``push_off`` and ``doubt`` (N,) are how
     far pushes and forces may be off.
     """
-    from workhold.proof.exact_contacts import sharp_reactions
+    from workhold.proof.exact_contacts import bound_reactions
 
     taken, push, doubt = taken.copy(), push.copy(), doubt.copy()
     # Per unit of the clamp's own force, as parts of one and the largest force.
@@ -192,7 +192,7 @@ def sharpened(
     chosen = np.flatnonzero(off > FORCES_OFF).tolist()
     with BALLS if chosen else nullcontext():
         for k in chosen:
-            sharp = sharp_reactions(box_of(c, k, problem), problem.limits)
+            sharp = bound_reactions(box_of(c, k, problem), problem.limits)
             if sharp is not None:
                 taken[k], push[k], doubt[k] = sharp.taken, sharp.push, sharp.doubt
     return taken, push, doubt
@@ -219,13 +219,13 @@ def box_beside(
     from flint import ctx
 
     from workhold.proof.ball_contacts import CandidateBox
-    from workhold.proof.exact_contacts import exact_rows
+    from workhold.proof.exact_contacts import make_exact_rows
     from workhold.proof.interval_newton import PRECISIONS
 
     frame, reach = problem.frame, (BESIDE / problem.wrench_length, BESIDE, BESIDE, 2 * BESIDE)
     radii = [frame.standing.peg_radius] * TIP + [frame.moving.peg_radius]
     with ctx.workprec(PRECISIONS[-1]):
-        rows = exact_rows(features, radii, problem)
+        rows = make_exact_rows(features, radii, problem)
     return CandidateBox(rows, offsets, TIP, middle, reach)
 
 

@@ -20,7 +20,7 @@ from workhold.contact.problem import Problem
 from workhold.conventions import BODY_SLACK, GAP_SLACK
 from workhold.fixels.contacts import DIRECTIONS
 from workhold.fixels.toolkit import Carrier, Toolkit, Travel
-from workhold.geometry.symmetry import rotated
+from workhold.geometry.symmetry import rotate_vectors
 from workhold.kernels.base.distance import piece_distances
 
 __all__ = [
@@ -155,7 +155,7 @@ class ClampPlacement:
         if len(chosen):
             starts = self.seen[index[chosen]]
             x, y = behind[chosen].T
-            ends = starts + np.stack(rotated(x, y, -self.theta[index[chosen]]), axis=1)
+            ends = starts + np.stack(rotate_vectors(x, y, -self.theta[index[chosen]]), axis=1)
             distances = np.empty(len(chosen))
             piece_distances(starts, ends, problem.outlines[1], distances)
             clear[chosen] = distances >= radius - BODY_SLACK

@@ -44,7 +44,7 @@ from workhold.listing.runs import Runs, SortedRun, in_order, key_of
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import CLOSURE_MARGIN
 from workhold.proof.deciding import Account, Course, decided
-from workhold.statics.effective_error import EffectiveErrors, angle_classes
+from workhold.statics.effective_error import EffectiveErrors, classify_angles
 from workhold.statics.judging import unfit
 
 __all__ = [
@@ -410,7 +410,7 @@ class ResultCollector:
         if self.is_part and not self.course.is_stopped:
             return SortedRun(run.keys, tuple(columns))
         table = FixtureTable(*columns)
-        keys = keys_of(table.quality, self.problem.query, error, angle_classes(table.theta))
+        keys = keys_of(table.quality, self.problem.query, error, classify_angles(table.theta))
         identity = run.keys.view(">u8").astype(np.int64)
         return SortedRun.of(key_of(*keys.numbers(self.least).T, identity), table.columns)
 

@@ -28,9 +28,9 @@ from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Arrangement, Toolkit
 from workhold.geometry.symmetry import (
     Rotation,
-    centroid_of_joints,
-    rotated,
-    rotations_onto_itself,
+    find_centroid_of_joints,
+    find_rotations_onto_itself,
+    rotate_vectors,
     symmetries,
 )
 from workhold.listing.canonical_form import changes, clusters, packed
@@ -79,7 +79,7 @@ class Identity:
     @rotations.default
     def onto_itself(self) -> tuple[Rotation, ...]:
         every = self.part.numbered
-        return tuple(rotations_onto_itself([face.segment for face in every.faces], every.marks))
+        return tuple(find_rotations_onto_itself([face.segment for face in every.faces], every.marks))
 
     @property
     def is_symmetric(self) -> bool:
@@ -95,7 +95,7 @@ class Identity:
             table.arrangement
         ]
         period = np.where(halves, np.pi, 2.0 * np.pi)
-        kept = np.array(centroid_of_joints([face.segment for face in self.part.numbered.faces]))
+        kept = np.array(find_centroid_of_joints([face.segment for face in self.part.numbered.faces]))
         after = [table.theta - rotation.angle + SAME_POSE for rotation in self.rotations]
         least = np.min([theta % period for theta in after], axis=0)
         words, pose = list[IntArray](), np.zeros((0, 0))
@@ -111,8 +111,8 @@ class Identity:
                 for one, two in zip(forms[0][1:], forms[1][1:], strict=True)
             )
             away = anchor - table.position[chosen]
-            seen = rotated(away[:, 0], away[:, 1], -table.theta[chosen])
-            place = rotated(seen[0] - kept[0], seen[1] - kept[1], rotation.angle)
+            seen = rotate_vectors(away[:, 0], away[:, 1], -table.theta[chosen])
+            place = rotate_vectors(seen[0] - kept[0], seen[1] - kept[1], rotation.angle)
             image = np.column_stack([(theta % period)[chosen] - SAME_POSE, *place, ahead])
             if not words:
                 words = [np.full(len(table), np.iinfo(np.int64).max) for _ in numbers]

@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 
 from workhold.contact.problem import Frame, Problem
 from workhold.conventions import GAP_SLACK
-from workhold.geometry.symmetry import rotated
+from workhold.geometry.symmetry import rotate_vectors
 from workhold.listing.canonical_form import Candidates
 from workhold.listing.clamp_placement import ClampPlacement, axis_of, is_bolted, last_holes
-from workhold.model.fixture_table import FixtureTable, unknown_quality
-from workhold.model.requirements import are_within
+from workhold.model.fixture_table import FixtureTable, make_unknown_quality
+from workhold.model.requirements import lie_in_angle_ranges
 from workhold.proof.deciding import is_standing
 from workhold.rowwise import largest, smallest
 
@@ -116,7 +116,7 @@ def bodies_clear(c: Candidates, frame: Frame) -> BoolArray:
 def at_angle(theta: Array, angles: Sequence[Sequence[float]], frame: Frame) -> BoolArray:
     """Which orientations (N,) in radians lie, seen from the toolkit, in one of some ranges in degrees; in any
     when there are none."""
-    return np.asarray(are_within(np.degrees(theta) + 90.0 * frame.quarters, angles))
+    return np.asarray(lie_in_angle_ranges(np.degrees(theta) + 90.0 * frame.quarters, angles))
 
 
 def free_columns(c: Candidates, frame: Frame) -> tuple[IntArray, IntArray]:
@@ -293,7 +293,7 @@ def table_of(c: Candidates, problem: Problem, column: IntArray, row: IntArray, t
     frame = problem.frame
     theta = c.theta if frame.quarters == 0 else (c.theta + frame.quarters * np.pi / 2) % (2 * np.pi)
     anchor = c.point[:, 0] + np.asarray(problem.workpiece.center)
-    anchor = np.stack(rotated(anchor[:, 0], anchor[:, 1], theta), axis=1)
+    anchor = np.stack(rotate_vectors(anchor[:, 0], anchor[:, 1], theta), axis=1)
     hole = frame.toolkit.carriers[0].place(column[:, 0], row[:, 0])
     return FixtureTable(
         arrangement=frame.toolkit.arrangement_numbers(c.standing).astype(np.int8),
@@ -304,5 +304,5 @@ def table_of(c: Candidates, problem: Problem, column: IntArray, row: IntArray, t
         position=np.stack(hole, axis=1) - anchor,
         jaw_separation=travel,
         force=c.force,
-        quality=unknown_quality(smallest(c.null)),
+        quality=make_unknown_quality(smallest(c.null)),
     )

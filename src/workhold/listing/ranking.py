@@ -34,7 +34,7 @@ from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
 from workhold.conventions import FIGURE_DECIMALS, STEP_TENTHS
-from workhold.model.first_choice import figures_ranked_by
+from workhold.model.first_choice import list_ranking_figures
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import (
     CLAMP_FREEDOM,
@@ -44,13 +44,13 @@ from workhold.model.quality import (
     PROGRAM_FIGURE,
     RANKED,
     WARNINGS,
-    ranked_number,
+    find_ranked_number,
 )
 from workhold.model.query import Query
 from workhold.statics.contact_matrix import Touched
-from workhold.statics.effective_error import EffectiveErrors, angle_classes
+from workhold.statics.effective_error import EffectiveErrors, classify_angles
 from workhold.statics.judging import unfit
-from workhold.statics.quality import quality_of
+from workhold.statics.quality import measure_quality
 
 __all__ = [
     "A_STEP",
@@ -90,7 +90,7 @@ def measured(table: FixtureTable, problem: Problem) -> FixtureTable:
 def measured_as(table: FixtureTable, query: Query, touched: Touched) -> FixtureTable:
     """A table with all its figures of quality; those of closure are as the search found them, to the last
     digit."""
-    quality = quality_of(
+    quality = measure_quality(
         table,
         query.workpiece,
         query.toolkit,
@@ -364,7 +364,7 @@ def usual_errors(query: Query) -> EffectiveErrors | None:
 def order_keys(table: FixtureTable, query: Query, effective: EffectiveErrors | None) -> OrderKeys:
     """The keys of a table of fixtures with all its figures; ``effective`` as of :func:`usual_errors`."""
     error = None if effective is None else effective.errors(table)
-    return keys_of(table.quality, query, error, angle_classes(table.theta))
+    return keys_of(table.quality, query, error, classify_angles(table.theta))
 
 
 def keys_of(quality: Array, query: Query, error: Array | IntArray | None, angle: IntArray) -> OrderKeys:
@@ -389,9 +389,9 @@ def keys_of(quality: Array, query: Query, error: Array | IntArray | None, angle:
 
 def figure_keys(quality: NDArray[np.float64], ranking: Sequence[str]) -> list[NDArray[np.float64]]:
     """Numbers (N,) to sort by for the figures of a ranking, the first counting most."""
-    keys, ranking = [], figures_ranked_by(ranking)
+    keys, ranking = [], list_ranking_figures(ranking)
     for place, key in enumerate(ranking):
-        number = ranked_number(key)
+        number = find_ranked_number(key)
         assert number is not None
         # Rounding must not separate fixtures that are equal, so what is coarse is rounded finely first.
         column = PROGRAM_CLEARANCE if RANKED[number] is PROGRAM_FIGURE else number

@@ -63,10 +63,15 @@ from workhold.model.quality import (
 )
 from workhold.model.query import Query
 from workhold.proof.degenerate import hold_nothing
-from workhold.statics.contact_matrix import Touched, locators_inverse, outward_normals, wrenches
-from workhold.statics.effective_error import EffectiveErrors, angle_classes, to_ends
+from workhold.statics.contact_matrix import (
+    Touched,
+    compute_outward_normals,
+    invert_locator_matrices,
+    wrenches,
+)
+from workhold.statics.effective_error import EffectiveErrors, classify_angles, to_ends
 from workhold.statics.judging import Judging, is_astray, is_near_edge, is_strong
-from workhold.statics.quality import extremes, face_sizes, main_direction, tilts
+from workhold.statics.quality import extremes, main_direction, measure_faces, tilts
 
 __all__ = ["ordered_groups"]
 
@@ -237,7 +242,9 @@ def places_off(records: Array, problem: Problem) -> Array:
     rounding = ROUNDINGS * (np.abs(rows[..., [X, Y, RADIUS]]).max(axis=-1) + problem.wrench_length)
     rest = (np.abs(rests) + rounding).max(axis=1, initial=0.0)
     bent = 1.0 / radius.min(axis=1, initial=inf) + 1.0 / problem.wrench_length
-    inverse = locators_inverse(wrenches(point, outward_normals(rows, point), problem.wrench_length))
+    inverse = invert_locator_matrices(
+        wrenches(point, compute_outward_normals(rows, point), problem.wrench_length)
+    )
     # A movement in mm and mm turned over L moves no centre by four times its largest entry.
     most = 4.0 * np.abs(inverse).sum(axis=2).max(axis=1, initial=0.0)
     within = off[vague]
@@ -264,7 +271,7 @@ def keys_bounding(
         if query.has_house_order
         else None
     )
-    keys = keys_of(quality, query, error, angle_classes(theta, ANGLE))
+    keys = keys_of(quality, query, error, classify_angles(theta, ANGLE))
     return keys.unknown_where(np.isnan(quality[:, LOCATION_ERROR])).least_of(number)
 
 
@@ -280,7 +287,7 @@ def least_factors(records: Array, off: Array, problem: Problem, query: Query) ->
     """
     effective, c = EffectiveErrors.of(query), candidates_of(records, problem)
     faces = problem.faces[c.feature[:, :LOCATORS]].astype(np.int64)
-    angle = angle_classes(seen_angles(records, problem), ANGLE)
+    angle = classify_angles(seen_angles(records, problem), ANGLE)
     points = c.point[:, :LOCATORS] + np.asarray(problem.workpiece.center)
     place = 4.0 * SAME_PLACE + 16.0 * off
     near = to_ends(points, effective.lines[faces]) < query.toolkit.carriers[0].peg_radius - place[:, None]
@@ -341,7 +348,7 @@ def best_figures(
     out[:, END_DISTANCE], out[:, EDGE_DISTANCE] = end, np.minimum(edge, touched.length)
     tilt = tilts(seen_angles(records, problem), main_direction(problem.workpiece))
     out[:, TILT] = np.where(tilt < SQUARE_TILT + ANGLE, 0.0, tilt - ANGLE)
-    out[:, SMALLEST_FACE] = face_sizes(problem.workpiece).take(faces).min(axis=1, initial=inf)
+    out[:, SMALLEST_FACE] = measure_faces(problem.workpiece).take(faces).min(axis=1, initial=inf)
     out[:, LOCATION_ERROR] = np.where(known, error, np.nan)
     if pairs is not None:
         for number, column in BOUNDED.items():

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from workhold.contact.problem import Problem
 from workhold.conventions import SAME_PLACE, SAME_POSE
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.symmetry import rotated
+from workhold.geometry.symmetry import rotate_vectors
 from workhold.kernels.contact.clamp_pairs import (
     CLAMPS,
     COUNT,
@@ -45,7 +45,7 @@ from workhold.listing.clamp_placement import DIRECTION_NAMES, FAR, OPENING, is_b
 from workhold.listing.identity import half_turns
 from workhold.listing.ranking import measured_as
 from workhold.listing.results import RankedTable, Work
-from workhold.model.fixture_table import FixtureTable, unknown_quality
+from workhold.model.fixture_table import FixtureTable, make_unknown_quality
 from workhold.model.quality import CLAMP_FREEDOM
 from workhold.model.query import Query
 from workhold.model.result import Result
@@ -131,7 +131,7 @@ def seats_of(
     if is_limited:
         holes = np.stack([found.column[first], found.row[first]], axis=2) * problem.toolkit.carriers[0].pitch
         x, y = np.moveaxis(holes - holes[:, :1], 2, 0)
-        away = np.stack(rotated(x, y, -theta[:, None]), axis=2)
+        away = np.stack(rotate_vectors(x, y, -theta[:, None]), axis=2)
         point = found.point[first][:, None] - problem.workpiece.center + away
         wanted &= are_lowest(found.feature[first], point, problem)
     number, first = np.where(wanted, np.cumsum(wanted) - 1, -1), first[wanted]
@@ -301,14 +301,14 @@ class ClampedSeats:
 
     def sharpened(self, seats: Seats, rows: Array) -> Seats:
         """Seats whose clamps of some pairs (N, 10) have their reactions to the last digit."""
-        from workhold.proof.exact_contacts import sharp_reactions
+        from workhold.proof.exact_contacts import bound_reactions
 
         reals = seats.clamps.reals.copy()
         with BALLS:
             for seat, clamp in sorted(
                 {(int(row[SEAT]), int(row[CLAMPS + k])) for row in rows for k in range(2)}
             ):
-                sharp = sharp_reactions(self.box(seats, seat, clamp), self.problem.limits)
+                sharp = bound_reactions(self.box(seats, seat, clamp), self.problem.limits)
                 if sharp is not None:
                     reals[clamp, TAKEN : TAKEN + 3], reals[clamp, DOUBT] = sharp.taken, sharp.doubt
         return evolve(seats, clamps=seats.clamps._replace(reals=reals))
@@ -343,7 +343,7 @@ class ClampedSeats:
         push, force = reals[..., PUSH], np.zeros((len(rows), 5, 2))
         force[:, :3] = np.swapaxes(reals[..., TAKEN : TAKEN + 3] / push[..., None], 1, 2)
         force[:, 3, 0], force[:, 4, 1] = 1.0 / push[:, 0], 1.0 / push[:, 1]
-        quality = unknown_quality(rows[:, MARGIN])
+        quality = make_unknown_quality(rows[:, MARGIN])
         quality[:, CLAMP_FREEDOM] = rows[:, FREEDOM]
         theta, point = seats.theta[seat], seats.point[seat]
         face = np.hstack([seats.face[seat], self.problem.faces[seats.clamp_feature[clamp]]])
@@ -355,7 +355,7 @@ class ClampedSeats:
             theta=theta,
             position=at[:, 0]
             - seats.start[seat]
-            - np.stack(rotated(point[:, 0], point[:, 1], theta), axis=1),
+            - np.stack(rotate_vectors(point[:, 0], point[:, 1], theta), axis=1),
             jaw_separation=((tip - at[:, 3:]) * OPENING[direction]).sum(axis=2),
             force=force,
             quality=quality,

@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
 from workhold.conventions import SAME_PLACE
-from workhold.geometry.symmetry import rotated
+from workhold.geometry.symmetry import rotate_vectors
 from workhold.listing.canonical_form import Rows
 from workhold.listing.clamp_placement import ClampPlacement, axis_of, is_bolted, last_holes
-from workhold.model.fixture_table import FixtureTable, unknown_quality
+from workhold.model.fixture_table import FixtureTable, make_unknown_quality
 
 __all__ = ["WallFixtures", "first_of_each", "placed_on_wall", "turned", "wall_table"]
 
@@ -107,7 +107,7 @@ def first_of_each(columns: Sequence[IntArray], place: Array, feature: IntArray) 
 
 def turned(points: Array, angle: Array) -> Array:
     """Points (N, 2) turned by angles (N,)."""
-    return np.stack(rotated(points[:, 0], points[:, 1], angle), axis=1)
+    return np.stack(rotate_vectors(points[:, 0], points[:, 1], angle), axis=1)
 
 
 def wall_table(found: WallFixtures, hole: IntArray, problem: Problem) -> FixtureTable:
@@ -140,7 +140,7 @@ def wall_table(found: WallFixtures, hole: IntArray, problem: Problem) -> Fixture
         position=position,
         jaw_separation=(found.tip[:, 0] + across - x) * unit[0] + (found.tip[:, 1] - y) * unit[1],
         force=share / (share[:, 3] * found.push)[:, None],
-        quality=unknown_quality(share.min(axis=1, initial=1.0)),
+        quality=make_unknown_quality(share.min(axis=1, initial=1.0)),
     )
 
 

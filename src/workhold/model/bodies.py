@@ -21,7 +21,7 @@ from workhold.errors import InputError, plain, shortened
 from workhold.fixels.carrier import Carrier, hole_name
 from workhold.fixels.pegs import peg_outline
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.loop import LoopShape, encloses, signed_area
+from workhold.geometry.loop import LoopShape, compute_signed_area, encloses
 from workhold.geometry.segment import Arc, Box, Line, Point, Segment
 from workhold.model.fixture import Fixture
 from workhold.model.shown import MOST_HOLES, Shown, ShownCarrier, shown
@@ -36,8 +36,8 @@ __all__ = [
     "BodySizes",
     "FixtureBody",
     "Slab",
-    "fixture_bodies",
-    "part_slabs",
+    "list_fixture_bodies",
+    "make_part_slabs",
 ]
 
 Loop = tuple[Segment, ...]
@@ -179,7 +179,7 @@ class BodySizes:
         return (low if low > 0.0 else self.floor), high
 
 
-def fixture_bodies(
+def list_fixture_bodies(
     fixture: Fixture,
     workpiece: Workpiece,
     toolkit: Toolkit,
@@ -205,7 +205,7 @@ def fixture_bodies(
         )
     sizes = BodySizes.of(workpiece) if sizes is None else sizes
     seen = shown(fixture, toolkit, workpiece)
-    part = part_slabs(workpiece.placed(fixture.pose), sizes.thickness)
+    part = make_part_slabs(workpiece.placed(fixture.pose), sizes.thickness)
     name = plain(shortened(workpiece.name, LONGEST_NAME))
     return (
         FixtureBody(name, BodyKind.PART, part),
@@ -225,7 +225,7 @@ def fixture_bodies(
                 each.carrier.title,
                 BodyKind.PLATE,
                 (drilled(each, sizes.plate_thickness, sizes.floor),),
-                way_open(each),
+                find_opening_direction(each),
             )
             for each in seen.carriers
         ),
@@ -233,20 +233,20 @@ def fixture_bodies(
     )
 
 
-def part_slabs(part: Workpiece, thickness: float) -> tuple[Slab, ...]:
+def make_part_slabs(part: Workpiece, thickness: float) -> tuple[Slab, ...]:
     """A part as a prism over each of its outer loops, with the holes directly in it."""
     outer = [LoopShape.of(loop) for loop in part.loop_segments[: part.pieces]]
     holes: list[list[Loop]] = [[] for _ in outer]
     for hole in part.hole_segments:
         shape = LoopShape.of(hole)
         around = [k for k, one in enumerate(outer) if encloses(one, shape)]
-        holes[min(around, key=lambda k: abs(signed_area(outer[k].segments)))].append(hole)
+        holes[min(around, key=lambda k: abs(compute_signed_area(outer[k].segments)))].append(hole)
     return tuple(
         Slab(one.segments, tuple(inside), 0.0, thickness) for one, inside in zip(outer, holes, strict=True)
     )
 
 
-def way_open(carrier: ShownCarrier) -> Point | None:
+def find_opening_direction(carrier: ShownCarrier) -> Point | None:
     """The direction in which a carrier moves when it is opened."""
     return None if carrier.clamping is None else reverse(carrier.clamping)
 
@@ -270,7 +270,9 @@ def pegs(seen: Shown, sizes: BodySizes) -> Iterator[FixtureBody]:
             if len(outline) > 1 and low < sizes.floor:
                 foot = tuple(peg_outline(center, carrier.peg_radius))
                 slabs = [Slab(foot, (), low, sizes.floor), Slab(outline, (), sizes.floor, top)]
-            yield FixtureBody(f"{carrier.peg} {peg.hole}", BodyKind.PEG, tuple(slabs), way_open(each))
+            yield FixtureBody(
+                f"{carrier.peg} {peg.hole}", BodyKind.PEG, tuple(slabs), find_opening_direction(each)
+            )
 
 
 def clamps(seen: Shown, sizes: BodySizes) -> Iterator[FixtureBody]:

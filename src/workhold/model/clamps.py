@@ -25,16 +25,16 @@ from workhold.model.fixture import Fixture, Peg
 __all__ = [
     "LOCATORS",
     "ShownClamp",
-    "clamp_names",
-    "clamp_shares",
-    "clamping_direction",
-    "first_clamps",
-    "freedom_words",
+    "name_clamps",
+    "compute_clamp_shares",
+    "find_clamping_direction",
+    "name_first_clamps",
+    "describe_clamp_freedom",
     "order_words",
     "ratios",
-    "second_over_first",
-    "shown_clamps",
-    "working_forces",
+    "compute_clamp_force_ratio",
+    "list_shown_clamps",
+    "compute_working_forces",
 ]
 
 Array = NDArray[np.float64]
@@ -67,7 +67,7 @@ def ratios(reactions: Array) -> tuple[Array, Array]:
     return low + 0.0, high + 0.0
 
 
-def working_forces(reactions: Array) -> Array:
+def compute_working_forces(reactions: Array) -> Array:
     """Forces (N, P) of all pegs per unit of f1 + f2 at the working ratio, the interval's middle angle.
 
     Parameters
@@ -152,16 +152,16 @@ class ShownClamp:
         return x - away * dx - aside * dy, y - away * dy + aside * dx
 
 
-def shown_clamps(fixture: Fixture, toolkit: Toolkit) -> Iterator[ShownClamp]:
+def list_shown_clamps(fixture: Fixture, toolkit: Toolkit) -> Iterator[ShownClamp]:
     for peg in fixture.pegs:
         carrier = toolkit.carrier(peg.carrier)
-        clamping = clamping_direction(carrier, toolkit)
+        clamping = find_clamping_direction(carrier, toolkit)
         if carrier.contact is CLAMP_TIP and clamping is not None:
             hole = carrier.place(peg.column, peg.row) if carrier.measure == "stroke" else None
             yield ShownClamp(carrier, peg, hole, clamping, carrier.pitch[0 if carrier.line == "row" else 1])
 
 
-def clamping_direction(carrier: Carrier, toolkit: Toolkit) -> Point | None:
+def find_clamping_direction(carrier: Carrier, toolkit: Toolkit) -> Point | None:
     """Along which a carrier slides when it clamps, a unit vector; None when it stands still."""
     if carrier.travel is None:
         return None
@@ -173,7 +173,7 @@ def clamping_direction(carrier: Carrier, toolkit: Toolkit) -> Point | None:
 DIGITS = 2
 
 
-def clamp_names(fixture: Fixture) -> tuple[str, ...]:
+def name_clamps(fixture: Fixture) -> tuple[str, ...]:
     """Names of a fixture's clamps: their holes or lines, with directions where both are on one line."""
     tips = fixture.pegs[-2:]
     holes = [tip.hole for tip in tips]
@@ -185,24 +185,24 @@ def clamp_names(fixture: Fixture) -> tuple[str, ...]:
     return tuple(f"{hole} on face {tip.face}" for hole, tip in zip(holes, tips, strict=True))
 
 
-def first_clamps(fixture: Fixture) -> tuple[str, ...]:
+def name_first_clamps(fixture: Fixture) -> tuple[str, ...]:
     """Names of those of two clamps that may be tightened first, as they lift the part off no locator."""
     if fixture.pair is None:
         return ()
     low, high = fixture.pair.ratio
     return tuple(
-        name for name, may in zip(clamp_names(fixture), (low == 0.0, high == inf), strict=True) if may
+        name for name, may in zip(name_clamps(fixture), (low == 0.0, high == inf), strict=True) if may
     )
 
 
-def second_over_first(fixture: Fixture) -> float:
+def compute_clamp_force_ratio(fixture: Fixture) -> float:
     """The second clamp's force over the first's at the working ratio; 0 where one thing clamps."""
     return 0.0 if fixture.pair is None else fixture.pair.working_ratio
 
 
-def clamp_shares(fixture: Fixture) -> tuple[float, ...]:
+def compute_clamp_shares(fixture: Fixture) -> tuple[float, ...]:
     """The part of the clamp force, of two the sum of both, that each clamp has at the working ratio."""
-    ratio = second_over_first(fixture)
+    ratio = compute_clamp_force_ratio(fixture)
     return (1.0 / (1.0 + ratio), ratio / (1.0 + ratio))[: len(fixture.travels)]
 
 
@@ -225,7 +225,7 @@ def order_words(fixture: Fixture) -> str:
     """
     if fixture.pair is None:
         return ""
-    (low, high), (first, second) = fixture.pair.ratio, clamp_names(fixture)
+    (low, high), (first, second) = fixture.pair.ratio, name_clamps(fixture)
     if low == 0.0 and high == inf:
         return "Tighten either clamp first, each as hard as it needs: neither lifts the part off a locator."
     if low == 0.0 or high == inf:
@@ -241,12 +241,12 @@ def order_words(fixture: Fixture) -> str:
     )
 
 
-def freedom_words(degrees: float) -> str:
+def describe_clamp_freedom(degrees: float) -> str:
     """What a clamp freedom means.
 
-    >>> freedom_words(90.0)
+    >>> describe_clamp_freedom(90.0)
     'the part is held whatever the two forces are'
-    >>> freedom_words(71.5), freedom_words(4.0)
+    >>> describe_clamp_freedom(71.5), describe_clamp_freedom(4.0)
     ('no torque wrench is needed', 'both forces have to be right: use a torque wrench')
     """
     if degrees >= 90.0 - 1e-9:

@@ -237,7 +237,7 @@ def forces_on(
             rows = np.flatnonzero(own & (kind == which))
             if not len(rows):
                 continue
-            found = at_periphery(moves, rows, tool, known, which == DRILLING)
+            found = compute_peripheral_forces(moves, rows, tool, known, which == DRILLING)
             torque[rows] = found * radius
             if which != MILLING:
                 axial[rows, 1] = found * (THRUST if which == DRILLING else 1.0)
@@ -246,7 +246,7 @@ def forces_on(
             helix = HELIX if known.helix_angle is None else known.helix_angle
             axial[rows, 0] = -found * tan(radians(helix))
             axial[rows, 1] = np.where(down[rows], found, 0.0)
-        reasons[number] = reason_words(known)
+        reasons[number] = describe_force_reason(known)
     kind = np.where(torque > 0.0, kind, NO_CUT)
     whole = CuttingForces(force, torque, axial, height, job.direction or ANY, reasons, kind)
     if within is None:
@@ -255,7 +255,7 @@ def forces_on(
     return whole.along(Stretches(within.move[acts], within.first[acts], within.last[acts]))
 
 
-def reason_words(known: CuttingData) -> str:
+def describe_force_reason(known: CuttingData) -> str:
     """What the force of a tool follows from, in words behind its number."""
     if known.cutting_force is not None:
         return "as given."
@@ -266,7 +266,7 @@ def reason_words(known: CuttingData) -> str:
     return f"by Kienzle, {known.material.name} with kc1.1 {kc:g} N/mm2 and mc {mc:g}."
 
 
-def at_periphery(
+def compute_peripheral_forces(
     moves: Moves, rows: NDArray[np.int64], tool: Tool, known: CuttingData, drilling: bool
 ) -> Floats:
     """The force (R,) at the periphery of a tool on some moves, in N; refuses a tool or a line that lacks
@@ -289,9 +289,9 @@ def at_periphery(
     refuse_unsaid(moves, rows, feed, tool, "a feed, F, in a length per minute or turn")
     turns, which = np.unique(feed / spindle, return_inverse=True)
     if drilling:
-        each = [of_drill(float(turn), tool, known) for turn in turns]
+        each = [compute_drill_force(float(turn), tool, known) for turn in turns]
     else:
-        each = [of_teeth(float(turn), tool.diameter, known) for turn in turns]
+        each = [compute_teeth_force(float(turn), tool.diameter, known) for turn in turns]
     return np.array(each)[which]
 
 
@@ -320,7 +320,7 @@ def refuse_unsaid(moves: Moves, rows: NDArray[np.int64], values: Floats, tool: T
         )
 
 
-def of_drill(turn: float, tool: Tool, known: CuttingData) -> float:
+def compute_drill_force(turn: float, tool: Tool, known: CuttingData) -> float:
     """The force in N at the periphery of a tool that drills, from the feed per turn in mm.
 
     How many teeth the tools of the whole job have says nothing of a drill.
@@ -331,7 +331,7 @@ def of_drill(turn: float, tool: Tool, known: CuttingData) -> float:
     return turn * tool.diameter / 4 * known.material.force(thickness, 1.0) / thickness
 
 
-def of_teeth(turn: float, diameter: float, known: CuttingData) -> float:
+def compute_teeth_force(turn: float, diameter: float, known: CuttingData) -> float:
     """The force in N of all teeth in the cut, from the feed per turn in mm."""
     assert known.material is not None and known.teeth is not None and known.cut_depth is not None
     width, exponent = min(known.cut_width or diameter, diameter), 1.0 - known.material.mc

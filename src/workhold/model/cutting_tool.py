@@ -29,7 +29,7 @@ __all__ = [
     "CuttingDirection",
     "Cylinder",
     "Tool",
-    "material_named",
+    "find_material",
 ]
 
 SOURCE = "Iscar, Turning Tools catalogue 2017, page 558, material groups of VDI 3323"
@@ -108,7 +108,7 @@ MATERIALS = (
 OTHER_NAMES = {"aluminum": "aluminium", "cast-aluminum": "cast-aluminium", "nodular-iron": "ductile-iron"}
 
 
-def material_named(text: str) -> CutMaterial:
+def find_material(text: str) -> CutMaterial:
     """A material by its name, or from kc1.1 and mc with a comma between them.
 
     Raises
@@ -118,9 +118,9 @@ def material_named(text: str) -> CutMaterial:
 
     Examples
     --------
-    >>> material_named("Mild steel").kc, material_named("2000,0.25").mc
+    >>> find_material("Mild steel").kc, find_material("2000,0.25").mc
     (1350.0, 0.25)
-    >>> round(material_named("steel").force(0.1, 5.0))
+    >>> round(find_material("steel").force(0.1, 5.0))
     1245
     """
     numbers = [read_number(word) for word in text.split(",")]
@@ -138,7 +138,7 @@ def material_named(text: str) -> CutMaterial:
 
 
 def material_of(value: str | CutMaterial) -> CutMaterial:
-    return value if isinstance(value, CutMaterial) else material_named(str(value))
+    return value if isinstance(value, CutMaterial) else find_material(str(value))
 
 
 def direction_of(value: Any) -> CuttingDirection:

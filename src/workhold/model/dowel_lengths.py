@@ -16,7 +16,7 @@ from attrs import frozen
 from workhold.conventions import DOWEL_DEPTH, SAME_HEIGHT, SAME_SIZE
 from workhold.units import INCH, Unit, unit_named
 
-__all__ = ["DowelLengths", "SoldDowel", "dowel_for", "lengths_of", "standouts"]
+__all__ = ["DowelLengths", "SoldDowel", "find_shortest_dowel", "lengths_of", "standouts"]
 
 # Inches are sold in sixteenths; diameters have thirty-seconds as well.
 FINEST = 32
@@ -98,17 +98,17 @@ class SoldDowel:
     def name(self) -> str:
         """What to ask for: diameter x length, inches as fractions.
 
-        >>> dowel_for(6.0, 11.0).name, dowel_for(6.35, 15.0).name, dowel_for(12.7, 30.0).name
+        >>> find_shortest_dowel(6.0, 11.0).name, find_shortest_dowel(6.35, 15.0).name, find_shortest_dowel(12.7, 30.0).name
         ('6 × 20 mm', '1/4 × 1 in', '1/2 × 2 in')
         """
-        sizes = (size_words(size, self.unit) for size in (self.diameter, self.length))
+        sizes = (format_dowel_size(size, self.unit) for size in (self.diameter, self.length))
         return f"{' × '.join(sizes)} {self.unit.abbreviation}"
 
 
-def size_words(size: float, unit: Unit) -> str:
+def format_dowel_size(size: float, unit: Unit) -> str:
     """A size in mm as a catalogue prints it: inches as a fraction.
 
-    >>> size_words(38.1, INCH), size_words(6.35, INCH)
+    >>> format_dowel_size(38.1, INCH), format_dowel_size(6.35, INCH)
     ('1-1/2', '1/4')
     """
     if unit is not INCH:
@@ -118,10 +118,10 @@ def size_words(size: float, unit: Unit) -> str:
     return "-".join([*([str(whole)] if whole or not rest else []), *([str(rest)] if rest else [])])
 
 
-def dowel_for(diameter: float, standout: float) -> SoldDowel | None:
+def find_shortest_dowel(diameter: float, standout: float) -> SoldDowel | None:
     """The shortest dowel that is sold of a diameter and stands out so far, both in mm; None where there is none.
 
-    >>> dowel = dowel_for(6.0, 10.0)
+    >>> dowel = find_shortest_dowel(6.0, 10.0)
     >>> dowel.length, dowel.depth
     (20.0, 10.0)
     """

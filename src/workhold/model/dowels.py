@@ -16,7 +16,7 @@ centre is off by at most p + max(0, D - d)/2, and its surface, along any directi
     p + max(0, D - d)/2 + |d - 2ρ|/2 .
 
 That grows with D and is convex in d, hence largest at the largest hole and at one of the pin's two limits:
-:func:`peg_error`. It is the sum of the worst cases, as drawings add them up (ISO 286-1:2010 defines limits
+:func:`compute_peg_error`. It is the sum of the worst cases, as drawings add them up (ISO 286-1:2010 defines limits
 and clearance).
 """
 
@@ -40,10 +40,10 @@ __all__ = [
     "Fit",
     "JawPlate",
     "Limits",
-    "fit_words",
-    "jaw_plates",
-    "peg_error",
-    "plate_places",
+    "describe_fit",
+    "list_jaw_plates",
+    "compute_peg_error",
+    "place_plates_in_drawing",
     "refuse_limits",
 ]
 
@@ -94,10 +94,10 @@ class Fit:
     standard: str = ""
 
 
-def hole_class(nominal: float, hole: Limits) -> str | None:
+def name_hole_class(nominal: float, hole: Limits) -> str | None:
     """The class of a hole's limits, where it is H7; None for any other.
 
-    >>> hole_class(6.0, (6.0, 6.012)), hole_class(6.0, (5.987, 6.0))
+    >>> name_hole_class(6.0, (6.0, 6.012)), name_hole_class(6.0, (5.987, 6.0))
     ('H7', None)
     """
     wider = next((wider for largest, wider in H7 if nominal <= largest), None)
@@ -108,7 +108,7 @@ def hole_class(nominal: float, hole: Limits) -> str | None:
     )
 
 
-def fit_words(fit: Fit, nominal: float) -> str:
+def describe_fit(fit: Fit, nominal: float) -> str:
     """A pin and how it sits in its hole, in short.
 
     Parameters
@@ -117,12 +117,12 @@ def fit_words(fit: Fit, nominal: float) -> str:
 
     Examples
     --------
-    >>> fit_words(Fit((6.004, 6.012), (6.0, 6.012), 0.01, True, "ISO 2338 m6"), 6.0)
+    >>> describe_fit(Fit((6.004, 6.012), (6.0, 6.012), 0.01, True, "ISO 2338 m6"), 6.0)
     'ISO 2338 m6 in H7'
-    >>> fit_words(Fit((6.003, 6.009), (5.987, 6.0), 0.01, True, "ASME B18.8.5M"), 6.0)
+    >>> describe_fit(Fit((6.003, 6.009), (5.987, 6.0), 0.01, True, "ASME B18.8.5M"), 6.0)
     'ASME B18.8.5M, pressed in'
     """
-    hole = hole_class(nominal, fit.hole)
+    hole = name_hole_class(nominal, fit.hole)
     if hole is not None:
         return f"{fit.standard or 'pin'} in {hole}"
     how = (
@@ -135,7 +135,7 @@ def fit_words(fit: Fit, nominal: float) -> str:
     return f"{fit.standard or 'pin'}, {how}"
 
 
-def peg_error(peg_radius: float, pin: Limits, hole: Limits, position: float) -> float:
+def compute_peg_error(peg_radius: float, pin: Limits, hole: Limits, position: float) -> float:
     """How far the surface of a peg may be off along a normal, in mm; the formula is at the head of this file.
 
     Parameters
@@ -149,7 +149,7 @@ def peg_error(peg_radius: float, pin: Limits, hole: Limits, position: float) -> 
     A 6 mm pin of 5.982 to 6.000 mm (h8) in a hole of 6.000 to 6.012 mm (H7), placed to 0.010 mm. The
     smallest pin in the widest hole is 0.015 mm off its hole's centre and its surface 0.009 mm nearer to it.
 
-    >>> round(peg_error(3.0, (5.982, 6.0), (6.0, 6.012), 0.010), 6)
+    >>> round(compute_peg_error(3.0, (5.982, 6.0), (6.0, 6.012), 0.010), 6)
     0.034
     """
     return (
@@ -215,7 +215,7 @@ class JawPlate:
     bolts: Bolts | None
 
 
-def jaw_plates(
+def list_jaw_plates(
     toolkit: Toolkit,
     *,
     hole_diameter: float | None = None,
@@ -240,7 +240,7 @@ def jaw_plates(
     Examples
     --------
     >>> from workhold import Vise
-    >>> left, right = jaw_plates(Vise(pitch=10, columns=2, peg_radius=3, rows=3))
+    >>> left, right = list_jaw_plates(Vise(pitch=10, columns=2, peg_radius=3, rows=3))
     >>> left.outline, [name for name, _ in right.holes[:3]]
     (Box(x0=-5.0, y0=-5.0, x1=15.0, y1=25.0), ['R-A1', 'R-B1', 'R-A2'])
     """
@@ -304,7 +304,7 @@ def refuse_bolts(plate: JawPlate, unit: Unit) -> None:
                 raise InputError(f"{name} runs into bolt {other}: move one of them.")
 
 
-def plate_places(plates: Sequence[JawPlate]) -> list[float]:
+def place_plates_in_drawing(plates: Sequence[JawPlate]) -> list[float]:
     """How far to the right each plate's hole A1 stands in a drawing of all of them, in mm."""
     places, right = [], 0.0
     for number, plate in enumerate(plates):

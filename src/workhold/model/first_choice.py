@@ -15,7 +15,7 @@ __all__ = [
     "FACTORS",
     "HOUSE_ORDER",
     "Factor",
-    "figures_ranked_by",
+    "list_ranking_figures",
     "has_house_order",
 ]
 
@@ -86,10 +86,10 @@ def has_house_order(ranking: Sequence[str]) -> bool:
     return tuple(ranking[: len(HOUSE_ORDER)]) == HOUSE_ORDER
 
 
-def figures_ranked_by(ranking: Sequence[str]) -> tuple[str, ...]:
+def list_ranking_figures(ranking: Sequence[str]) -> tuple[str, ...]:
     """The keys of the figures in an order.
 
-    >>> figures_ranked_by(("warned", "error_steps", "angle", "penalty"))
+    >>> list_ranking_figures(("warned", "error_steps", "angle", "penalty"))
     ('penalty',)
     """
     return tuple(ranking[len(HOUSE_ORDER) :] if has_house_order(ranking) else ranking)

@@ -94,7 +94,7 @@ def touched(fixture: Fixture, workpiece: Workpiece) -> set[int]:
     )
 
 
-def standing_matrix(axis: str) -> NDArray[np.float64]:
+def compute_standing_rotation(axis: str) -> NDArray[np.float64]:
     """The rotation (3, 3) from a file's coordinates to those of an outline whose axis points up.
 
     With a minus the part lies on its other side, turned over like a page: x and z change their signs.
@@ -118,7 +118,7 @@ def turn_words(before: str, now: str) -> str:
     >>> turn_words("z", "x")
     'turned by 120° about the line x = y = z of the first drawing'
     """
-    turn = standing_matrix(now) @ standing_matrix(before).T
+    turn = compute_standing_rotation(now) @ compute_standing_rotation(before).T
     angle = round(float(np.degrees(np.arccos(np.clip((np.trace(turn) - 1) / 2, -1.0, 1.0)))))
     if angle == 0:
         return "the same side up"

@@ -262,10 +262,10 @@ class Fixture:
         >>> bool(np.allclose(away, -2 * first.normals))
         True
         """
-        from workhold.statics.loads import touched_points
+        from workhold.statics.loads import find_touched_points
 
         result = self.listing.result
-        points, _ = touched_points(self, result.workpiece, result.toolkit)
+        points, _ = find_touched_points(self, result.workpiece, result.toolkit)
         return self.pose.apply(points)
 
     @property
@@ -277,10 +277,10 @@ class Fixture:
         InputError
             For a fixture that is not one of a result.
         """
-        from workhold.statics.loads import touched_points
+        from workhold.statics.loads import find_touched_points
 
         result = self.listing.result
-        return self.pose.turn(touched_points(self, result.workpiece, result.toolkit)[1])
+        return self.pose.turn(find_touched_points(self, result.workpiece, result.toolkit)[1])
 
     def load_cases(
         self,

@@ -12,22 +12,22 @@ from numpy.typing import NDArray
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Line
-from workhold.model.clamps import ratios, working_forces
+from workhold.model.clamps import compute_working_forces, ratios
 from workhold.model.fixture import Fixture, Listed, Pair, Peg
 from workhold.model.pose import ENDS, Pose
-from workhold.model.quality import BEFORE_PINS, CLOSURE_MARGIN, TILT, WARNINGS, known_figures_of
+from workhold.model.quality import BEFORE_PINS, CLOSURE_MARGIN, TILT, WARNINGS, list_known_figures
 from workhold.model.wall_ends import wall_ends
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
     "BLOCK",
     "FixtureTable",
-    "fixture_at",
+    "make_fixture_of_row",
     "fixtures_of",
-    "flat_angles",
+    "list_flat_angles",
     "peg_places",
-    "table_of_flat_jaws",
-    "unknown_quality",
+    "make_flat_jaw_table",
+    "make_unknown_quality",
 ]
 
 # Fixtures looked at together when all are gone through.
@@ -104,7 +104,7 @@ class FixtureTable:
     @property
     def working_force(self) -> NDArray[np.float64]:
         """The contact forces (N, P) per unit of clamping force; of two clamps at their working ratio."""
-        return self.force if self.force.ndim == 2 else working_forces(self.force)
+        return self.force if self.force.ndim == 2 else compute_working_forces(self.force)
 
     @property
     def null_vector(self) -> NDArray[np.float64]:
@@ -156,18 +156,18 @@ class FixtureTable:
             position=np.zeros((0, 2)),
             jaw_separation=np.zeros((0, *several)),
             force=floats,
-            quality=unknown_quality(np.zeros(0)),
+            quality=make_unknown_quality(np.zeros(0)),
         )
 
 
-def unknown_quality(closure_margin: NDArray[np.float64]) -> NDArray[np.float64]:
+def make_unknown_quality(closure_margin: NDArray[np.float64]) -> NDArray[np.float64]:
     """Figures of quality (N, Q) of which only the closure margin (N,) is known."""
     quality = np.full((len(closure_margin), BEFORE_PINS), np.nan)
     quality[:, CLOSURE_MARGIN] = closure_margin
     return quality
 
 
-def table_of_flat_jaws(
+def make_flat_jaw_table(
     theta: Sequence[float],
     position: Sequence[tuple[float, float]],
     opening: Sequence[float],
@@ -177,7 +177,7 @@ def table_of_flat_jaws(
     many warnings they have. They have no pegs."""
     count = len(theta)
     nothing = np.zeros((count, 0), np.int32)
-    quality = unknown_quality(np.full(count, np.nan))
+    quality = make_unknown_quality(np.full(count, np.nan))
     quality[:, TILT] = 0.0
     quality[:, WARNINGS] = warnings
     return FixtureTable(
@@ -193,7 +193,7 @@ def table_of_flat_jaws(
     )
 
 
-def whole_turn_degrees(theta: float) -> float:
+def convert_to_whole_turn_degrees(theta: float) -> float:
     """An angle in radians as degrees in [0, 360); what is within 1e-10 degrees below a whole turn is 0."""
     degrees = float(np.degrees(theta)) % 360.0
     return 0.0 if degrees > 360.0 - 1e-10 else degrees
@@ -210,7 +210,7 @@ def peg_places(
     return x, y
 
 
-def flat_angles(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> list[list[float | None]]:
+def list_flat_angles(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> list[list[float | None]]:
     """The way the flats of all pegs of a table look, in degrees; None for pegs that touch with their round
     side.
     """
@@ -233,7 +233,7 @@ def flat_angles(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> 
     ]
 
 
-def fixture_at(
+def make_fixture_of_row(
     table: FixtureTable, toolkit: Toolkit, index: int, workpiece: Workpiece, listed: Listed | None = None
 ) -> Fixture:
     """Makes the :class:`Fixture` of one row of a table; ``listed`` is where it is listed, if it is."""
@@ -249,7 +249,7 @@ def fixtures_of(
     """
     across, along = (places.tolist() for places in peg_places(table, toolkit, workpiece))
     columns, rows, faces = table.column.tolist(), table.row.tolist(), table.face.tolist()
-    forces, flats = table.working_force.tolist(), flat_angles(table, toolkit, workpiece)
+    forces, flats = table.working_force.tolist(), list_flat_angles(table, toolkit, workpiece)
     theta, travels = table.theta.tolist(), table.jaw_separation.reshape(len(table), -1).tolist()
     pairs = pairs_of_clamps(table) if table.force.ndim == 3 else [None] * len(table)
     on_wall = wall_ends(workpiece, toolkit, table.theta, table.position) if toolkit.ends_on_walls else None
@@ -270,9 +270,9 @@ def fixtures_of(
         yield Fixture(
             type=arrangement.name,
             pegs=tuple(pegs),
-            pose=Pose(whole_turn_degrees(theta[n]), *table.position[n].tolist()),
+            pose=Pose(convert_to_whole_turn_degrees(theta[n]), *table.position[n].tolist()),
             travel=travels[n][0],
-            quality=known_figures_of(table.quality[n].tolist()),
+            quality=list_known_figures(table.quality[n].tolist()),
             direction=arrangement.direction,
             pair=pairs[n],
             listed=where,

@@ -23,7 +23,7 @@ __all__ = [
     "Coefficient",
     "Coefficients",
     "coefficients_of",
-    "friction_of",
+    "find_friction_coefficient",
 ]
 
 # By name, in the order of their names.
@@ -92,6 +92,6 @@ def coefficients_of(value: Any) -> Coefficients | None:
     return tuple(sorted((str(name), float(number)) for name, number in given.items())) or None
 
 
-def friction_of(given: Coefficients | None, name: str) -> float:
+def find_friction_coefficient(given: Coefficients | None, name: str) -> float:
     """The coefficient of a name, as given or else the usual one."""
     return dict(given or ()).get(name, COEFFICIENTS[name].value)

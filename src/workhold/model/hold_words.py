@@ -5,28 +5,28 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from workhold.model.fixture import Fixture
-from workhold.model.friction import COEFFICIENTS, friction_of
+from workhold.model.friction import COEFFICIENTS, find_friction_coefficient
 from workhold.model.jaw_hold import JawHold, Patch
 from workhold.model.query import Query
 from workhold.units import Unit
 
 __all__ = [
-    "coefficient_words",
-    "faces_words",
+    "describe_coefficients",
+    "describe_touched_faces",
     "force_words",
     "hold_cautions",
     "hold_reasons",
     "set_force",
-    "setup_sentences",
-    "stop_words",
-    "warning_sentences",
+    "write_setup_sentences",
+    "describe_work_stop",
+    "write_warnings",
 ]
 
 
-def faces_words(patch: Patch) -> str:
+def describe_touched_faces(patch: Patch) -> str:
     """What a jaw touches, in a few words.
 
-    >>> faces_words(Patch(((0, 5, 0, 9),), (3,))), faces_words(Patch(((0, 0, 0, 9),), (), True))
+    >>> describe_touched_faces(Patch(((0, 5, 0, 9),), (3,))), describe_touched_faces(Patch(((0, 0, 0, 9),), (), True))
     ('face 3', 'a corner')
     """
     if not patch.segments:
@@ -35,7 +35,7 @@ def faces_words(patch: Patch) -> str:
     return f"face{'' if one else 's'} {', '.join(map(str, patch.segments))}"
 
 
-def stop_words(hold: JawHold, offset: float, unit: Unit) -> str:
+def describe_work_stop(hold: JawHold, offset: float, unit: Unit) -> str:
     """Where the work stop is; empty without one."""
     if hold.stop is None:
         return ""
@@ -68,7 +68,7 @@ def force_words(force: float, unit: Unit) -> str:
     return unit.force_words(set_force(force))
 
 
-def setup_sentences(fixture: Fixture, query: Query, unit: Unit) -> Iterator[str]:
+def write_setup_sentences(fixture: Fixture, query: Query, unit: Unit) -> Iterator[str]:
     """How to set it up, a sentence for each thing to do, in their order."""
     hold, jaws = fixture.hold, query.toolkit.flat_jaws
     assert hold is not None and jaws is not None
@@ -81,15 +81,15 @@ def setup_sentences(fixture: Fixture, query: Query, unit: Unit) -> Iterator[str]
     if abs(fixture.pose.written_deg) > 1e-9:
         turned = f"turned by {round(fixture.pose.written_deg, 3):g}°"
     yield (
-        f"Put the part in {turned}, {faces_words(hold.fixed)} flush on the fixed jaw; the moving jaw presses "
-        f"{faces_words(hold.moving)}"
+        f"Put the part in {turned}, {describe_touched_faces(hold.fixed)} flush on the fixed jaw; the moving jaw presses "
+        f"{describe_touched_faces(hold.moving)}"
     )
     start = min(hold.fixed.ends[0], hold.moving.ends[0])
     where = f"what is gripped begins {unit.text(start)} from the left end of the jaws"
     if hold.stop is None:
         yield f"Put it in the middle of the jaws, as there is no stop: {where}"
     else:
-        yield f"Push it against the work stop, {stop_words(hold, jaws.stop_offset, unit)}: {where}"
+        yield f"Push it against the work stop, {describe_work_stop(hold, jaws.stop_offset, unit)}: {where}"
     needed = hold.clamp_needed
     if needed is not None:
         torque = jaws.torque(set_force(needed))
@@ -100,9 +100,9 @@ def setup_sentences(fixture: Fixture, query: Query, unit: Unit) -> Iterator[str]
         yield f"Close the jaws; they stand {unit.text(hold.opening)} apart"
 
 
-def coefficient_words(query: Query) -> str:
+def describe_coefficients(query: Query) -> str:
     """With which friction and safety forces are stated, and where these are from."""
-    value, usual = friction_of(query.friction, "jaw"), COEFFICIENTS["jaw"]
+    value, usual = find_friction_coefficient(query.friction, "jaw"), COEFFICIENTS["jaw"]
     is_given = "jaw" in dict(query.friction or ())
     source = "as given" if is_given else f"{usual.between}, {usual.source}"
     factor = "as given" if query.safety is not None else "as usual"
@@ -129,7 +129,7 @@ def hold_reasons(fixture: Fixture, unit: Unit) -> list[str]:
     return words
 
 
-def warning_sentences(hold: JawHold) -> list[str]:
+def write_warnings(hold: JawHold) -> list[str]:
     """What to beware of, as sentences."""
     return [f"{words[:1].upper()}{words[1:]}." for words in hold.warnings]
 
@@ -137,4 +137,4 @@ def warning_sentences(hold: JawHold) -> list[str]:
 def hold_cautions(hold: JawHold) -> list[tuple[str, str]]:
     """What a sheet says to beware of, each with its kind."""
     kind = "unfit" if hold.is_unfit or not hold.full_contact else "load"
-    return [(kind, sentence) for sentence in warning_sentences(hold)]
+    return [(kind, sentence) for sentence in write_warnings(hold)]

@@ -19,20 +19,20 @@ from workhold.errors import InputError, listed
 from workhold.fixels.carrier import column_letters
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Box
-from workhold.model.clamps import shown_clamps
+from workhold.model.clamps import list_shown_clamps
 from workhold.model.fixture import Fixture, Peg
-from workhold.model.shown import held_box, placed_box
+from workhold.model.shown import bound_held_part, bound_placed_part
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
     "Overhang",
-    "counted_on",
-    "middle_move",
+    "shift_hole_numbers",
+    "find_move_to_middle",
     "move_to",
-    "moved_on",
-    "overhang_words",
+    "move_fixture_by_holes",
+    "describe_overhang",
     "overhangs",
-    "spare_holes",
+    "count_spare_holes",
 ]
 
 Hole = tuple[int, int]
@@ -40,7 +40,7 @@ NAME = re.compile(r"(?:[A-Z]-)?([A-Z]{1,3})([1-9][0-9]{0,5})")
 REMEDY = "give a column letter and a row of the plate, such as D4"
 
 
-def counted_on(
+def shift_hole_numbers(
     fixture: Fixture,
     toolkit: Toolkit,
     move: tuple[float, float],
@@ -80,7 +80,7 @@ def counted_on(
     return evolve(fixture, pegs=tuple(map(further, fixture.pegs)), pose=pose, travel=own, pair=pair)
 
 
-def used_holes(fixture: Fixture, toolkit: Toolkit) -> tuple[list[int], list[int]]:
+def find_used_columns_and_rows(fixture: Fixture, toolkit: Toolkit) -> tuple[list[int], list[int]]:
     """The columns and the rows that pegs and clamps take up."""
     counted = [(peg, toolkit.carrier(peg.carrier).counted) for peg in fixture.pegs]
     return (
@@ -89,7 +89,9 @@ def used_holes(fixture: Fixture, toolkit: Toolkit) -> tuple[list[int], list[int]
     )
 
 
-def spare_holes(fixture: Fixture, toolkit: Toolkit) -> tuple[tuple[int, int | None], tuple[int, int | None]]:
+def count_spare_holes(
+    fixture: Fixture, toolkit: Toolkit
+) -> tuple[tuple[int, int | None], tuple[int, int | None]]:
     """How many columns a set-up may be moved left and right, and how many rows down and up.
 
     None stands for any number, where the plate has no end. What cannot be moved has zeros.
@@ -97,7 +99,9 @@ def spare_holes(fixture: Fixture, toolkit: Toolkit) -> tuple[tuple[int, int | No
     plate = toolkit.plates[0]
     along, across = (
         (min(used), None if count is None else count - 1 - max(used))
-        for used, count in zip(used_holes(fixture, toolkit), (plate.columns, plate.rows), strict=True)
+        for used, count in zip(
+            find_used_columns_and_rows(fixture, toolkit), (plate.columns, plate.rows), strict=True
+        )
     )
     # Jaws hold in the columns nearest to the opening, and a jaw with ends where it reaches the part best.
     if len(toolkit.plates) > 1 or toolkit.reaching is not None:
@@ -105,7 +109,7 @@ def spare_holes(fixture: Fixture, toolkit: Toolkit) -> tuple[tuple[int, int | No
     return along, (0, 0) if toolkit.datum.fixes_rows else across
 
 
-def middle_move(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> Hole:
+def find_move_to_middle(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> Hole:
     """Columns and rows by which all of a set-up stands further on in the middle of its plate.
 
     The extent of part, pegs and clamps is then as near to the middle as holes allow; of two places the lower
@@ -115,12 +119,14 @@ def middle_move(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> Hol
     if not toolkit.plates:
         return 0, 0
     plate = toolkit.plates[0]
-    held = held_box(placed_box(workpiece, fixture.pose), fixture, tuple(shown_clamps(fixture, toolkit)))
+    held = bound_held_part(
+        bound_placed_part(workpiece, fixture.pose), fixture, tuple(list_shown_clamps(fixture, toolkit))
+    )
     centers = (held.x0 + held.x1) / 2, (held.y0 + held.y1) / 2
     found = []
     for center, (back, ahead), count, pitch, first in zip(
         centers,
-        spare_holes(fixture, toolkit),
+        count_spare_holes(fixture, toolkit),
         (plate.columns, plate.rows),
         plate.pitch,
         plate.offset,
@@ -156,7 +162,10 @@ def move_to(fixture: Fixture, toolkit: Toolkit, name: str) -> Hole:
     column = 0
     for letter in match[1]:
         column = 26 * column + ord(letter) - ord("A") + 1
-    wanted, lowest = (column - 1, int(match[2]) - 1), [*map(min, used_holes(fixture, toolkit))]
+    wanted, lowest = (
+        (column - 1, int(match[2]) - 1),
+        [*map(min, find_used_columns_and_rows(fixture, toolkit))],
+    )
     if toolkit.datum.fixes_rows:
         # Rows beside a wall, or of a jaw that slides toward one, are where they are.
         wanted = wanted[0], lowest[1]
@@ -165,7 +174,7 @@ def move_to(fixture: Fixture, toolkit: Toolkit, name: str) -> Hole:
         wanted = lowest[0], wanted[1]
     move = wanted[0] - lowest[0], wanted[1] - lowest[1]
     for number, (steps, (back, ahead), noun) in enumerate(
-        zip(move, spare_holes(fixture, toolkit), ("column", "row"), strict=True)
+        zip(move, count_spare_holes(fixture, toolkit), ("column", "row"), strict=True)
     ):
         if not -back <= steps <= (inf if ahead is None else ahead):
             least = lowest[number] - back
@@ -179,7 +188,7 @@ def move_to(fixture: Fixture, toolkit: Toolkit, name: str) -> Hole:
             raise InputError(
                 f"the set-up cannot stand at {name.strip()[:40]}: its lowest {noun} can be {may}; {REMEDY}."
             )
-    for peg in moved_on(fixture, toolkit, move).pegs:
+    for peg in move_fixture_by_holes(fixture, toolkit, move).pegs:
         if toolkit.carrier(peg.carrier).is_blocked(peg.column, peg.row):
             raise InputError(
                 f"the set-up cannot stand at {name.strip()[:40]}: hole {peg.hole} is blocked; {REMEDY}."
@@ -192,13 +201,13 @@ def row_name(row: int) -> str:
     return str(row + 1)
 
 
-def moved_on(fixture: Fixture, toolkit: Toolkit, move: Hole) -> Fixture:
+def move_fixture_by_holes(fixture: Fixture, toolkit: Toolkit, move: Hole) -> Fixture:
     """A fixture so many columns and rows of its first plate further on."""
     if move == (0, 0):
         return fixture
     pitch = toolkit.plates[0].pitch
     by, shifts = (move[0] * pitch[0], move[1] * pitch[1]), {plate.name: move for plate in toolkit.plates}
-    return counted_on(fixture, toolkit, by, shifts, fixture.travel)
+    return shift_hole_numbers(fixture, toolkit, by, shifts, fixture.travel)
 
 
 @frozen
@@ -220,9 +229,9 @@ def overhangs(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> Itera
 
     A plate ends half a pitch beyond its holes.
     """
-    part, wall = placed_box(workpiece, fixture.pose), toolkit.reaching
+    part, wall = bound_placed_part(workpiece, fixture.pose), toolkit.reaching
     jaws = toolkit.flat_jaws
-    edge = plates_box(fixture, toolkit) if jaws is None else Box(0.0, -inf, jaws.width, inf)
+    edge = bound_plates(fixture, toolkit) if jaws is None else Box(0.0, -inf, jaws.width, inf)
     if wall is not None and wall.reach is not None:
         edge = Box(wall.reach[0], -inf, wall.reach[1], inf)
     sides = {
@@ -238,7 +247,7 @@ def overhangs(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> Itera
 SIDES = {"left": "left", "right": "right", "lower": "lower side", "upper": "upper side"}
 
 
-def overhang_words(
+def describe_overhang(
     fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece, text: Callable[[float], str]
 ) -> str:
     """How far the part hangs over the plates, or stands out beyond a jaw; nothing where it does not.
@@ -258,7 +267,7 @@ def overhang_words(
     return f"The part hangs over the {nouns}: {sides} (the {edges} taken half a pitch beyond the last holes)."
 
 
-def plates_box(fixture: Fixture, toolkit: Toolkit) -> Box:
+def bound_plates(fixture: Fixture, toolkit: Toolkit) -> Box:
     """The box of all plates, half a pitch beyond their holes; infinite where one has no end."""
     boxes = []
     for plate in toolkit.plates:

@@ -36,10 +36,10 @@ __all__ = [
     "SweptPiece",
     "along",
     "box_path",
-    "bulge_of",
+    "compute_bulges_of_shares",
     "moves_of",
-    "packed_piece",
-    "shares_between",
+    "pack_piece",
+    "find_shares_between_heights",
 ]
 
 Floats = NDArray[np.float64]
@@ -167,7 +167,7 @@ class Moves:
             self.cutting[move],
             places[0],
             places[1],
-            bulge_of(bulge, last - first),
+            compute_bulges_of_shares(bulge, last - first),
             self.feed[move],
             self.spindle[move],
             self.cycle[move],
@@ -213,12 +213,14 @@ class Stretches:
         return [list(pair) for pair in zip(self.first[own].tolist(), self.last[own].tolist(), strict=True)]
 
 
-def bulge_of(bulge: Floats, part: Floats) -> Floats:
+def compute_bulges_of_shares(bulge: Floats, part: Floats) -> Floats:
     """The bulges (N,) of parts of arcs, as shares of their sweeps."""
     return np.where(part == 1.0, bulge, np.tan(part * np.arctan(bulge)))
 
 
-def shares_between(start: Floats, end: Floats, low: Floats, high: Floats) -> tuple[Floats, Floats]:
+def find_shares_between_heights(
+    start: Floats, end: Floats, low: Floats, high: Floats
+) -> tuple[Floats, Floats]:
     """The shares of moves from which and until which their tip is at given heights; (N,) arrays each.
 
     The tip goes from height ``start`` to ``end``; heights are those from ``low`` to ``high``, both included.
@@ -322,7 +324,7 @@ def box_path(one: tuple[float, float], other: tuple[float, float]) -> tuple[Path
     return tuple((a, b, 0.0) for a, b in (*corners, one))
 
 
-def packed_piece(entries: Mapping[str, Any]) -> bytes:
+def pack_piece(entries: Mapping[str, Any]) -> bytes:
     """The entries of a piece as bytes.
 
     Raises

@@ -38,7 +38,7 @@ __all__ = [
     "Stopped",
     "ToolkitsLeft",
     "UndecidedSystem",
-    "as_notes",
+    "make_notes",
     "round_to_two_digits",
 ]
 
@@ -84,7 +84,7 @@ class Remark(Note):
     text: str
 
 
-def as_notes(notes: Iterable[Note | str]) -> tuple[Note, ...]:
+def make_notes(notes: Iterable[Note | str]) -> tuple[Note, ...]:
     """Notes, of which some are given as sentences."""
     return tuple(Remark(note) if isinstance(note, str) else note for note in notes)
 

@@ -12,7 +12,7 @@ import numpy as np
 from attrs import evolve, frozen
 
 from workhold.errors import InputError
-from workhold.geometry.loop import Comparisons, Face, LoopShape, encloses, near_pairs
+from workhold.geometry.loop import Comparisons, Face, LoopShape, encloses, find_near_pairs
 from workhold.geometry.segment import Arc, Point, Segment
 from workhold.model.solid import Band, RunRows, SolidOutline, run_at
 
@@ -137,7 +137,7 @@ def outer_count(name: str, shapes: Sequence[LoopShape]) -> int:
     around = [
         [
             other
-            for _, other in near_pairs(boxes[k : k + 1], boxes)
+            for _, other in find_near_pairs(boxes[k : k + 1], boxes)
             if other != k and encloses(shapes[other], one)
         ]
         for k, one in enumerate(shapes)
@@ -164,7 +164,7 @@ def refuse_misplaced_holes(name: str, shapes: Sequence[LoopShape], comparisons: 
                 f"{name}: loop {index}, at ({x:.6g}, {y:.6g}), lies outside the outer loop: the first loop "
                 "must be the outline that encloses all the others."
             )
-        for _, other in near_pairs(boxes[index : index + 1], boxes):
+        for _, other in find_near_pairs(boxes[index : index + 1], boxes):
             comparisons.spend(1)
             if other not in (0, index) and encloses(shapes[other], hole):
                 raise InputError(

@@ -46,17 +46,17 @@ from workhold.model.workpiece import Workpiece
 __all__ = [
     "met_by",
     "numbered_solid",
-    "outline_diameter",
-    "own_name",
-    "segments_diameter",
-    "with_own_outlines",
+    "measure_outline_diameter",
+    "name_outline",
+    "measure_segments_diameter",
+    "add_own_outlines",
 ]
 
 # Distances that differ by less in proportion may be equal but for rounding.
 ROUNDED = 1e-9
 
 
-def own_name(heights: Heights) -> str:
+def name_outline(heights: Heights) -> str:
     """The name of an outline between two heights, which is the same for all carriers of these."""
     return f"outline from {heights[0]:g} to {heights[1]:g} mm"
 
@@ -91,7 +91,7 @@ def met_by(workpiece: Workpiece, toolkit: Toolkit) -> Workpiece:
     return workpiece if outlines == workpiece.outlines else evolve(workpiece, outlines=outlines)
 
 
-def with_own_outlines(
+def add_own_outlines(
     workpiece: Workpiece, entries: Mapping[str, Mapping[str, Any]], heights: Mapping[str, Heights]
 ) -> Workpiece:
     """The workpiece with the outlines of a file's entry ``outlines``.
@@ -118,12 +118,12 @@ def with_own_outlines(
             runs = entries[role].get("runs") or ()
             changed = {"bands": bands, "runs": runs, "faces": faces, **NO_LEVELS}
             solid = evolve(workpiece.solid, low=low, peg_height=high, **changed)
-            outline = workpiece.from_loops(own_name((low, high)), entries[role]["loops"], solid=solid)
+            outline = workpiece.from_loops(name_outline((low, high)), entries[role]["loops"], solid=solid)
             own.append((role, outline))
     return evolve(workpiece, outlines=tuple(own))
 
 
-def outline_diameter(workpiece: Workpiece) -> float:
+def measure_outline_diameter(workpiece: Workpiece) -> float:
     """Largest distance in mm between two points of the silhouette, and of the outlines of carriers.
 
     Its ends are two joints, a joint and the far side of an arc, or the far sides of two arcs. Far sides lie
@@ -138,7 +138,7 @@ def outline_diameter(workpiece: Workpiece) -> float:
         # Only pairs that are far enough apart are looked at closely.
         most = (distances + reach[index] + reach[index:]) * (1.0 + ROUNDED)
         for other in index + np.flatnonzero(most >= max(best, least)):
-            best = max(best, segments_diameter(outer[index], outer[other]))
+            best = max(best, measure_segments_diameter(outer[index], outer[other]))
     return best
 
 
@@ -149,16 +149,16 @@ def farthest_from_middle(segment: Segment) -> float:
     return segment.half_extent
 
 
-def segments_diameter(a: Segment, b: Segment) -> float:
+def measure_segments_diameter(a: Segment, b: Segment) -> float:
     """Largest distance in mm between a point of one segment and a point of another."""
     best = max(hypot(p[0] - q[0], p[1] - q[1]) for p in (a.start, a.end) for q in (b.start, b.end))
     for arc, other in ((a, b), (b, a)):
         if isinstance(arc, Arc):
             for q in (other.start, other.end):
-                if (far := far_point(arc, q)) is not None:
+                if (far := find_far_point(arc, q)) is not None:
                     best = max(best, hypot(far[0] - q[0], far[1] - q[1]))
     if isinstance(a, Arc) and isinstance(b, Arc):
-        far_a, far_b = far_point(a, b.center), far_point(b, a.center)
+        far_a, far_b = find_far_point(a, b.center), find_far_point(b, a.center)
         if far_a is not None and far_b is not None:
             best = max(best, hypot(far_a[0] - far_b[0], far_a[1] - far_b[1]))
         opposite = abs((a.mid_angle - b.mid_angle) % tau - pi)
@@ -167,7 +167,7 @@ def segments_diameter(a: Segment, b: Segment) -> float:
     return best
 
 
-def far_point(arc: Arc, point: tuple[float, float]) -> tuple[float, float] | None:
+def find_far_point(arc: Arc, point: tuple[float, float]) -> tuple[float, float] | None:
     """The point of an arc's circle farthest from a point, if it lies on the arc."""
     dx, dy = arc.center[0] - point[0], arc.center[1] - point[1]
     distance = hypot(dx, dy)

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from workhold.errors import InputError, quoted
 from workhold.geometry.hull import HullEdge, HullEnd
 from workhold.geometry.segment import Arc, Line, Segment
-from workhold.geometry.symmetry import rotated
+from workhold.geometry.symmetry import rotate_vectors
 from workhold.limits import real, real_array, with_names
 
 __all__ = ["ENDS", "Flush", "Pose"]
@@ -73,7 +73,7 @@ class Pose:
     @property
     def inverse(self) -> Pose:
         """The way back, from the toolkit's frame to the part's."""
-        x, y = rotated(-self.x, -self.y, -radians(self.theta_deg))
+        x, y = rotate_vectors(-self.x, -self.y, -radians(self.theta_deg))
         return Pose(-self.theta_deg, float(x), float(y))
 
     @property
@@ -100,7 +100,7 @@ class Pose:
                 raise InputError(f"points cannot be {quoted(x)}: give numbers (N, 2).")
             vectors = real_array(x, "a coordinate")
             return np.stack(self.turn(vectors[..., 0], vectors[..., 1]), axis=-1)
-        return rotated(x, y, radians(self.theta_deg))
+        return rotate_vectors(x, y, radians(self.theta_deg))
 
     @overload
     def apply(self, x: ArrayLike, y: None = None) -> Array: ...
@@ -196,4 +196,4 @@ class Flush:
         if len(self.theta) == 0:
             return np.full((len(theta), 2), np.nan)
         ends = self.ends[self.number(theta)]
-        return np.asarray(rotated(ends[..., 0], ends[..., 1], theta[:, None])[0] + position[:, :1])
+        return np.asarray(rotate_vectors(ends[..., 0], ends[..., 1], theta[:, None])[0] + position[:, :1])

@@ -32,12 +32,12 @@ from workhold.model.moves import (
     SweptPiece,
     along,
     box_path,
-    bulge_of,
+    compute_bulges_of_shares,
+    find_shares_between_heights,
     moves_of,
-    packed_piece,
-    shares_between,
+    pack_piece,
 )
-from workhold.model.stock import Stock, stretches_in
+from workhold.model.stock import Stock, find_stretches_in_stock
 
 __all__ = ["Cylinder", "MoveKind", "PathVertex", "Program", "Stock", "SweptPiece", "Tool"]
 
@@ -47,7 +47,7 @@ AT_ONCE = 1 << 13
 UNITS = ("mm", "inch")
 
 
-def tools_of(values: Mapping[int, Tool]) -> dict[int, Tool]:
+def read_tool_table(values: Mapping[int, Tool]) -> dict[int, Tool]:
     """Tools by their numbers, in a table of its own."""
     return dict(values)
 
@@ -118,7 +118,7 @@ class Program:
     z_zero: float = field(converter=real)
     clearance: float = field(default=1.0, converter=real)
     rapid: Literal["straight", "box"] = "straight"
-    tools: Mapping[int, Tool] = field(factory=dict, converter=tools_of, hash=False)
+    tools: Mapping[int, Tool] = field(factory=dict, converter=read_tool_table, hash=False)
     moves: Moves = field(factory=lambda: Moves.of_rows(()))
     skipped: tuple[int, ...] = field(default=(), converter=lines_of)
     notes: tuple[str, ...] = field(default=(), converter=notes_of)
@@ -258,7 +258,7 @@ class Program:
         first_low, last_high = low - cylinder[:, 1], high - cylinder[:, 0]
         start, end, bulge = moves.start[row], moves.end[row], moves.bulge[row]
         box = self.boxed()[row]
-        first, last = shares_between(start[:, 2], end[:, 2], first_low, last_high)
+        first, last = find_shares_between_heights(start[:, 2], end[:, 2], first_low, last_high)
         inside = first <= last
         first, last = np.where(box, 0.0, first), np.where(box, 1.0, last)
         kept = np.flatnonzero(inside)
@@ -271,7 +271,7 @@ class Program:
             cutting=moves.cutting[row],
             start=along(start[:, :2], end[:, :2], bulge, first),
             end=along(start[:, :2], end[:, :2], bulge, last),
-            bulge=bulge_of(bulge, last - first),
+            bulge=compute_bulges_of_shares(bulge, last - first),
             tip_first=np.where(first == 0.0, start[:, 2], start[:, 2] + first * rise),
             tip_last=np.where(last == 1.0, end[:, 2], start[:, 2] + last * rise),
             cylinder=cylinder,
@@ -308,7 +308,7 @@ class Program:
         if self.forces is None or self.stock is None or self.is_placed:
             return self
         border, acts = self.stock.border(loops), self.forces.acts
-        forces = self.forces.along(stretches_in(self.moves, self.tools, self.stock, border, acts))
+        forces = self.forces.along(find_stretches_in_stock(self.moves, self.tools, self.stock, border, acts))
         return evolve(self, forces=forces, is_placed=True)
 
     def to_dict(self) -> dict[str, Any]:
@@ -351,7 +351,7 @@ class Program:
     def of_entries(cls, entries: Mapping[str, Any]) -> Program:
         """A program of a file's entries; feeds and speeds are not known of it.
 
-        Pieces may be entries, or packed as :func:`workhold.model.moves.packed_piece` does.
+        Pieces may be entries, or packed as :func:`workhold.model.moves.pack_piece` does.
 
         Raises
         ------
@@ -361,7 +361,7 @@ class Program:
         tools = {int(key): Tool.of_entries(int(key), value) for key, value in entries["tools"].items()}
         x, y = (real(value) for value in entries["zero"])
         rows, said, stock = entries["pieces"], entries.get("forces"), entries.get("stock")
-        moves = moves_of([one if isinstance(one, bytes) else packed_piece(one) for one in rows], tools)
+        moves = moves_of([one if isinstance(one, bytes) else pack_piece(one) for one in rows], tools)
         # A move has a piece for each cylinder of its tool, all with the same force; packed ones have none.
         each = np.array([len(tools[number].cylinders) for number in moves.tool.tolist()], np.int64)
         first = [rows[place] for place in (np.cumsum(each) - each).tolist()]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from workhold.model.moves import Moves, along
 from workhold.model.program import Program
 
-__all__ = ["ToolFigures", "tip_box", "tool_figures"]
+__all__ = ["ToolFigures", "bound_tip", "measure_tools"]
 
 Floats = NDArray[np.float64]
 
@@ -42,7 +42,7 @@ class ToolFigures:
     lowest_cut: float | None
 
 
-def tool_figures(program: Program) -> tuple[ToolFigures, ...]:
+def measure_tools(program: Program) -> tuple[ToolFigures, ...]:
     """The figures of each tool, in the order in which they move first."""
     moves, length = program.moves, program.moves.length
     heights = np.stack([moves.start[:, 2], moves.end[:, 2]], axis=1)
@@ -66,7 +66,7 @@ def tool_figures(program: Program) -> tuple[ToolFigures, ...]:
     return tuple(found)
 
 
-def tip_box(moves: Moves) -> tuple[Floats, Floats]:
+def bound_tip(moves: Moves) -> tuple[Floats, Floats]:
     """The smallest and the greatest x, y and z of the tip over all moves, of which there are some, in mm."""
     points = [moves.start, moves.end, *extremes(moves)]
     every = np.concatenate(points)

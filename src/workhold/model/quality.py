@@ -51,16 +51,16 @@ __all__ = [
     "WRENCH_RADIUS",
     "Figure",
     "Loaded",
-    "asked_ranking",
-    "chosen_ranking",
-    "figure_column",
-    "figure_number",
-    "figures_in",
-    "for_loads",
-    "known_figures_of",
+    "read_asked_ranking",
+    "resolve_ranking",
+    "select_figure_column",
+    "find_figure_number",
+    "list_figures_in_columns",
+    "adapt_ranking_to_loads",
+    "list_known_figures",
     "listed",
-    "ranked_number",
-    "whole_rows",
+    "find_ranked_number",
+    "fill_figure_rows",
     "words",
 ]
 
@@ -254,59 +254,59 @@ PROGRAM_CLEARANCE = -1
 RANKED = (*FIGURES, *SEATING_FIGURES, PROGRAM_FIGURE)
 
 
-def figures_in(columns: int) -> tuple[Figure, ...]:
+def list_figures_in_columns(columns: int) -> tuple[Figure, ...]:
     """The figures of quality that stand in so many columns, without any seating.
 
     Those of how far pegs bend are left out where nobody knows at which heights pegs touch the part.
 
-    >>> figures_in(len(FIGURES) + 1)[PROGRAM_CLEARANCE].words, figures_in(BEFORE_PINS)[-1].words
+    >>> list_figures_in_columns(len(FIGURES) + 1)[PROGRAM_CLEARANCE].words, list_figures_in_columns(BEFORE_PINS)[-1].words
     ('program clearance', 'jaw contact')
     """
     known = FIGURES if columns >= len(FIGURES) else FIGURES[:BEFORE_PINS]
     return known if columns == len(known) else (*known, PROGRAM_FIGURE)
 
 
-def whole_rows(quality: NDArray[np.float64]) -> NDArray[np.float64]:
+def fill_figure_rows(quality: NDArray[np.float64]) -> NDArray[np.float64]:
     """Figures (N, F) with a column for each of :data:`FIGURES`, NaN where there was none."""
-    figures = figures_in(quality.shape[1])
+    figures = list_figures_in_columns(quality.shape[1])
     if len(figures) >= len(FIGURES):
         return quality
     unknown = np.full((len(quality), len(PIN_FIGURES)), np.nan)
     return np.hstack([quality[:, :BEFORE_PINS], unknown, quality[:, BEFORE_PINS:]])
 
 
-def figure_column(quality: NDArray[np.float64], figure: Figure) -> NDArray[np.float64]:
+def select_figure_column(quality: NDArray[np.float64], figure: Figure) -> NDArray[np.float64]:
     """The column (N,) of a figure of :data:`FIGURES` in figures (N, F); NaN where it is not known."""
-    figures = figures_in(quality.shape[1])
+    figures = list_figures_in_columns(quality.shape[1])
     return quality[:, figures.index(figure)] if figure in figures else np.full(len(quality), np.nan)
 
 
-def known_figures_of(values: Sequence[float]) -> dict[str, float]:
+def list_known_figures(values: Sequence[float]) -> dict[str, float]:
     """The figures of a fixture by their keys, without those that are not known, from a row of a table.
 
-    >>> known_figures_of([0.25, *[float("nan")] * 16, 4.5])
+    >>> list_known_figures([0.25, *[float("nan")] * 16, 4.5])
     {'closure_margin': 0.25, 'program_clearance': 4.5}
     """
-    named = zip(figures_in(len(values)), values, strict=True)
+    named = zip(list_figures_in_columns(len(values)), values, strict=True)
     return {figure.key: float(value) for figure, value in named if not isnan(value)}
 
 
-def figure_number(name: str) -> int | None:
+def find_figure_number(name: str) -> int | None:
     """The place in :data:`FIGURES` of a figure's name; None where it has none.
 
     Hyphens, underscores and spaces in the name mean the same.
 
-    >>> figure_number("location-error")
+    >>> find_figure_number("location-error")
     3
     """
-    number = ranked_number(name)
+    number = find_ranked_number(name)
     return None if number is None or number >= len(FIGURES) else number
 
 
-def ranked_number(name: str) -> int | None:
-    """The place in :data:`RANKED` of a figure's name, see :func:`figure_number`; None where it has none.
+def find_ranked_number(name: str) -> int | None:
+    """The place in :data:`RANKED` of a figure's name, see :func:`find_figure_number`; None where it has none.
 
-    >>> RANKED[ranked_number("capture opening")].option
+    >>> RANKED[find_ranked_number("capture opening")].option
     'capture-opening'
     """
     key = name.strip().lower().replace("-", "_").replace(" ", "_")
@@ -326,7 +326,7 @@ def listed(name: str, values: Iterable[T]) -> tuple[T, ...]:
         raise InputError(f"the {name} are no list, but {values!r}: give several in a list.") from error
 
 
-def chosen_ranking(
+def resolve_ranking(
     names: Sequence[str] | None,
     loaded: Loaded,
     pairs: bool = False,
@@ -340,13 +340,13 @@ def chosen_ranking(
     one, of seating where that is not asked for, and of a jaw's ends, unless it is ``ended``.
     """
     if names is None:
-        return for_loads(PAIR_RANKING if pairs else DEFAULT_RANKING, loaded)
+        return adapt_ranking_to_loads(PAIR_RANKING if pairs else DEFAULT_RANKING, loaded)
     if has_house_order(names):
-        figures = chosen_ranking(names[len(HOUSE_ORDER) :], loaded, pairs, seated)
+        figures = resolve_ranking(names[len(HOUSE_ORDER) :], loaded, pairs, seated)
         return (*HOUSE_ORDER, *figures)
     keys = []
     for name in names:
-        number = ranked_number(name)
+        number = find_ranked_number(name)
         if number is None:
             known = (*FIGURES, *(SEATING_FIGURES if seated else ()))
             raise InputError(
@@ -376,7 +376,7 @@ def chosen_ranking(
     return tuple(keys)
 
 
-def asked_ranking(
+def read_asked_ranking(
     names: str | Sequence[str] | None,
     preference: str | None,
     loaded: Loaded,
@@ -387,16 +387,16 @@ def asked_ranking(
     Raises
     ------
     InputError
-        For both together, and as :func:`preferred_ranking`.
+        For both together, and as :func:`find_preferred_ranking`.
     """
     if preference is None:
         return words(names)
     if names is not None:
         raise InputError("figures to rank by and a preference are two orders: give one of them.")
-    return preferred_ranking(preference, loaded, has_program)
+    return find_preferred_ranking(preference, loaded, has_program)
 
 
-def for_loads(ranking: tuple[str, ...], loaded: Loaded) -> tuple[str, ...]:
+def adapt_ranking_to_loads(ranking: tuple[str, ...], loaded: Loaded) -> tuple[str, ...]:
     """An order with the load reaction instead of the clamp amplification where there are loads."""
     if not loaded:
         return ranking
@@ -404,7 +404,7 @@ def for_loads(ranking: tuple[str, ...], loaded: Loaded) -> tuple[str, ...]:
     return tuple(reaction if key == bare else key for key in ranking)
 
 
-def preferred_ranking(preference: str, loaded: Loaded, has_program: bool = False) -> tuple[str, ...]:
+def find_preferred_ranking(preference: str, loaded: Loaded, has_program: bool = False) -> tuple[str, ...]:
     """Keys of the figures to rank by for what a user wants most: square, strong, precise or roomy.
 
     With a program a roomy fixture is first of all one that its tools pass by far. Refuses any other word.
@@ -415,4 +415,4 @@ def preferred_ranking(preference: str, loaded: Loaded, has_program: bool = False
     order = PREFERENCES[word]
     if word == "roomy" and has_program:
         order = (order[0], PROGRAM_FIGURE.key, *order[1:])
-    return for_loads(order, loaded)
+    return adapt_ranking_to_loads(order, loaded)

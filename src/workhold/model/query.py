@@ -12,7 +12,7 @@ from attrs import evolve, field, frozen
 from workhold.asking.search import SearchQuestion
 from workhold.errors import InputError, refuse_kind
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.first_choice import figures_ranked_by, has_house_order
+from workhold.model.first_choice import has_house_order, list_ranking_figures
 from workhold.model.friction import SAFETY, Coefficients, coefficients_of
 from workhold.model.jaw_hold import hold_ranking
 from workhold.model.own_outlines import met_by
@@ -26,9 +26,9 @@ from workhold.model.quality import (
     PIN_KEYS,
     PROGRAM_FIGURE,
     SEATING_FIGURES,
-    chosen_ranking,
-    for_loads,
+    adapt_ranking_to_loads,
     listed,
+    resolve_ranking,
     words,
 )
 from workhold.model.requirements import Load, Restrictions, Tolerance
@@ -44,7 +44,7 @@ def restrictions_of(value: Restrictions | None) -> Restrictions:
     return Restrictions() if value is None else value
 
 
-def tolerance_given(value: Tolerance | None) -> Tolerance:
+def make_tolerance(value: Tolerance | None) -> Tolerance:
     """A tolerance as it is given; None until the toolkit is known, which may have one."""
     return cast(Tolerance, value)
 
@@ -125,7 +125,7 @@ class Query(SearchQuestion):
     types: tuple[str, ...] = field(default=None, converter=words)
     restrictions: Restrictions = field(default=None, converter=restrictions_of)
     rank_by: tuple[str, ...] = field(default=None, converter=words)
-    tolerance: Tolerance = field(default=None, converter=tolerance_given)
+    tolerance: Tolerance = field(default=None, converter=make_tolerance)
     loads: tuple[Load, ...] = field(default=(), converter=loads_of)
     program: Program | None = None
     friction: Coefficients | None = field(default=None, converter=coefficients_of, kw_only=True)
@@ -138,14 +138,14 @@ class Query(SearchQuestion):
         object.__setattr__(self, "workpiece", met_by(self.workpiece, self.toolkit))
         object.__setattr__(self, "tolerance", self.tolerance.with_departure(self.workpiece.departure))
         known = self.toolkit.types
-        object.__setattr__(self, "types", chosen_arrangements(self.types, known))
+        object.__setattr__(self, "types", check_arrangements(self.types, known))
         pairs = self.toolkit.travels > 1
         self.refuse_loads_across()
         if self.toolkit.flat_jaws is not None:
             object.__setattr__(self, "rank_by", hold_ranking(self.rank_by))
         else:
             asked = self.is_loaded, pairs, self.seating is not None, self.toolkit.reaching is not None
-            object.__setattr__(self, "rank_by", chosen_ranking(self.rank_by, *asked))
+            object.__setattr__(self, "rank_by", resolve_ranking(self.rank_by, *asked))
         if PROGRAM_FIGURE.key in self.rank_by and self.program is None:
             raise InputError(f"there is no program to rank by the {PROGRAM_FIGURE.words}: give one.")
         if self.program is not None:
@@ -320,7 +320,7 @@ class Query(SearchQuestion):
         """The query of fixtures that no program has to pass."""
         of_program = {PROGRAM_FIGURE.key} if self.loads else {PROGRAM_FIGURE.key, *LOAD_KEYS}
         ranking = [key for key in self.rank_by if key not in of_program]
-        known = figures_ranked_by(ranking)
+        known = list_ranking_figures(ranking)
         return evolve(self, program=None, rank_by=ranking if known else None)
 
     @property
@@ -337,7 +337,7 @@ class Query(SearchQuestion):
         needed = len(known) < len(self.rank_by)
         return evolve(
             self,
-            rank_by=[*dict.fromkeys((*known, *for_loads(FIGURE_RANKING, self.is_loaded)))]
+            rank_by=[*dict.fromkeys((*known, *adapt_ranking_to_loads(FIGURE_RANKING, self.is_loaded)))]
             if needed
             else known,
             best=None if self.best is None else max(self.best, self.seating),
@@ -378,7 +378,7 @@ def height_of_pegs(given: float | None, workpiece: Workpiece) -> float:
     return height
 
 
-def chosen_arrangements(names: Sequence[str] | None, known: Sequence[str]) -> tuple[str, ...]:
+def check_arrangements(names: Sequence[str] | None, known: Sequence[str]) -> tuple[str, ...]:
     """Names of arrangements in the toolkit's order, None being all; refuses others, and none at all."""
     for name in names or ():
         if name not in known:

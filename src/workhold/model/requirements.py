@@ -21,11 +21,11 @@ from workhold.conventions import ANGLE_SLACK
 from workhold.errors import InputError, quoted
 from workhold.geometry.loop import (
     LoopShape,
-    checked_vertices,
+    check_vertices,
+    compute_signed_area,
     loop_segments,
     refuse_self_crossing,
-    reversed_vertices,
-    signed_area,
+    reverse_vertices,
 )
 from workhold.geometry.segment import Box, Segment
 from workhold.limits import real, refuse_long, refuse_strong, with_names
@@ -37,9 +37,9 @@ __all__ = [
     "Restrictions",
     "Tolerance",
     "Zone",
-    "are_within",
+    "lie_in_angle_ranges",
     "circle_zone",
-    "far_loads",
+    "describe_far_loads",
     "polygon_zone",
 ]
 
@@ -169,12 +169,12 @@ class Load:
             )
 
 
-def far_loads(loads: Sequence[Load], part: Box) -> list[str]:
+def describe_far_loads(loads: Sequence[Load], part: Box) -> list[str]:
     """Remarks on the loads that act farther from a part's box than the part is large, one sentence each.
 
     Examples
     --------
-    >>> far_loads([Load(points=[(9, 0)], force=1), Load(points=[(900, 0)], force=1)], Box(0, 0, 30, 40))
+    >>> describe_far_loads([Load(points=[(9, 0)], force=1), Load(points=[(900, 0)], force=1)], Box(0, 0, 30, 40))
     ['Load 2 acts at (900, 0), 870 mm from the part: is its place in mm of the drawing?']
     """
     remarks, size = [], hypot(part.x1 - part.x0, part.y1 - part.y0)
@@ -237,7 +237,7 @@ def circle_zone(x: float, y: float, radius: float) -> Zone:
         raise InputError(
             f"a keep-out circle of radius {radius:g} at ({x:g}, {y:g}) is no circle: give a positive radius."
         )
-    return zone_of([[x - radius, y, 1.0], [x + radius, y, 1.0]])
+    return make_zone([[x - radius, y, 1.0], [x + radius, y, 1.0]])
 
 
 def polygon_zone(points: ArrayLike) -> Zone:
@@ -251,10 +251,10 @@ def polygon_zone(points: ArrayLike) -> Zone:
     corners = number_pairs(points, "a corner of a keep-out zone", "give x and y in mm for every corner")
     if len(corners) < 3:
         raise InputError(f"a keep-out polygon has {len(corners)} corners: give three or more.")
-    return zone_of([[x, y, 0.0] for x, y in corners])
+    return make_zone([[x, y, 0.0] for x, y in corners])
 
 
-def zone_of(vertices: Sequence[Sequence[float]]) -> Zone:
+def make_zone(vertices: Sequence[Sequence[float]]) -> Zone:
     """A zone of (x, y, bulge) vertices in mm, run either way.
 
     Raises
@@ -266,11 +266,11 @@ def zone_of(vertices: Sequence[Sequence[float]]) -> Zone:
     def place(k: int) -> str:
         return f"keep-out zone: side {k}"
 
-    checked = checked_vertices(vertices, "keep-out zone", place)
+    checked = check_vertices(vertices, "keep-out zone", place)
     shape = LoopShape.of(loop_segments(checked))
     refuse_self_crossing(shape, place)
-    if signed_area(shape.segments) < 0:
-        checked = reversed_vertices(checked)
+    if compute_signed_area(shape.segments) < 0:
+        checked = reverse_vertices(checked)
     return Zone(checked)
 
 
@@ -278,7 +278,7 @@ def angle_pairs(ranges: Any) -> tuple[Angles, ...]:
     return number_pairs(ranges, "a range of angles", "give its two ends in degrees, such as (-10, 10)")
 
 
-def all_zones(zones: Any) -> tuple[Zone, ...]:
+def make_zones(zones: Any) -> tuple[Zone, ...]:
     """Zones, also of polygons of shapely; one may stand by itself."""
     several = isinstance(zones, Iterable) and not isinstance(zones, str | bytes)
     return tuple(zone for one in (zones if several else [zones]) for zone in zones_of(one))
@@ -315,7 +315,7 @@ def face_numbers(numbers: Any) -> tuple[int, ...]:
     return tuple(sorted({int(one) for one in given}))
 
 
-def are_within(degrees: Any, ranges: Sequence[Sequence[float]]) -> Any:
+def lie_in_angle_ranges(degrees: Any, ranges: Sequence[Sequence[float]]) -> Any:
     """Return whether angles in degrees, an array (N,) or one, lie in one of some ranges (from, to), ends included;
     in any where there are none."""
     if not ranges:
@@ -352,7 +352,7 @@ class Restrictions(RuledOut):
     def __attrs_post_init__(self) -> None:
         for name, converted in (
             ("avoid", face_numbers(self.avoid)),
-            ("zones", all_zones(self.zones)),
+            ("zones", make_zones(self.zones)),
             ("angles", angle_pairs(self.angles)),
             ("touch", face_numbers(self.touch)),
         ):

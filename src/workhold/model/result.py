@@ -13,9 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 from workhold.errors import InputError, quoted, refuse_kind
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture, Listed
-from workhold.model.fixture_table import BLOCK, FixtureTable, fixture_at, fixtures_of
+from workhold.model.fixture_table import BLOCK, FixtureTable, fixtures_of, make_fixture_of_row
 from workhold.model.jaw_hold import JawHold
-from workhold.model.notes import AskedFor, ChosenOnly, Cut, FittedOutline, KeptBest, Note, as_notes
+from workhold.model.notes import AskedFor, ChosenOnly, Cut, FittedOutline, KeptBest, Note, make_notes
 from workhold.model.query import Query
 from workhold.model.search_report import Proof
 from workhold.model.seating import Seating
@@ -78,7 +78,7 @@ class Result:
     found: Mapping[str, int] = field(hash=False)
     distinct: Mapping[str, int] = field(hash=False)
     complete: bool = True
-    notes: tuple[Note, ...] = field(default=(), converter=as_notes)
+    notes: tuple[Note, ...] = field(default=(), converter=make_notes)
     statistics: Mapping[str, int] = field(factory=dict, hash=False)
     proof: Proof | None = None
     pairs: int | None = None
@@ -141,7 +141,7 @@ class Result:
             raise IndexError(f"fixture {index} of {len(self)}")
         index %= len(self)
         index = int(index)
-        made = fixture_at(self.table, self.toolkit, index, self.workpiece, self.listed(index))
+        made = make_fixture_of_row(self.table, self.toolkit, index, self.workpiece, self.listed(index))
         return self.seated(made, index)
 
     def seated(self, made: Fixture, index: int) -> Fixture:

@@ -28,7 +28,14 @@ from workhold.model.fixture import Fixture, Peg
 from workhold.model.workpiece import Workpiece
 from workhold.units import MILLIMETRE, Unit
 
-__all__ = ["LengthSetting", "PartZero", "contact_names", "hole_centers", "part_zero", "settings_of"]
+__all__ = [
+    "LengthSetting",
+    "PartZero",
+    "name_contacts",
+    "find_hole_centers",
+    "part_zero",
+    "list_length_settings",
+]
 
 WAYS = "give corner, centre, hole and its number, or a point of the drawing as X,Y"
 
@@ -75,22 +82,22 @@ def part_zero(
         within = min(-x0, -y0, x1, y1) >= -AGREEMENT
         return PartZero((0.0, 0.0), "origin of the drawing") if within else part_zero(workpiece, "corner")
     if not isinstance(asked, str):
-        return PartZero(given_point(list(map(str, asked)), str(asked), unit), "point given")
+        return PartZero(check_point(list(map(str, asked)), str(asked), unit), "point given")
     word = asked.strip().lower()
     if word == "corner":
         return PartZero((x0, y0), "lower left corner as drawn")
     if word in ("centre", "center"):
         return PartZero(workpiece.center, "centre of the outside dimensions")
     if word.startswith("hole"):
-        number, centers = word.removeprefix("hole").strip(), hole_centers(workpiece)
+        number, centers = word.removeprefix("hole").strip(), find_hole_centers(workpiece)
         if number.isascii() and number.isdigit() and 0 < int(number[:9]) <= len(centers):
             return PartZero(centers[int(number) - 1], f"centre of hole {int(number)}")
         count = {0: "no hole", 1: "one hole"}.get(len(centers), f"holes 1 to {len(centers)}")
         raise InputError(f"part zero {asked[:40]!r} cannot be used: the part has {count}; {WAYS}.")
-    return PartZero(given_point(asked.split(","), repr(asked[:40]), unit), "point given")
+    return PartZero(check_point(asked.split(","), repr(asked[:40]), unit), "point given")
 
 
-def given_point(numbers: Sequence[str], words: str, unit: Unit) -> Point:
+def check_point(numbers: Sequence[str], words: str, unit: Unit) -> Point:
     """The point in mm that two numbers give; refuses others than two, infinite ones and too large ones."""
     try:
         x, y = (unit.length(float(number)) for number in numbers)
@@ -103,7 +110,7 @@ def given_point(numbers: Sequence[str], words: str, unit: Unit) -> Point:
     return x, y
 
 
-def hole_centers(workpiece: Workpiece) -> list[Point]:
+def find_hole_centers(workpiece: Workpiece) -> list[Point]:
     """The centre of each hole, in the order of the part's loops.
 
     A round hole has the centre of its circle, any other the middle of its outside dimensions.
@@ -212,7 +219,7 @@ class LengthSetting:
         return f"{self.title[0].upper()}{self.title[1:]}"
 
 
-def settings_of(fixture: Fixture, toolkit: Toolkit) -> tuple[LengthSetting, ...]:
+def list_length_settings(fixture: Fixture, toolkit: Toolkit) -> tuple[LengthSetting, ...]:
     """The lengths to set: one of a vise, one of each clamp in their order, none where nothing moves.
 
     Examples
@@ -220,14 +227,14 @@ def settings_of(fixture: Fixture, toolkit: Toolkit) -> tuple[LengthSetting, ...]
     >>> from workhold.model.fixture import Pose
     >>> from workhold import Plate
     >>> plate, tip = Plate(pitch=20, peg_radius=3, travel=(10, 30)), Peg("clamp -x", 4, 1, 66.0, 20.0, 2, 1.0)
-    >>> (setting,) = settings_of(Fixture("clamp", (tip,), Pose(0, 0, 0), -14.0, {}, "-x"), plate)
+    >>> (setting,) = list_length_settings(Fixture("clamp", (tip,), Pose(0, 0, 0), -14.0, {}, "-x"), plate)
     >>> setting.sign, setting.length, setting.start
     ('stroke', 14.0, (80.0, 20.0))
     """
     clamps = [peg for peg in fixture.pegs if toolkit.carrier(peg.carrier).contact is CLAMP_TIP]
     if clamps:
         return tuple(
-            clamp_setting(tip, toolkit, travelled, len(clamps))
+            measure_clamp_setting(tip, toolkit, travelled, len(clamps))
             for tip, travelled in zip(clamps, fixture.travels, strict=True)
             if toolkit.carrier(tip.carrier).travel is not None
         )
@@ -247,7 +254,7 @@ def settings_of(fixture: Fixture, toolkit: Toolkit) -> tuple[LengthSetting, ...]
     )
 
 
-def clamp_setting(tip: Peg, toolkit: Toolkit, travelled: float, clamps: int) -> LengthSetting:
+def measure_clamp_setting(tip: Peg, toolkit: Toolkit, travelled: float, clamps: int) -> LengthSetting:
     """The length to set on one clamp of ``clamps`` that hold the part."""
     carrier, end = toolkit.carrier(tip.carrier), (tip.x, tip.y)
     named = f"the {carrier.noun}" if clamps == 1 else carrier.place_name(tip.column, tip.row)
@@ -266,7 +273,7 @@ def clamp_setting(tip: Peg, toolkit: Toolkit, travelled: float, clamps: int) -> 
     )
 
 
-def contact_names(fixture: Fixture, toolkit: Toolkit) -> list[str]:
+def name_contacts(fixture: Fixture, toolkit: Toolkit) -> list[str]:
     """Names of the contacts of a fixture in a table: their holes or lines; the only clamp has its noun."""
     clamps = [peg for peg in fixture.pegs if toolkit.carrier(peg.carrier).contact is CLAMP_TIP]
     return [toolkit.carrier(peg.carrier).noun if [peg] == clamps else peg.hole for peg in fixture.pegs]

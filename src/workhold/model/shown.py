@@ -31,12 +31,12 @@ from workhold.fixels.carrier import Carrier
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Box, Point, Segment
-from workhold.geometry.symmetry import rotated
+from workhold.geometry.symmetry import rotate_vectors
 from workhold.limits import MOST_STEPS
-from workhold.model.clamps import ShownClamp, clamping_direction, shown_clamps
+from workhold.model.clamps import ShownClamp, find_clamping_direction, list_shown_clamps
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.pose import Pose
-from workhold.model.setup import LengthSetting, settings_of
+from workhold.model.setup import LengthSetting, list_length_settings
 from workhold.model.wall_ends import standouts
 from workhold.model.workpiece import Workpiece
 
@@ -48,11 +48,11 @@ __all__ = [
     "ShownJaws",
     "ShownCarrier",
     "Side",
-    "held_box",
-    "placed_box",
-    "placed_boxes",
+    "bound_held_part",
+    "bound_placed_part",
+    "bound_placed_parts",
     "shown",
-    "shown_beside",
+    "find_shown_beside",
 ]
 
 Side = Literal["left", "right", "bottom", "top"]
@@ -61,7 +61,7 @@ Side = Literal["left", "right", "bottom", "top"]
 ROUNDING = 1e-6
 
 
-def held_box(part: Box, fixture: Fixture, clamps: Sequence[ShownClamp]) -> Box:
+def bound_held_part(part: Box, fixture: Fixture, clamps: Sequence[ShownClamp]) -> Box:
     """The extent of part, pegs and clamps, in mm."""
     places = [*((peg.x, peg.y) for peg in fixture.pegs), *(clamp.back for clamp in clamps)]
     return reduce(Box.union, (Box(x, y, x, y) for x, y in places), part)
@@ -82,7 +82,7 @@ def reach_of(held: Box, fixture: Fixture, carriers: Sequence[Carrier]) -> Box:
     return reach
 
 
-def cells_in_reach(carrier: Carrier, travelled: float, reach: Box, held: Point) -> tuple[range, range]:
+def find_cells_in_reach(carrier: Carrier, travelled: float, reach: Box, held: Point) -> tuple[range, range]:
     """Columns and rows of a carrier in reach, at least one of each.
 
     A lattice without an end has those before the first ones too that lie under what is held, whose lower left
@@ -90,8 +90,10 @@ def cells_in_reach(carrier: Carrier, travelled: float, reach: Box, held: Point) 
     fixture of a search has them in reach.
     """
     x, y = carrier.place(0, 0, travelled)
-    columns = in_reach(reach.x0 - x, reach.x1 - x, carrier.pitch[0], carrier.columns, held[0] - x)
-    rows = in_reach(reach.y0 - y, reach.y1 - y, carrier.pitch[1], carrier.rows, held[1] - y)
+    columns = find_numbers_in_reach(
+        reach.x0 - x, reach.x1 - x, carrier.pitch[0], carrier.columns, held[0] - x
+    )
+    rows = find_numbers_in_reach(reach.y0 - y, reach.y1 - y, carrier.pitch[1], carrier.rows, held[1] - y)
     if (columns.stop - columns.start) * (rows.stop - rows.start) > MOST_STEPS:
         raise InputError(
             f"part and pegs reach over more than {MOST_STEPS:,} holes of the {carrier.title}, too many to "
@@ -100,7 +102,7 @@ def cells_in_reach(carrier: Carrier, travelled: float, reach: Box, held: Point) 
     return columns, rows
 
 
-def in_reach(low: float, high: float, pitch: float, count: int | None, held: float) -> range:
+def find_numbers_in_reach(low: float, high: float, pitch: float, count: int | None, held: float) -> range:
     """Columns or rows between two distances in mm from the first one; at least one.
 
     Without a number of them, they begin within half a pitch of ``held`` if that is before the first one.
@@ -119,7 +121,7 @@ def span(carrier: Carrier, travelled: float, columns: range, rows: range) -> Box
     return Box(*first, *last)
 
 
-def facing_gaps(spans: list[Box]) -> list[dict[Side, float]]:
+def measure_facing_gaps(spans: list[Box]) -> list[dict[Side, float]]:
     """The sides of each box that face another box, with the smallest gap there in mm."""
     gaps: list[dict[Side, float]] = [{} for _ in spans]
 
@@ -352,15 +354,15 @@ class Shown:
 
 
 def shown(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> Shown:
-    """What shows of a toolkit that holds a workpiece; raises as :func:`shown_beside`."""
+    """What shows of a toolkit that holds a workpiece; raises as :func:`find_shown_beside`."""
     if fixture.hold is not None:
         return shown_between(workpiece, fixture, toolkit)
-    return shown_beside(placed_box(workpiece, fixture.pose), fixture, toolkit)
+    return find_shown_beside(bound_placed_part(workpiece, fixture.pose), fixture, toolkit)
 
 
 def shown_between(workpiece: Workpiece, fixture: Fixture, toolkit: Toolkit) -> Shown:
     """What shows of two flat jaws and a workpiece between them."""
-    jaws, hold, part = toolkit.flat_jaws, fixture.hold, placed_box(workpiece, fixture.pose)
+    jaws, hold, part = toolkit.flat_jaws, fixture.hold, bound_placed_part(workpiece, fixture.pose)
     assert jaws is not None and hold is not None
     width, opening = jaws.width, hold.opening
     thick = JAW * width if jaws.thickness is None else jaws.thickness
@@ -386,7 +388,7 @@ def shown_between(workpiece: Workpiece, fixture: Fixture, toolkit: Toolkit) -> S
         stop,
     )
     faces = ((0.0, 0.0), (width, 0.0)), ((0.0, opening), (width, opening))
-    measured = tuple(Dimension(setting, faces, True) for setting in settings_of(fixture, toolkit))
+    measured = tuple(Dimension(setting, faces, True) for setting in list_length_settings(fixture, toolkit))
     return Shown((), (), measured, part, jaws=seen)
 
 
@@ -400,13 +402,13 @@ def far_points(segment: Segment, pose: Pose) -> list[Point]:
     return points
 
 
-def placed_box(workpiece: Workpiece, pose: Pose) -> Box:
+def bound_placed_part(workpiece: Workpiece, pose: Pose) -> Box:
     """The extent of a workpiece in a pose, in mm."""
-    (box,) = placed_boxes(workpiece, *np.array([[np.radians(pose.theta_deg)], [pose.x], [pose.y]]))
+    (box,) = bound_placed_parts(workpiece, *np.array([[np.radians(pose.theta_deg)], [pose.x], [pose.y]]))
     return Box(*map(float, box))
 
 
-def placed_boxes(
+def bound_placed_parts(
     workpiece: Workpiece, theta: NDArray[np.float64], x: NDArray[np.float64], y: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Extents (N, 4) of a workpiece in N poses, as x0, y0, x1, y1 in mm; theta (N,) in radians.
@@ -421,28 +423,28 @@ def placed_boxes(
 
     def farthest(direction: float) -> NDArray[np.float64]:
         turned = direction - theta[:, None]
-        reach = rotated(corners[:, 0], corners[:, 1], -turned)[0].max(axis=1)
+        reach = rotate_vectors(corners[:, 0], corners[:, 1], -turned)[0].max(axis=1)
         faces = np.abs((turned - middle + np.pi) % (2 * np.pi) - np.pi) <= half
-        bulges = np.where(faces, rotated(center_x, center_y, -turned)[0] + radius, -np.inf)
+        bulges = np.where(faces, rotate_vectors(center_x, center_y, -turned)[0] + radius, -np.inf)
         return np.asarray(np.maximum(reach, bulges.max(axis=1, initial=-np.inf)))
 
     left, bottom, right, top = (farthest(angle) for angle in (np.pi, -np.pi / 2, 0.0, np.pi / 2))
     return np.stack([x - left, y - bottom, x + right, y + top], axis=1)
 
 
-def shown_beside(part: Box, fixture: Fixture, toolkit: Toolkit) -> Shown:
+def find_shown_beside(part: Box, fixture: Fixture, toolkit: Toolkit) -> Shown:
     """What shows of a toolkit beside a part of an extent.
 
     Refuses a part and pegs so far apart that too many holes would show.
     """
     travelled = fixture.travel
     carriers = toolkit.plates
-    clamps = tuple(shown_clamps(fixture, toolkit))
-    held = held_box(part, fixture, clamps)
+    clamps = tuple(list_shown_clamps(fixture, toolkit))
+    held = bound_held_part(part, fixture, clamps)
     reach, lowest = reach_of(held, fixture, carriers), inf if toolkit.ends_on_walls else held.y0
-    ranges = [cells_in_reach(carrier, travelled, reach, (held.x0, lowest)) for carrier in carriers]
+    ranges = [find_cells_in_reach(carrier, travelled, reach, (held.x0, lowest)) for carrier in carriers]
     spans = [span(carrier, travelled, *cells) for carrier, cells in zip(carriers, ranges, strict=True)]
-    gaps = facing_gaps(spans)
+    gaps = measure_facing_gaps(spans)
     out = []
     for carrier, (columns, rows), holes, facing in zip(carriers, ranges, spans, gaps, strict=True):
         half_x, half_y = carrier.pitch[0] / 2, carrier.pitch[1] / 2
@@ -465,16 +467,16 @@ def shown_beside(part: Box, fixture: Fixture, toolkit: Toolkit) -> Shown:
                 facing=frozenset(facing),
                 pegs=tuple(peg for peg in fixture.pegs if peg.carrier == carrier.name),
                 bolted=tuple(clamp for clamp in clamps if clamp.carrier.on == carrier.name),
-                clamping=clamping_direction(carrier, toolkit),
+                clamping=find_clamping_direction(carrier, toolkit),
             )
         )
-    measured = tuple(measured_between(out, setting) for setting in settings_of(fixture, toolkit))
+    measured = tuple(measured_between(out, setting) for setting in list_length_settings(fixture, toolkit))
     seen = Shown(tuple(out), clamps, measured, part)
     walls = [carrier for carrier in toolkit.carriers if carrier.contact is WALL_END]
-    return reduce(lambda before, wall: with_wall(before, fixture, wall), walls, seen)
+    return reduce(lambda before, wall: add_wall_to_view(before, fixture, wall), walls, seen)
 
 
-def with_wall(seen: Shown, fixture: Fixture, carrier: Carrier) -> Shown:
+def add_wall_to_view(seen: Shown, fixture: Fixture, carrier: Carrier) -> Shown:
     """What shows, with a wall below the part: a bar as long as the plate, or as the wall where that has ends.
 
     A plate that stands still goes on below the bar.

@@ -23,9 +23,9 @@ __all__ = [
     "HeightRow",
     "RunRows",
     "SolidOutline",
-    "other_way_up",
+    "flip_up_axis",
     "run_at",
-    "slides_at_any",
+    "slides_at_every_height",
 ]
 
 # What says how a solid stands, as a file of a result has it.
@@ -47,10 +47,10 @@ RunRows = tuple[tuple[float, float, float], ...]
 Loops = tuple[tuple[tuple[float, ...], ...], ...]
 
 
-def other_way_up(axis: str) -> str:
+def flip_up_axis(axis: str) -> str:
     """The axis that points up where the part lies on its other side.
 
-    >>> other_way_up("z"), other_way_up("-x")
+    >>> flip_up_axis("z"), flip_up_axis("-x")
     ('-z', 'x')
     """
     return axis[1:] if axis.startswith("-") else f"-{axis}"
@@ -69,7 +69,7 @@ def loops_of(values: Iterable[Iterable[Iterable[Any]]]) -> Loops:
     return loops
 
 
-def reals_of(values: Iterable[Any]) -> tuple[float, ...]:
+def check_reals(values: Iterable[Any]) -> tuple[float, ...]:
     """Numbers as a tuple of floats; refuses one that is not finite."""
     numbers = tuple(real(value) for value in values)
     if not all(map(isfinite, numbers)):
@@ -168,14 +168,14 @@ class SolidOutline:
     faces: tuple[tuple[int, ...], ...] = field(default=(), converter=numbers_of)
     bottom: Loops | None = field(default=None, converter=optional(loops_of))
     top: Loops | None = field(default=None, converter=optional(loops_of))
-    top_heights: tuple[float, ...] = field(default=(), converter=reals_of)
+    top_heights: tuple[float, ...] = field(default=(), converter=check_reals)
     low: float = field(default=0.0, converter=real)
     runs: tuple[RunRows, ...] = field(default=(), converter=runs_of)
     rising: Loops = field(default=(), converter=loops_of)
-    rising_heights: tuple[float, ...] = field(default=(), converter=reals_of)
+    rising_heights: tuple[float, ...] = field(default=(), converter=check_reals)
     hanging: Loops = field(default=(), converter=loops_of)
-    hanging_heights: tuple[float, ...] = field(default=(), converter=reals_of)
-    unclear_heights: tuple[float, ...] = field(default=(), converter=reals_of)
+    hanging_heights: tuple[float, ...] = field(default=(), converter=check_reals)
+    unclear_heights: tuple[float, ...] = field(default=(), converter=check_reals)
 
     def __attrs_post_init__(self) -> None:
         if self.axis not in AXES:
@@ -281,8 +281,8 @@ class FileSolid:
 
     number: int
     name: str
-    size: tuple[float, ...] = field(converter=reals_of)
-    low: tuple[float, ...] = field(converter=reals_of)
+    size: tuple[float, ...] = field(converter=check_reals)
+    low: tuple[float, ...] = field(converter=check_reals)
 
     def __str__(self) -> str:
         size = " x ".join(f"{length:.6g}" for length in self.size)
@@ -313,7 +313,7 @@ class HeightRow:
     slides: bool = False
 
 
-def slides_at_any(rows: Iterable[HeightRow]) -> bool:
+def slides_at_every_height(rows: Iterable[HeightRow]) -> bool:
     """Whether a solid slides along what pegs can touch, however high they are."""
     touching = [row for row in rows if row.touchable > 0]
     return bool(touching) and all(row.slides for row in touching)

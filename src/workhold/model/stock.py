@@ -32,9 +32,9 @@ from workhold.asking.program import StockQuestion
 from workhold.errors import InputError
 from workhold.limits import real, refuse_long, with_names
 from workhold.model.cutting_tool import Tool
-from workhold.model.moves import Moves, Stretches, along, shares_between
+from workhold.model.moves import Moves, Stretches, along, find_shares_between_heights
 
-__all__ = ["OUTLINE", "STOCK_SHAPES", "Border", "Stock", "StockShape", "stretches_in"]
+__all__ = ["OUTLINE", "STOCK_SHAPES", "Border", "Stock", "StockShape", "find_stretches_in_stock"]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -256,7 +256,7 @@ def split(count: int, width: int) -> list[slice]:
     return [slice(k, k + step) for k in range(0, count, step)]
 
 
-def stretches_in(
+def find_stretches_in_stock(
     moves: Moves, tools: Mapping[int, Tool], stock: Stock, border: Border | None, asked: Mask
 ) -> Stretches:
     """The stretches of some moves on which their tools meet the stock.
@@ -273,7 +273,7 @@ def stretches_in(
         reach[own], flute[own] = tool.diameter / 2 + stock.side - TOUCHES, tool.flute_end
     start, end = moves.start[rows, 2], moves.end[rows, 2]
     low = TOUCHES - flute[rows]
-    first, last = shares_between(start, end, low, np.full(len(rows), stock.upper - TOUCHES))
+    first, last = find_shares_between_heights(start, end, low, np.full(len(rows), stock.upper - TOUCHES))
     kept = last > first
     rows, first, last = rows[kept], first[kept], last[kept]
     if border is None or not len(rows):

@@ -16,7 +16,7 @@ from attrs import evolve
 from workhold.errors import InputError
 from workhold.fixels.pegs import peg_outline
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.segment import Arc, Point, distance_to_segment, segment_rows
+from workhold.geometry.segment import Arc, Point, measure_distance_to_segment, segment_rows
 from workhold.kernels.base.distance import is_inside
 from workhold.model.bodies import (
     FILM,
@@ -25,20 +25,20 @@ from workhold.model.bodies import (
     BodySizes,
     FixtureBody,
     Slab,
-    fixture_bodies,
-    way_open,
+    find_opening_direction,
+    list_fixture_bodies,
 )
 from workhold.model.fixture import Fixture
 from workhold.model.shown import shown
 from workhold.model.support_triples import ChosenSupports, SupportPad, Supports, Triple
 
 __all__ = [
-    "bodies_on_supports",
-    "bodies_with_supports",
-    "clamp_pieces",
+    "list_bodies_on_supports",
+    "list_bodies_with_supports",
+    "size_clamp_pieces",
     "clamped_height",
-    "height_of_supports",
-    "supported_sizes",
+    "find_support_height",
+    "size_supported_bodies",
     "with_room",
 ]
 
@@ -48,12 +48,12 @@ TIP, SPINDLE, KNOB = (3.0, 1.0), (18.0, 0.6), (6.0, 1.5)
 KNOB_ROOM = 5.0
 
 
-def height_of_supports(toolkit: Toolkit) -> float | None:
+def find_support_height(toolkit: Toolkit) -> float | None:
     """How high the supports are that a toolkit has, in mm; None where nobody says."""
     return None if toolkit.supports is None else toolkit.supports.height
 
 
-def supported_sizes(
+def size_supported_bodies(
     supports: Supports,
     *,
     peg_length: float | None = None,
@@ -74,7 +74,7 @@ def supported_sizes(
     InputError
         For a length that is not positive, as of pegs that end below the part.
     """
-    own = height_of_supports(supports.query.toolkit) if support_height is None else support_height
+    own = find_support_height(supports.query.toolkit) if support_height is None else support_height
     raised = SUPPORT_HEIGHT if own is None else own
     return BodySizes.of(
         supports.query.workpiece,
@@ -85,28 +85,30 @@ def supported_sizes(
     )
 
 
-def bodies_with_supports(chosen: ChosenSupports, sizes: BodySizes | None = None) -> tuple[FixtureBody, ...]:
+def list_bodies_with_supports(
+    chosen: ChosenSupports, sizes: BodySizes | None = None
+) -> tuple[FixtureBody, ...]:
     """All bodies of a fixture as a set of three asks for, in holes that have names.
 
     Parameters
     ----------
-    sizes : heights, those of the supports included; those of :func:`supported_sizes` if None.
+    sizes : heights, those of the supports included; those of :func:`size_supported_bodies` if None.
 
     Raises
     ------
     InputError
         For pegs or pads of radius 0, which have no body.
     """
-    return bodies_on_supports(
+    return list_bodies_on_supports(
         chosen.supports,
         chosen.triple,
         chosen.recounted.fixture,
         chosen.pads,
-        supported_sizes(chosen.supports) if sizes is None else sizes,
+        size_supported_bodies(chosen.supports) if sizes is None else sizes,
     )
 
 
-def bodies_on_supports(
+def list_bodies_on_supports(
     supports: Supports, triple: Triple, fixture: Fixture, pads: Sequence[SupportPad], sizes: BodySizes
 ) -> tuple[FixtureBody, ...]:
     """The bodies of a fixture on the supports of a set, with these and the clamp on top last.
@@ -124,8 +126,8 @@ def bodies_on_supports(
     if supports.request.pad_radius <= 0.0:
         raise InputError("pads of radius 0 have no body to write or show: give a pad radius.")
     query, clamp = supports.query, screw(supports, triple, fixture, sizes)
-    more = (*pad_bodies(supports, fixture, pads, sizes), clamp)
-    part, *others = fixture_bodies(fixture, query.workpiece, query.toolkit, sizes, more)
+    more = (*make_pad_bodies(supports, fixture, pads, sizes), clamp)
+    part, *others = list_fixture_bodies(fixture, query.workpiece, query.toolkit, sizes, more)
     center, radius = fixture.pose.apply(*triple.clamp.at), supports.request.tip_radius
     slabs = [piece for slab in part.slabs for piece in with_room(slab, center, radius, clamp.slabs[0].low)]
     return evolve(part, slabs=tuple(slabs)), *others
@@ -138,7 +140,7 @@ def with_room(slab: Slab, center: Point, radius: float, low: float) -> Iterator[
     height.
     """
     border = [segment for loop in (slab.outer, *slab.holes) for segment in loop]
-    away = min(distance_to_segment(center, segment) for segment in border)
+    away = min(measure_distance_to_segment(center, segment) for segment in border)
     inside = is_inside(*center, segment_rows(border))
     if low >= slab.high or (away >= radius and not inside):
         yield slab
@@ -148,7 +150,7 @@ def with_room(slab: Slab, center: Point, radius: float, low: float) -> Iterator[
         yield evolve(slab, holes=(*slab.holes, (Arc(center, radius, 0.0, pi, -1.0),)), low=low)
 
 
-def pad_bodies(
+def make_pad_bodies(
     supports: Supports, fixture: Fixture, pads: Sequence[SupportPad], sizes: BodySizes
 ) -> Iterator[FixtureBody]:
     """The supports: each a pad under the part, with its pin through the plate."""
@@ -160,10 +162,12 @@ def pad_bodies(
         slabs = [Slab(pin, (), floor - sizes.plate_thickness, floor)]
         if floor < 0.0:
             slabs.append(Slab(tuple(peg_outline(center, supports.request.pad_radius)), (), floor, 0.0))
-        yield FixtureBody(f"support {pad.hole}", BodyKind.SUPPORT, tuple(slabs), way_open(carrier))
+        yield FixtureBody(
+            f"support {pad.hole}", BodyKind.SUPPORT, tuple(slabs), find_opening_direction(carrier)
+        )
 
 
-def clamp_pieces(low: float, highest: float) -> tuple[tuple[float, float], ...]:
+def size_clamp_pieces(low: float, highest: float) -> tuple[tuple[float, float], ...]:
     """Heights in mm of the pieces of the clamp on top, from its tip upward, and their radii in tips.
 
     Parameters
@@ -184,7 +188,7 @@ def clamped_height(supports: Supports, triple: Triple, sizes: BodySizes) -> floa
 def screw(supports: Supports, triple: Triple, fixture: Fixture, sizes: BodySizes) -> FixtureBody:
     """The clamp on top, its tip on the upper face at its place."""
     center, low, slabs = fixture.pose.apply(*triple.clamp.at), clamped_height(supports, triple, sizes), []
-    for height, share in clamp_pieces(low, max(sizes.thickness, sizes.top, sizes.others)):
+    for height, share in size_clamp_pieces(low, max(sizes.thickness, sizes.top, sizes.others)):
         outline = tuple(peg_outline(center, share * supports.request.tip_radius))
         slabs.append(Slab(outline, (), low, low + height))
         low += height

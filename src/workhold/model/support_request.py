@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 from workhold.errors import InputError, quoted
 from workhold.fixels.support_hardware import SupportPads, TopClamp
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.loop import checked_vertices, loop_segments
+from workhold.geometry.loop import check_vertices, loop_segments
 from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.distance import is_inside
 from workhold.limits import real, refuse_long, refuse_strong, with_names
@@ -32,11 +32,11 @@ from workhold.model.requirements import (
     ANY_DIRECTION,
     Load,
     Zone,
-    all_zones,
     direction_range,
+    make_zones,
     point_pairs,
 )
-from workhold.model.solid import BESIDE_TOP, SolidOutline, reals_of
+from workhold.model.solid import BESIDE_TOP, SolidOutline, check_reals
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -49,7 +49,7 @@ __all__ = [
     "SupportRequest",
     "loops_of",
     "pressed_by",
-    "usual_head",
+    "compute_usual_head",
 ]
 
 # In mm, where nobody says; a pad that the holes leave less room for than the last is none.
@@ -65,7 +65,7 @@ Faces = Sequence[ArrayLike] | Literal["outline"]
 Span = tuple[float, float]
 
 
-def usual_head(tip_radius: float) -> float:
+def compute_usual_head(tip_radius: float) -> float:
     """How far in mm the head of a clamp reaches around its tip, where nobody says."""
     return HEAD * tip_radius
 
@@ -77,7 +77,7 @@ def pair_of(values: Any) -> Span:
     return real(pair[0]), real(pair[1])
 
 
-def span_of(value: Any) -> Span:
+def make_span(value: Any) -> Span:
     """A range of numbers from one number or two, the smaller first."""
     if isinstance(value, Sequence | np.ndarray) and not isinstance(value, str) and len(value) == 2:
         low, high = (real(one) for one in value)
@@ -89,7 +89,7 @@ def span_of(value: Any) -> Span:
 def loops_of(loops: Iterable[Any]) -> Loops:
     """Loops of (x, y, bulge) vertices as read-only arrays; refuses what is no loop."""
     return tuple(
-        checked_vertices(loop, f"face: loop {number}", partial("face: loop {}, side {}".format, number))
+        check_vertices(loop, f"face: loop {number}", partial("face: loop {}, side {}".format, number))
         for number, loop in enumerate(loops, 1)
     )
 
@@ -132,8 +132,8 @@ class SpatialLoad:
     points: tuple[tuple[float, float], ...] = field(default=(), converter=point_pairs)
     force: float = field(default=0.0, converter=real)
     directions: Span = field(default=ANY_DIRECTION, converter=direction_range)
-    heights: Span | None = field(default=None, converter=optional(span_of))
-    axial: Span = field(default=(0.0, 0.0), converter=span_of)
+    heights: Span | None = field(default=None, converter=optional(make_span))
+    axial: Span = field(default=(0.0, 0.0), converter=make_span)
     moment: float = field(default=0.0, converter=real)
     tilt: Span = field(default=(0.0, 0.0), converter=pair_of)
     name: str = ""
@@ -225,22 +225,22 @@ class SupportRequest:
     pad_margin: float = field(default=0.0, converter=real)
     bottom: Loops | None = field(default=None, converter=optional(loops_of), eq=False)
     top: Loops | None = field(default=None, converter=optional(loops_of), eq=False)
-    bottom_zones: tuple[Zone, ...] = field(default=(), converter=all_zones)
-    top_zones: tuple[Zone, ...] = field(default=(), converter=all_zones)
+    bottom_zones: tuple[Zone, ...] = field(default=(), converter=make_zones)
+    top_zones: tuple[Zone, ...] = field(default=(), converter=make_zones)
     inside: float = field(default=Factory(lambda self: self.tip_radius, takes_self=True), converter=real)
     reach: tuple[tuple[float, float, float, float], ...] | None = field(
         default=None, converter=optional(rings_of)
     )
     point: Span | None = field(default=None, converter=optional(pair_of))
-    top_heights: tuple[float, ...] | None = field(default=None, converter=optional(reals_of))
+    top_heights: tuple[float, ...] | None = field(default=None, converter=optional(check_reals))
     tip_margin: float = field(default=0.0, converter=real)
     head_radius: float = field(
-        default=Factory(lambda self: usual_head(self.tip_radius), takes_self=True), converter=real
+        default=Factory(lambda self: compute_usual_head(self.tip_radius), takes_self=True), converter=real
     )
     rising: Loops = field(default=(), converter=loops_of, eq=False)
-    rising_heights: tuple[float, ...] = field(default=(), converter=reals_of)
+    rising_heights: tuple[float, ...] = field(default=(), converter=check_reals)
     hanging: Loops = field(default=(), converter=loops_of, eq=False)
-    hanging_heights: tuple[float, ...] = field(default=(), converter=reals_of)
+    hanging_heights: tuple[float, ...] = field(default=(), converter=check_reals)
 
     def __attrs_post_init__(self) -> None:
         for name, value in (
@@ -319,7 +319,7 @@ class SupportRequest:
         tip_radius = clamp.tip_radius if tip_radius is None else tip_radius
         tip_radius = TIP_RADIUS if tip_radius is None else tip_radius
         if pad_radius is None:
-            room = PAD_RADIUS if toolkit is None else least_apart(toolkit) / 2
+            room = PAD_RADIUS if toolkit is None else find_least_hole_distance(toolkit) / 2
             pad_radius = min(PAD_RADIUS, room) if room >= LEAST_PAD_RADIUS else PAD_RADIUS
         return cls(
             thickness=solid.height if thickness is None and solid is not None else thickness,
@@ -332,7 +332,7 @@ class SupportRequest:
             inside=tip_radius if clamp.inside is None else clamp.inside,
             reach=clamp.reach,
             tip_margin=0.0 if clamp.tip_margin is None else clamp.tip_margin,
-            head_radius=usual_head(tip_radius) if clamp.head_radius is None else clamp.head_radius,
+            head_radius=compute_usual_head(tip_radius) if clamp.head_radius is None else clamp.head_radius,
             **({} if solid is None else {name: getattr(solid, name) for name in BESIDE_TOP}),
         )
 
@@ -393,7 +393,7 @@ class SupportRequest:
 
     def refuse_fat_pads(self, toolkit: Toolkit) -> None:
         """Refuses pads that could overlap in neighbouring holes of a toolkit."""
-        apart = least_apart(toolkit)
+        apart = find_least_hole_distance(toolkit)
         if 2 * self.pad_radius > apart:
             raise InputError(
                 f"pads of radius {self.pad_radius:g} would overlap {apart:g} mm apart: give a smaller "
@@ -401,7 +401,7 @@ class SupportRequest:
             )
 
 
-def least_apart(toolkit: Toolkit) -> float:
+def find_least_hole_distance(toolkit: Toolkit) -> float:
     """How near two holes of a toolkit can come to each other, in mm."""
     apart = [pitch for plate in toolkit.plates for pitch in plate.pitch]
     if toolkit.gap is not None and len(toolkit.plates) > 1:

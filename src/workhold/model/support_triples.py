@@ -17,7 +17,7 @@ from workhold.errors import InputError
 from workhold.fixels.carrier import Carrier, hole_name, letter_of
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
-from workhold.model.moved_setup import counted_on, middle_move, move_to
+from workhold.model.moved_setup import find_move_to_middle, move_to, shift_hole_numbers
 from workhold.model.query import Query
 from workhold.model.support_request import SpatialLoad, SupportRequest
 
@@ -316,7 +316,7 @@ def moved(
     """The set-up with its holes counted further on."""
     first = next(plate for plate in toolkit.carriers if plate.has_lattice)
     dx, dy = move[0] * first.pitch[0], move[1] * first.pitch[1]
-    new = counted_on(fixture, toolkit, (dx, dy), shifts, travel)
+    new = shift_hole_numbers(fixture, toolkit, (dx, dy), shifts, travel)
     pads = tuple(
         evolve(pad, column=pad.column + shifts[pad.carrier][0], row=pad.row + shifts[pad.carrier][1])
         for pad in triple.supports
@@ -345,7 +345,7 @@ class ChosenSupports:
             raise InputError("supports are what the fixture's own method of that name returns: give these.")
         triple = supports.ranked(number)
         query = supports.query
-        start = middle_move(supports.fixture, query.toolkit, query.workpiece)
+        start = find_move_to_middle(supports.fixture, query.toolkit, query.workpiece)
         return cls(supports, number, recounted(supports.fixture, query.toolkit, triple, start))
 
     @classmethod

@@ -16,21 +16,21 @@ from numpy.typing import NDArray
 from workhold.conventions import GAP_SLACK, SAME_PLACE
 from workhold.fixels.carrier import WALL
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.hull import HullTouch, touches_along
+from workhold.geometry.hull import HullTouch, find_touches_along
 from workhold.geometry.segment import Box
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["CommonStretch", "WallEnds", "common_stretch", "standouts", "touches_of", "wall_ends"]
+__all__ = ["CommonStretch", "WallEnds", "find_common_stretch", "standouts", "list_hull_touches", "wall_ends"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 
-def touches_of(workpiece: Workpiece, edge: int) -> tuple[HullTouch, ...]:
-    """Where a workpiece touches the line of a hull edge, by the edge's number; see :func:`touches_along`."""
+def list_hull_touches(workpiece: Workpiece, edge: int) -> tuple[HullTouch, ...]:
+    """Where a workpiece touches the line of a hull edge, by the edge's number; see :func:`find_touches_along`."""
     own, _ = workpiece.outline_of(WALL)
     segments = [face.segment for face in own.outer_faces]
-    return touches_along(workpiece.hull_edges[edge], segments, own.outer_face_counts)
+    return find_touches_along(workpiece.hull_edges[edge], segments, own.outer_face_counts)
 
 
 @frozen(eq=False)
@@ -54,7 +54,7 @@ class CommonStretch:
         return self.end - self.start
 
 
-def common_stretch(touches: Sequence[HullTouch], low: Array, high: Array) -> CommonStretch:
+def find_common_stretch(touches: Sequence[HullTouch], low: Array, high: Array) -> CommonStretch:
     """The common stretch of what touches along a hull edge and walls from ``low`` to ``high`` (N,)."""
     ends = np.array([(one.low, one.high) for one in touches])
     start, end = np.maximum(ends[:, 0], low[:, None]), np.minimum(ends[:, 1], high[:, None])
@@ -126,8 +126,8 @@ def wall_ends(workpiece: Workpiece, toolkit: Toolkit, theta: Array, position: Ar
     first: int = workpiece.outline_of(WALL)[1]
     for number in np.unique(edge).tolist():
         rows = np.flatnonzero(edge == number)
-        touches, start = touches_of(workpiece, number), x[rows, 0].copy()
-        common = common_stretch(touches, reach[0] - start, reach[1] - start)
+        touches, start = list_hull_touches(workpiece, number), x[rows, 0].copy()
+        common = find_common_stretch(touches, reach[0] - start, reach[1] - start)
         there = np.isfinite(common.start)
         rows, start = rows[there], start[there]
         x[rows] = start[:, None] + np.stack([common.start, common.end], axis=1)[there]

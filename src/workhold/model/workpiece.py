@@ -21,16 +21,21 @@ from workhold.geometry.loop import (
     Comparisons,
     Face,
     LoopShape,
-    checked_vertices,
-    faces_of_loop,
+    check_vertices,
+    compute_signed_area,
+    list_loop_faces,
     loop_segments,
     refuse_meeting,
     refuse_no_area,
     refuse_self_crossing,
-    reversed_vertices,
-    signed_area,
+    reverse_vertices,
 )
-from workhold.geometry.merged_runs import chorded_arcs, chords_remark, merged_chords, on_one_circle
+from workhold.geometry.merged_runs import (
+    describe_chords,
+    find_chorded_arcs,
+    merge_chords,
+    put_arcs_on_one_circle,
+)
 from workhold.geometry.segment import Point, Segment, bounding_box
 from workhold.limits import real, real_array
 from workhold.model.numbered_outlines import NumberedOutlines, outer_count, refuse_misplaced_holes, unlike
@@ -173,10 +178,10 @@ class Workpiece:
         drawn: list[LoopShape] = []
         for index, loop in enumerate(loops):
             place = partial(segment_place, index)
-            vertices = checked_vertices(loop, f"{name}: loop {index}", place)
+            vertices = check_vertices(loop, f"{name}: loop {index}", place)
             straightened += int((np.asarray(loop)[:, 2] != vertices[:, 2]).sum())
             segments = loop_segments(vertices)
-            vertices, changed = on_one_circle(vertices, segments)
+            vertices, changed = put_arcs_on_one_circle(vertices, segments)
             rounded += changed
             shape = LoopShape.of(loop_segments(vertices) if changed else segments)
             refuse_self_crossing(shape, place, comparisons)
@@ -193,15 +198,17 @@ class Workpiece:
         turned: set[int] = set()
         for index, shape in enumerate(drawn):
             numbers = range(len(order), len(order) + len(used[index]))
-            if (signed_area(shape.segments) > 0) != (index < pieces):
-                used[index] = reversed_vertices(used[index])
+            if (compute_signed_area(shape.segments) > 0) != (index < pieces):
+                used[index] = reverse_vertices(used[index])
                 order += reversed(numbers)
                 turned.update(numbers)
             else:
                 order += numbers
         if solid is not None:
             solid = solid.for_segments(len(order)).reordered(order, turned)
-        return cls(name, tuple(used), remarks_on(straightened, rounded), departure_of(departure), solid)
+        return cls(
+            name, tuple(used), describe_arc_changes(straightened, rounded), departure_of(departure), solid
+        )
 
     @classmethod
     def from_points(
@@ -238,13 +245,13 @@ class Workpiece:
             raise InputError(f"the fit {fit} is not usable: give a length above 0, in mm.")
         loops, away, chorded = [], 0.0, []
         for index, points in enumerate([outline, *holes]):
-            merged = merged_chords(corners_of(points, f"{name}: loop {index}"), fit)
+            merged = merge_chords(corners_of(points, f"{name}: loop {index}"), fit)
             loops.append(merged.vertices)
             away = max(away, merged.departure)
-            left = chorded_arcs(merged.vertices)
+            left = find_chorded_arcs(merged.vertices)
             chorded += [left] if left is not None and (fit is None or left.fit > fit) else []
         part = cls.from_loops(name, loops, departure=away)
-        return evolve(part, remarks=(*part.remarks, *chords_remark(chorded, "fit")))
+        return evolve(part, remarks=(*part.remarks, *describe_chords(chorded, "fit")))
 
     def is_alike(self, other: Workpiece) -> bool:
         """Whether another part is this one, whatever it is called."""
@@ -326,7 +333,7 @@ class Workpiece:
         number = 0
         for loop in self.loop_segments:
             bands = None if self.solid is None else self.solid.bands[number : number + len(loop)]
-            faces += faces_of_loop(loop, number, bands)
+            faces += list_loop_faces(loop, number, bands)
             number += len(loop)
         return tuple(faces)
 
@@ -356,7 +363,7 @@ class Workpiece:
     @cached_property
     def pieces(self) -> int:
         """How many loops are outer ones, which come first: 1, but for a solid that pegs meet in pieces."""
-        areas = [signed_area(loop) for loop in self.loop_segments[1:]]
+        areas = [compute_signed_area(loop) for loop in self.loop_segments[1:]]
         return 1 + next((k for k, area in enumerate(areas) if area <= 0), len(areas))
 
     @cached_property
@@ -408,7 +415,7 @@ class Workpiece:
     @cached_property
     def turned_over(self) -> Workpiece:
         """The workpiece turned over: x to -x in its own frame, its faces numbered anew."""
-        loops = (reversed_vertices(loop * np.array([-1.0, 1.0, -1.0])) for loop in self.loops)
+        loops = (reverse_vertices(loop * np.array([-1.0, 1.0, -1.0])) for loop in self.loops)
         return Workpiece(self.name, tuple(loops), departure=self.departure)
 
     def placed(self, pose: Pose) -> Workpiece:
@@ -441,7 +448,7 @@ def corners_of(points: ArrayLike, loop: str) -> NDArray[np.float64]:
     if len(array) > 1 and np.hypot(*(array[0] - array[-1])) < SHORTEST:
         array = array[:-1]
     rows = np.column_stack([array, np.zeros(len(array))])
-    return checked_vertices(rows, loop, lambda k: f"{loop}, corner {k}")
+    return check_vertices(rows, loop, lambda k: f"{loop}, corner {k}")
 
 
 def departure_of(value: float) -> float:
@@ -453,7 +460,7 @@ def departure_of(value: float) -> float:
     return 0.0 if value < READING else float(value)
 
 
-def remarks_on(straightened: int, rounded: int) -> tuple[str, ...]:
+def describe_arc_changes(straightened: int, rounded: int) -> tuple[str, ...]:
     """Remarks on arcs that were taken for lines, and on arcs moved onto one circle with their neighbours."""
     remarks = []
     if straightened:

@@ -26,9 +26,9 @@ from workhold.files.step.heights import foot_height
 from workhold.files.step.library import along, axis_named, bounding_box, sub_shapes, turn_along
 from workhold.files.step.part_shape import pose_move
 from workhold.files.step.writer import named_solids
-from workhold.model.bodies import COLOURS, BodySizes, FixtureBody, fixture_bodies
+from workhold.model.bodies import COLOURS, BodySizes, FixtureBody, list_fixture_bodies
 from workhold.model.setup import PartZero, part_zero
-from workhold.model.support_bodies import bodies_with_supports, supported_sizes
+from workhold.model.support_bodies import list_bodies_with_supports, size_supported_bodies
 from workhold.model.support_triples import ChosenSupports
 from workhold.presenting.data import library
 
@@ -100,7 +100,7 @@ class Assembly:
         Parameters
         ----------
         lengths : in mm, named as in :meth:`BodySizes.of`, or as in
-            :func:`workhold.model.support_bodies.supported_sizes` for a set of supports.
+            :func:`workhold.model.support_bodies.size_supported_bodies` for a set of supports.
 
         Raises
         ------
@@ -111,10 +111,10 @@ class Assembly:
             if fixture.hold is not None and lengths.get("thickness") is None:
                 lengths = {**lengths, "thickness": result.query.part_height}
             sizes = BodySizes.of(result.workpiece, **lengths)
-            bodies = fixture_bodies(fixture, result.workpiece, result.toolkit, sizes)
+            bodies = list_fixture_bodies(fixture, result.workpiece, result.toolkit, sizes)
             return cls(fixture, result, sizes, bodies, shape)
-        sizes = supported_sizes(chosen.supports, **lengths)
-        return cls(chosen.recounted.fixture, result, sizes, bodies_with_supports(chosen, sizes), shape)
+        sizes = size_supported_bodies(chosen.supports, **lengths)
+        return cls(chosen.recounted.fixture, result, sizes, list_bodies_with_supports(chosen, sizes), shape)
 
     @property
     def is_simplified(self) -> bool:

@@ -31,7 +31,7 @@ from workhold.model.clamps import order_words
 from workhold.model.fixture import Fixture
 from workhold.model.quality import SEATING_FIGURES
 from workhold.model.search_report import Explanation, Proof
-from workhold.model.setup import settings_of
+from workhold.model.setup import list_length_settings
 from workhold.model.solid import SolidOutline
 from workhold.model.workpiece import Workpiece
 from workhold.seating.clamping import by_hand
@@ -129,7 +129,7 @@ def fixture_data(fixture: Fixture, toolkit: Toolkit, rank: int | None = None) ->
         "pose": {"theta_deg": fixture.pose.theta_deg, "x": fixture.pose.x, "y": fixture.pose.y},
         "settings": [
             {"name": one.name, "sign": one.sign, "length": one.length}
-            for one in settings_of(fixture, toolkit)
+            for one in list_length_settings(fixture, toolkit)
         ],
         **pair_data(fixture),
         "quality": {key: finite(value) for key, value in fixture.quality.items()},

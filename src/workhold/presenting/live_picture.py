@@ -34,7 +34,7 @@ from workhold.model.fixture import Fixture
 from workhold.model.pose import Pose
 from workhold.model.requirements import Load
 from workhold.model.result import Result
-from workhold.model.setup import settings_of
+from workhold.model.setup import list_length_settings
 from workhold.model.support_triples import ChosenSupports, Supports
 from workhold.presenting.figure_words import (
     edgeless,
@@ -44,9 +44,9 @@ from workhold.presenting.figure_words import (
     no_edge,
 )
 from workhold.presenting.moving_picture import draw_ground, draw_peg, drawn_back, moving_group, ways_of
-from workhold.statics.loads import jaw_words, load_cases
+from workhold.statics.loads import describe_jaw, load_cases
 from workhold.supports.asking import fixture_supports
-from workhold.supports.words import why_no_set
+from workhold.supports.words import explain_no_set
 from workhold.units import MILLIMETRE
 
 __all__ = ["LivePicture", "TriedForce"]
@@ -153,7 +153,8 @@ class LivePicture:
         """What the fixture is called, how it holds, and what to set."""
         toolkit = self.result.toolkit
         set_to = ", ".join(
-            f"{one.sign} = {MILLIMETRE.text(one.length)}" for one in settings_of(self.fixture, toolkit)
+            f"{one.sign} = {MILLIMETRE.text(one.length)}"
+            for one in list_length_settings(self.fixture, toolkit)
         )
         under = "" if self.under is None else f" {set_words(self.under)}"
         return f"{fixture_title(self.fixture)}. {fixture_words(self.fixture, toolkit)}; {set_to}.{under}"
@@ -275,7 +276,9 @@ class LivePicture:
         ]
         if case.keeps_contact:
             given = f"that {mover} force" if jaw_force is None and needed > 0 else f"{case.jaw_force:,.0f} N"
-            words.append(f"Forces are for {given} of {jaw_words(case.jaw_stiffness, self.result.toolkit)}.")
+            words.append(
+                f"Forces are for {given} of {describe_jaw(case.jaw_stiffness, self.result.toolkit)}."
+            )
         else:
             words.append(f"With {case.jaw_force:,.0f} N a peg lets go.")
         return {
@@ -328,7 +331,7 @@ class LivePicture:
 def set_words(found: Supports) -> str:
     """Return the best set of three and the clamp on top in a sentence, or why there is none."""
     if not found.triples:
-        return why_no_set(found, MILLIMETRE)
+        return explain_no_set(found, MILLIMETRE)
     chosen, number = ChosenSupports.of(found), MILLIMETRE.number
     x, y = chosen.clamp.at
     holes = ", ".join(pad.hole for pad in chosen.pads)

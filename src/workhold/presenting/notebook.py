@@ -27,7 +27,7 @@ from workhold.model.quality import RANKED, SEATING_FIGURES
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.model.search_report import Explanation
-from workhold.model.setup import settings_of
+from workhold.model.setup import list_length_settings
 from workhold.model.support_triples import ChosenSupports
 from workhold.presenting.data import REQUIREMENTS
 from workhold.presenting.figure_words import (
@@ -45,7 +45,7 @@ from workhold.presenting.figure_words import (
 )
 from workhold.presenting.markup import LARGE, Markup, image, paragraph, safe, table
 from workhold.presenting.papers import fixture_picture, workpiece_picture
-from workhold.supports.words import set_headings, set_row, why_no_set
+from workhold.supports.words import explain_no_set, set_headings, set_row
 from workhold.units import MILLIMETRE
 
 if TYPE_CHECKING:
@@ -130,7 +130,8 @@ def entries_table(result: Result, shown: Entries) -> Markup:
                 f"+{like:,}" if like else "",
                 *holes,
                 " ".join(
-                    unit.number(setting.length, unit.decimals) for setting in settings_of(fixture, toolkit)
+                    unit.number(setting.length, unit.decimals)
+                    for setting in list_length_settings(fixture, toolkit)
                 ),
                 rounded(fixture.pose.written_deg, 3),
                 *(
@@ -200,7 +201,7 @@ def supports_html(supports: Supports) -> str:
     """Show the supports of a fixture: the best sets of three with the clamp on top, or why there is none."""
     title = paragraph(Markup(f"<b>{safe(sentence(supports.words))}</b>"))
     if not supports.triples:
-        return "\n".join((title, paragraph(why_no_set(supports, MILLIMETRE))))
+        return "\n".join((title, paragraph(explain_no_set(supports, MILLIMETRE))))
     loaded = bool(supports.loads)
     headings = (">rank", "picture", *set_headings(MILLIMETRE, loaded))
     rows = [

@@ -20,7 +20,7 @@ from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
 from workhold.files.replacing import refuse_output
 from workhold.listing.identity import entries
-from workhold.model.moved_setup import moved_on
+from workhold.model.moved_setup import move_fixture_by_holes
 from workhold.model.setup import part_zero
 from workhold.model.support_triples import ChosenSupports
 from workhold.presenting.assembly import STEP_ENDINGS, Assembly, shape_in
@@ -278,7 +278,7 @@ def model_bytes(fixture: Fixture, result: Result, ending: str, settings: dict[st
     zero = part_zero(result.workpiece, settings["zero"], unit)
     at, clearance, chosen = settings["at"], settings["clearance"], settings.get("supports")
     if chosen is None:
-        fixture = moved_on(fixture, toolkit, placing_of(fixture, result, at))
+        fixture = move_fixture_by_holes(fixture, toolkit, placing_of(fixture, result, at))
     elif at is not None:
         chosen = chosen.standing_at(at)
     if fixture.hold is not None and ending in (".csv", ".dxf"):
@@ -288,10 +288,10 @@ def model_bytes(fixture: Fixture, result: Result, ending: str, settings: dict[st
         )
     if ending == ".csv":
         from workhold.files.result.fixture_text import pin_list
-        from workhold.model.dowels import fit_words
+        from workhold.model.dowels import describe_fit
 
         fit, diameter = result.query.tolerance.fit, 2 * toolkit.plates[0].peg_radius
-        dowel = settings["dowel"] or (None if fit is None else fit_words(fit, diameter))
+        dowel = settings["dowel"] or (None if fit is None else describe_fit(fit, diameter))
         return pin_list(fixture, toolkit, unit, dowel, settings["peg_length"]).encode("utf-8")
     if ending == ".dxf":
         from workhold.files.dxf.writer import CLEARANCE, setup_dxf

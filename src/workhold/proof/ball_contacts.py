@@ -39,8 +39,8 @@ from workhold.kernels.base.tables import Limits
 __all__ = [
     "BoxContacts",
     "CandidateBox",
-    "contact_value",
-    "contact_values",
+    "compute_contact_value",
+    "compute_contact_values",
     "end_slacks",
     "extent",
     "from_origin",
@@ -80,18 +80,18 @@ def from_origin(row: Sequence[float], point: tuple[Any, Any]) -> tuple[Any, Any]
     return point[0] - row[X] - row[REST_X], point[1] - row[Y] - row[REST_Y]
 
 
-def contact_value(row: Sequence[float], ray: tuple[Any, Any]) -> Any:
+def compute_contact_value(row: Sequence[float], ray: tuple[Any, Any]) -> Any:
     """Contact equation in mm: distance from a line, or (distance² - R²) / 2R from an arc's centre.
 
     The peg's place is as ``from_origin`` gives it.
     """
     x, y = ray
     if row[IS_ARC] == 0.0:
-        return (row[AXIS_Y] * x - row[AXIS_X] * y) / axis_length(row)
+        return (row[AXIS_Y] * x - row[AXIS_X] * y) / measure_axis_length(row)
     return (x * x + y * y - arb(row[RADIUS]) ** 2) / (2 * arb(row[RADIUS]))
 
 
-def axis_length(row: Sequence[float]) -> arb:
+def measure_axis_length(row: Sequence[float]) -> arb:
     """The length of a line's axis, which rounding makes other than 1."""
     return (arb(row[AXIS_X]) ** 2 + arb(row[AXIS_Y]) ** 2).sqrt()
 
@@ -114,7 +114,7 @@ class BoxContacts:
     axis: tuple[arb, arb]
 
 
-def turned_pegs(box: CandidateBox, unknowns: Sequence[Any]) -> Iterator[tuple[Any, Any]]:
+def list_turned_pegs(box: CandidateBox, unknowns: Sequence[Any]) -> Iterator[tuple[Any, Any]]:
     """Yields the axis of the pegs (cosine and sine), and then each peg's arm from the first one."""
     psi, _, _, separation = unknowns
     cosine, sine = psi.cos(), psi.sin()
@@ -127,25 +127,25 @@ def turned_pegs(box: CandidateBox, unknowns: Sequence[Any]) -> Iterator[tuple[An
             yield cosine * across - sine * arb(dy), sine * across + cosine * arb(dy)
 
 
-def contact_values(box: CandidateBox, unknowns: Sequence[Any]) -> list[Any]:
+def compute_contact_values(box: CandidateBox, unknowns: Sequence[Any]) -> list[Any]:
     """The four contact equations at balls of the unknowns, or at power series of them."""
     _, x, y, _ = unknowns
-    _, *arms = turned_pegs(box, unknowns)
+    _, *arms = list_turned_pegs(box, unknowns)
     return [
-        contact_value(row, from_origin(row, (x + arm[0], y + arm[1])))
+        compute_contact_value(row, from_origin(row, (x + arm[0], y + arm[1])))
         for row, arm in zip(box.features, arms, strict=True)
     ]
 
 
 def places(box: CandidateBox, unknowns: Sequence[arb]) -> BoxContacts:
     _, x, y, _ = unknowns
-    (cosine, sine), *arms = turned_pegs(box, unknowns)
+    (cosine, sine), *arms = list_turned_pegs(box, unknowns)
     centers, rays, normals, values, slopes = [], [], [], [], []
     for k, (row, turned) in enumerate(zip(box.features, arms, strict=True)):
         center = (x + turned[0], y + turned[1])
         ray = from_origin(row, center)
         if row[IS_ARC] == 0.0:
-            size = axis_length(row)
+            size = measure_axis_length(row)
             gradient = (row[AXIS_Y] / size, -row[AXIS_X] / size)
             normal = gradient
         else:
@@ -156,7 +156,7 @@ def places(box: CandidateBox, unknowns: Sequence[arb]) -> BoxContacts:
         centers.append(center)
         rays.append(ray)
         normals.append(normal)
-        values.append(contact_value(row, ray))
+        values.append(compute_contact_value(row, ray))
         slopes.append(slope)
     return BoxContacts(box.features, centers, rays, normals, arms, values, slopes, (cosine, sine))
 
@@ -262,9 +262,9 @@ def narrowed(box: CandidateBox, limits: Limits) -> CandidateBox | None:
             return None
         if separation.lower() < least:
             separation = least.lower().union(high)
-    for one, other in parallel_lines(box):
+    for one, other in find_parallel_lines(box):
         for _ in range(STEPS):
-            closer = turned_onto(box, one, other, psi, separation)
+            closer = find_common_orientation(box, one, other, psi, separation)
             if closer is None:
                 return None
             if not closer.rad() < psi.rad():
@@ -286,7 +286,7 @@ def extent(ball: arb) -> tuple[float, float]:
     return middle, nextafter(reach, inf)
 
 
-def parallel_lines(box: CandidateBox) -> Iterator[tuple[int, int]]:
+def find_parallel_lines(box: CandidateBox) -> Iterator[tuple[int, int]]:
     """Pairs of contacts whose features are lines of exactly one direction."""
     lines = [k for k, row in enumerate(box.features) if row[IS_ARC] == 0.0]
     for one, other in combinations(lines, 2):
@@ -295,7 +295,7 @@ def parallel_lines(box: CandidateBox) -> Iterator[tuple[int, int]]:
             yield one, other
 
 
-def turned_onto(box: CandidateBox, one: int, other: int, psi: arb, separation: arb) -> arb | None:
+def find_common_orientation(box: CandidateBox, one: int, other: int, psi: arb, separation: arb) -> arb | None:
     """The part of psi at which two contacts with parallel lines may both touch; None where none is.
 
     Their difference is n R(psi) a - c. The arm a leads from one peg to the other, and c is the distance of
@@ -304,7 +304,7 @@ def turned_onto(box: CandidateBox, one: int, other: int, psi: arb, separation: a
     interval Newton method in u makes psi smaller.
     """
     first, second = box.features[one], box.features[other]
-    size = axis_length(first)
+    size = measure_axis_length(first)
     across, up = first[AXIS_Y] / size, -first[AXIS_X] / size
     moves = int(other >= box.standing) - int(one >= box.standing)
     (x, y), (far_x, far_y) = box.offsets[one], box.offsets[other]

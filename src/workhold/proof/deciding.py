@@ -34,7 +34,7 @@ from workhold.proof.degenerate import hold_nothing
 if TYPE_CHECKING:
     from workhold.proof.interval_newton import BoxOutcome
 
-__all__ = ["Account", "Course", "decided", "is_standing", "merged", "peg_integers"]
+__all__ = ["Account", "Course", "decided", "is_standing", "merged", "read_peg_integers"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -129,7 +129,7 @@ def is_standing(standing: NDArray[Any]) -> NDArray[np.bool_]:
     return np.arange(4) < standing[:, None]
 
 
-def peg_integers(records: Array) -> tuple[IntArray, IntArray, IntArray]:
+def read_peg_integers(records: Array) -> tuple[IntArray, IntArray, IntArray]:
     """Features, columns and rows of records, each (N, 4)."""
     whole = records[:, record.FEATURES : record.PSI].astype(np.int64)
     return whole[:, :4], whole[:, 4:8], whole[:, 8:12]
@@ -137,13 +137,13 @@ def peg_integers(records: Array) -> tuple[IntArray, IntArray, IntArray]:
 
 def peg_places(row: Array, lattice: Lattice) -> list[tuple[float, float]]:
     """Places of the four pegs of one record in mm from the first, without the separation."""
-    _, columns, rows = (numbers[0] for numbers in peg_integers(row[None]))
+    _, columns, rows = (numbers[0] for numbers in read_peg_integers(row[None]))
     moves = ~is_standing(row[[record.STANDING]])[0]
     height = rows * lattice.pitch_y + moves * lattice.row_offset
     return [(float(x), float(y)) for x, y in zip(columns * lattice.pitch_x, height, strict=True)]
 
 
-def box_reach(records: Array, length: float) -> Array:
+def bound_box(records: Array, length: float) -> Array:
     """Distances (N, 4) in mm of the exact (L psi, tail x, tail y, separation) from those of records."""
     turn, radius = (
         length * records[:, record.REACH] + LEAST_REACH,
@@ -226,23 +226,25 @@ def escalated(records: Array, problem: Problem, course: Course) -> tuple[Array, 
         if course.is_stopped:
             left += len(together) - begin
             break
-        proven, rest = interval_newton_in_doubles(block, problem, setting)
+        proven, rest = decide_by_interval_newton(block, problem, setting)
         found.append(proven)
         waiting.append(rest)
         course.advance(max(len(block) - len(rest), 0), len(proven))
         begin += size
         # Most boxes take microseconds, some a tenth of a second.
         size = min(2 * size, LARGEST_BLOCK) if perf_counter() - since < QUICK else OPEN_BLOCK
-    in_balls, reasons, left_out = records_in_balls(merged(np.concatenate(waiting), problem), problem, course)
+    in_balls, reasons, left_out = decide_records_in_balls(
+        merged(np.concatenate(waiting), problem), problem, course
+    )
     return np.concatenate([*found, in_balls]), reasons, left + left_out
 
 
-def interval_newton_in_doubles(records: Array, problem: Problem, setting: Setting) -> tuple[Array, Array]:
+def decide_by_interval_newton(records: Array, problem: Problem, setting: Setting) -> tuple[Array, Array]:
     """Open records contracted: the fixtures found, and the boxes that stay open."""
     slopes = jacobians(records, problem.rows, setting)
     bounded = np.isfinite(records).all(axis=1) & np.isfinite(slopes).all(axis=(1, 2))
     known = records[bounded]
-    reach = box_reach(known, problem.wrench_length)
+    reach = bound_box(known, problem.wrench_length)
     # Where the orientation is known far better than the place, a frame must not mix them.
     reach[reach[:, 0] >= FLAT * reach[:, 1]] = 1.0
     left, _, right = np.linalg.svd(slopes[bounded] * reach[:, None, :])
@@ -259,7 +261,7 @@ def merged(records: Array, problem: Problem) -> Array:
     order = np.lexsort(records.T[::-1])
     records = records[order]
     same = np.asarray((records[1:, : record.PSI] == records[:-1, : record.PSI]).all(axis=1))
-    reach = box_reach(records, problem.wrench_length)
+    reach = bound_box(records, problem.wrench_length)
     middle = records[:, record.PSI : record.REACH] * np.array([problem.wrench_length, 1.0, 1.0, 1.0])
     low, high = middle - reach, middle + reach
     may, heads = np.zeros(len(records), np.int64), np.empty(len(records), np.int64)
@@ -279,7 +281,9 @@ def around(row: Array, low: Array, high: Array, length: float) -> Array:
     return out
 
 
-def records_in_balls(records: Array, problem: Problem, course: Course) -> tuple[Array, list[Undecided], int]:
+def decide_records_in_balls(
+    records: Array, problem: Problem, course: Course
+) -> tuple[Array, list[Undecided], int]:
     """Decides records one by one in ball arithmetic: fixtures, undecided ones, and how many were left.
 
     Records are left when the work is stopped.
@@ -308,7 +312,7 @@ def record_in_balls(row: Array, problem: Problem, course: Course) -> BoxOutcome 
     from workhold.proof.interval_newton import BoxOutcome, solutions_in
 
     length = problem.wrench_length
-    turn, right, up, along = (float(v) for v in box_reach(row[None], length)[0])
+    turn, right, up, along = (float(v) for v in bound_box(row[None], length)[0])
     if not np.isfinite(row).all():
         return BoxOutcome((), UNBOUNDED)
     psi, x, y, separation = (float(v) for v in row[record.PSI : record.REACH])
@@ -324,7 +328,7 @@ def record_in_balls(row: Array, problem: Problem, course: Course) -> BoxOutcome 
 
 
 def undecided(row: Array, problem: Problem, reason: str) -> Undecided:
-    feature, column, line = peg_integers(row[None])
+    feature, column, line = read_peg_integers(row[None])
     faces = problem.faces[feature[0]].tolist()
     standing = np.abs(row[[record.STANDING]]).astype(np.int64)
     kind = problem.toolkit.arrangements[problem.toolkit.arrangement_numbers(standing)[0]].title

@@ -29,7 +29,14 @@ from workhold.proof.ball_contacts import BoxContacts, CandidateBox, places
 from workhold.proof.interval_newton import PRECISIONS, refined
 from workhold.proof.singular_frame import SingularFrame
 
-__all__ = ["SharpReactions", "drawn_circle", "exact_rows", "rounded", "sharp_reactions", "side_of"]
+__all__ = [
+    "SharpReactions",
+    "find_drawn_circle",
+    "make_exact_rows",
+    "rounded",
+    "bound_reactions",
+    "find_drawn_segment",
+]
 
 Vertex = tuple[float, float, float]
 Side = tuple[Vertex, Vertex]
@@ -37,18 +44,18 @@ Side = tuple[Vertex, Vertex]
 SAME_ROW = 1e-9
 
 
-def exact_rows(features: Sequence[int], radii: Sequence[float], problem: Problem) -> list[list[Any]]:
+def make_exact_rows(features: Sequence[int], radii: Sequence[float], problem: Problem) -> list[list[Any]]:
     """Rows (P, 12) of features for pegs of some radii in mm, as balls at the precision in force."""
     workpiece, out = problem.workpiece, []
     for feature, radius in zip(features, radii, strict=True):
         number = int(problem.faces[feature])
         run = next(face.segments for face in workpiece.numbered.faces if face.number == number)
-        first, last = side_of(workpiece, run[0]), side_of(workpiece, run[-1])
-        out.append(exact_row(problem.rows[feature].tolist(), first, last, radius, workpiece.center))
+        first, last = find_drawn_segment(workpiece, run[0]), find_drawn_segment(workpiece, run[-1])
+        out.append(make_exact_row(problem.rows[feature].tolist(), first, last, radius, workpiece.center))
     return out
 
 
-def side_of(workpiece: Workpiece, number: int) -> Side:
+def find_drawn_segment(workpiece: Workpiece, number: int) -> Side:
     """The vertices at both ends of a segment of a workpiece's outlines, by its number through all of them."""
     for loop in (loop for outline in workpiece.every_outline for loop in outline.loops):
         if number < len(loop):
@@ -58,7 +65,7 @@ def side_of(workpiece: Workpiece, number: int) -> Side:
     raise IndexError(number)
 
 
-def drawn_circle(side: Side) -> tuple[arb, arb, arb]:
+def find_drawn_circle(side: Side) -> tuple[arb, arb, arb]:
     """The centre and the radius in mm of the arc that a side is, from its vertices and its bulge."""
     start, end = side
     bulge = arb(start[2])
@@ -68,7 +75,7 @@ def drawn_circle(side: Side) -> tuple[arb, arb, arb]:
     return x, y, (dx * dx + dy * dy).sqrt() * (1 + bulge * bulge) / (4 * abs(bulge))
 
 
-def exact_row(
+def make_exact_row(
     row: list[Any], first: Side, last: Side, radius: float, center: tuple[float, float]
 ) -> list[Any]:
     """The row of a face of several sides: a line from first start to last end, or the first arc's circle."""
@@ -79,7 +86,7 @@ def exact_row(
     made = list(row)
     made[REST_X] = made[REST_Y] = 0.0
     if is_arc:
-        x, y, drawn = drawn_circle(first)
+        x, y, drawn = find_drawn_circle(first)
         made[X], made[Y], made[RADIUS] = x - center[0], y - center[1], drawn + row[SIGN] * arb(radius)
         pairs = [(made[X], row[X]), (made[Y], row[Y]), (made[RADIUS], row[RADIUS])]
     else:
@@ -115,7 +122,7 @@ class SharpReactions:
     push: float
 
 
-def sharp_reactions(box: CandidateBox, limits: Limits) -> SharpReactions | None:
+def bound_reactions(box: CandidateBox, limits: Limits) -> SharpReactions | None:
     """Reactions at the one solution of a box of three locators and a clamp; None where it is not proven.
 
     Precision rises until they are known to the last digit of a double, as nearly all are at the lowest.

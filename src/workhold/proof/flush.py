@@ -28,16 +28,22 @@ from workhold.fixels.toolkit import Carrier
 from workhold.geometry.hull import HullEnd
 from workhold.model.workpiece import Workpiece
 from workhold.proof.deciding import BALLS
-from workhold.proof.exact_contacts import SharpReactions, drawn_circle, exact_rows, rounded, side_of
+from workhold.proof.exact_contacts import (
+    SharpReactions,
+    find_drawn_circle,
+    find_drawn_segment,
+    make_exact_rows,
+    rounded,
+)
 
 __all__ = [
     "Candidate",
     "LatticePair",
     "pressing",
-    "reactions_on_fence",
-    "sharp_contacts",
-    "sharp_place",
-    "verdict_on_pair",
+    "compute_fence_reactions",
+    "locate_contacts_exactly",
+    "locate_contact_exactly",
+    "decide_pair",
 ]
 
 Point = tuple[arb, arb]
@@ -103,7 +109,9 @@ class SharpContacts:
     @classmethod
     def of(cls, contacts: Contacts, problem: Problem) -> SharpContacts:
         """The middles of the balls of contacts."""
-        return cls([middles(point) for point, _, _ in contacts[1:]], middles(null_of(contacts, problem)))
+        return cls(
+            [middles(point) for point, _, _ in contacts[1:]], middles(compute_null_forces(contacts, problem))
+        )
 
 
 def middles(values: Sequence[arb]) -> list[float]:
@@ -131,37 +139,39 @@ def pressing(
                     wall, (_, normal, _), _ = contacts
                     rules = [abs(normal[0]) * wall / problem.wrench_length - LEAST_SEAT, pushes - LEAST_PUSH]
                 else:
-                    rules = closing_rules(contacts, null_of(contacts, problem)[3] * pushes, problem)
-                verdict = verdict_on(rules, contacts, problem)
+                    rules = list_closing_rules(
+                        contacts, compute_null_forces(contacts, problem)[3] * pushes, problem
+                    )
+                verdict = decide_rules(rules, contacts, problem)
             if verdict is not None:
                 return verdict
     return None
 
 
-def verdict_on_pair(pair: LatticePair, problem: Problem) -> tuple[bool | None, SharpContacts | None]:
+def decide_pair(pair: LatticePair, problem: Problem) -> tuple[bool | None, SharpContacts | None]:
     """Returns whether a pair presses the part, None where that stays open, and the pair if it does."""
     with BALLS:
         for bits in PRECISIONS:
             with ctx.workprec(bits):
-                contacts = contacts_of_pair(pair, problem)
+                contacts = find_pair_contacts(pair, problem)
                 if contacts is None:
                     return False, None
-                pressed = sum(null_of(contacts, problem)[:2], arb(0))
-                verdict = verdict_on(closing_rules(contacts, pressed, problem), contacts, problem)
+                pressed = sum(compute_null_forces(contacts, problem)[:2], arb(0))
+                verdict = decide_rules(list_closing_rules(contacts, pressed, problem), contacts, problem)
                 if verdict is not None:
                     return verdict, SharpContacts.of(contacts, problem) if verdict else None
     return None, None
 
 
-def closing_rules(contacts: Contacts, clamping: arb, problem: Problem) -> list[arb]:
+def list_closing_rules(contacts: Contacts, clamping: arb, problem: Problem) -> list[arb]:
     """Numbers that are positive for contacts that close, given their clamping force for these shares."""
-    null, (_, (_, a, _), (_, b, _)) = null_of(contacts, problem), contacts
+    null, (_, (_, a, _), (_, b, _)) = compute_null_forces(contacts, problem), contacts
     size = sum((abs(entry) for entry in null), arb(0))
     rules = [entry - LEAST_CLOSURE * size for entry in null]
     return [*rules, -a[0] * b[0], size - LEAST_SPAN, clamping - LEAST_CLAMPING * size]
 
 
-def verdict_on(rules: Sequence[arb], contacts: Contacts, problem: Problem) -> bool | None:
+def decide_rules(rules: Sequence[arb], contacts: Contacts, problem: Problem) -> bool | None:
     """Whether some rules and those of all ends are kept; None where that is not certain."""
     ends = (end - arb(problem.contact_margin) for _, _, slacks in contacts[1:] for end in slacks)
     every = [*rules, *ends]
@@ -170,7 +180,7 @@ def verdict_on(rules: Sequence[arb], contacts: Contacts, problem: Problem) -> bo
     return True if all(rule > 0 for rule in every) else None
 
 
-def null_of(contacts: Contacts, problem: Problem) -> list[arb]:
+def compute_null_forces(contacts: Contacts, problem: Problem) -> list[arb]:
     """Forces of the wall's two ends and both pegs, not scaled; see ``search.wall_contacts.closure``."""
     wall, ((u, v), a, _), ((p, q), b, _) = contacts
     length, across, ahead = arb(problem.wrench_length), abs(a[0]), abs(b[0])
@@ -185,14 +195,14 @@ def push_of(contacts: Contacts, push: tuple[float, float]) -> arb:
     return -(normal[0] * push[0] + normal[1] * push[1])
 
 
-def sharp_contacts(candidate: Candidate, problem: Problem, plate: Carrier) -> SharpContacts | None:
+def locate_contacts_exactly(candidate: Candidate, problem: Problem, plate: Carrier) -> SharpContacts | None:
     """A candidate that presses the part, to the last digit; None where it touches nothing."""
     with BALLS, ctx.workprec(PRECISIONS[-1]):
         contacts = contacts_of(candidate, problem, plate)
         return None if contacts is None else SharpContacts.of(contacts, problem)
 
 
-def sharp_place(
+def locate_contact_exactly(
     edge: int, row: int, feature: int, branch: float, problem: Problem, plate: Carrier
 ) -> tuple[list[float], list[float], float] | None:
     """The contact of a peg in a row of a plate with a feature, the part on a hull edge, to the last digit.
@@ -201,15 +211,15 @@ def sharp_place(
     """
     with BALLS, ctx.workprec(PRECISIONS[-1]):
         start, tangent, _ = line_of(edge, problem.workpiece)
-        (drawn,) = exact_rows([feature], [problem.frame.standing.peg_radius], problem)
-        contact = BallFeature.of(drawn, start, tangent).contact_on(row_level(plate, row), False, branch)
+        (drawn,) = make_exact_rows([feature], [problem.frame.standing.peg_radius], problem)
+        contact = BallFeature.of(drawn, start, tangent).contact_on(find_row_level(plate, row), False, branch)
         if contact is None:
             return None
         point, normal, slacks = contact
         return middles(point), middles(normal), min(middles(slacks), default=inf)
 
 
-def reactions_on_fence(
+def compute_fence_reactions(
     candidate: Candidate, problem: Problem, plate: Carrier, push: tuple[float, float]
 ) -> SharpReactions | None:
     """Forces of the wall's two ends and the locator per unit of the clamp's, and the clamp's push.
@@ -237,29 +247,31 @@ def contacts_of(candidate: Candidate, problem: Problem, plate: Carrier) -> Conta
     start, tangent, wall = line_of(candidate.edge, problem.workpiece)
     radii = problem.frame.standing.peg_radius, problem.frame.moving.peg_radius
     one, other = (
-        BallFeature.of(row, start, tangent) for row in exact_rows(candidate.features, radii, problem)
+        BallFeature.of(row, start, tangent) for row in make_exact_rows(candidate.features, radii, problem)
     )
-    locator = one.contact_on(row_level(plate, candidate.row), False, candidate.branches[0])
+    locator = one.contact_on(find_row_level(plate, candidate.row), False, candidate.branches[0])
     if locator is None:
         return None
     if candidate.is_upright:
         level = locator[0][0] + arb(plate.pitch[0]) * candidate.line
     else:
-        level = row_level(plate, candidate.line)
+        level = find_row_level(plate, candidate.line)
     clamp = other.contact_on(level, candidate.is_upright, candidate.branches[1])
     return None if clamp is None else (wall, locator, clamp)
 
 
-def row_level(plate: Carrier, row: int) -> arb:
+def find_row_level(plate: Carrier, row: int) -> arb:
     """How high a row of a plate is above the wall, in mm."""
     return arb(plate.offset[1]) + arb(plate.pitch[1]) * row
 
 
-def contacts_of_pair(pair: LatticePair, problem: Problem) -> Contacts | None:
+def find_pair_contacts(pair: LatticePair, problem: Problem) -> Contacts | None:
     """The contacts of both pegs of a pair; None where their curves are not shown to cross."""
     start, tangent, wall = line_of(pair.edge, problem.workpiece)
     radii = [problem.frame.moving.peg_radius] * 2
-    one, other = (BallFeature.of(row, start, tangent) for row in exact_rows(pair.features, radii, problem))
+    one, other = (
+        BallFeature.of(row, start, tangent) for row in make_exact_rows(pair.features, radii, problem)
+    )
     across, up = (arb(a) * int(k) for a, k in zip(problem.toolkit.moving.pitch, pair.step, strict=True))
     between = other.middle[0] - across - one.middle[0], other.middle[1] - up - one.middle[1]
     ray = crossing_of(one, other, between, pair.branch)
@@ -271,7 +283,7 @@ def contacts_of_pair(pair: LatticePair, problem: Problem) -> Contacts | None:
 def line_of(number: int, workpiece: Workpiece) -> tuple[Point, Point, arb]:
     """Start of a hull edge about the workpiece's center, unit vector along it, and its length, as drawn."""
     edge, center = workpiece.hull_edges[number], workpiece.center
-    (x, y, radius), (x1, y1, other) = (drawn_end(end, workpiece) for end in (edge.start, edge.end))
+    (x, y, radius), (x1, y1, other) = (find_drawn_end(end, workpiece) for end in (edge.start, edge.end))
     dx, dy = x1 - x, y1 - y
     # The common tangent of two circles on whose left both lie; a corner is a circle of radius 0.
     across = radius - other
@@ -281,15 +293,15 @@ def line_of(number: int, workpiece: Workpiece) -> tuple[Point, Point, arb]:
     return (x - center[0] + radius * ty, y - center[1] - radius * tx), (tx, ty), length
 
 
-def drawn_end(end: HullEnd, workpiece: Workpiece) -> tuple[arb, arb, arb]:
+def find_drawn_end(end: HullEnd, workpiece: Workpiece) -> tuple[arb, arb, arb]:
     """Centre and radius in mm of an end of a hull edge: its arc as drawn, or a corner, of radius 0."""
     rounded_once = arb(end.center[0]), arb(end.center[1]), arb(end.radius)
     if end.radius == 0.0:
         return rounded_once
     own, _ = workpiece.outline_of(WALL)
-    side = side_of(own, own.outer_faces[end.faces[0]].segments[0])
+    side = find_drawn_segment(own, own.outer_faces[end.faces[0]].segments[0])
     # An arc may be a run of chords in the drawing.
-    return drawn_circle(side) if abs(side[0][2]) >= STRAIGHT else rounded_once
+    return find_drawn_circle(side) if abs(side[0][2]) >= STRAIGHT else rounded_once
 
 
 @frozen

@@ -26,7 +26,7 @@ from workhold.kernels.base.tables import Limits
 from workhold.model.search_report import AT_AN_EDGE, NEARLY_DOUBLE
 from workhold.proof.ball_contacts import (
     CandidateBox,
-    contact_values,
+    compute_contact_values,
     extent,
     is_empty,
     narrowed,
@@ -34,8 +34,14 @@ from workhold.proof.ball_contacts import (
     slacks,
     wrench_minors,
 )
-from workhold.proof.singular_frame import SingularFrame, decoupled, is_smaller, newton_step, thirds
-from workhold.proof.solution_curve import roots_on_curve
+from workhold.proof.singular_frame import (
+    SingularFrame,
+    cut_in_thirds,
+    decouple_equations,
+    is_smaller,
+    newton_step,
+)
+from workhold.proof.solution_curve import find_roots_on_curve
 
 __all__ = ["BoxOutcome", "solutions_in"]
 
@@ -71,11 +77,11 @@ def solutions_in(
         if smaller_box is None:
             return BoxOutcome((), "")
         frame = SingularFrame.of(smaller_box, limits)
-        roots = roots_in_boxes(frame, limits, is_stopped, FEW_BOXES)
+        roots = isolate_roots_in_boxes(frame, limits, is_stopped, FEW_BOXES)
         if roots is None:
-            roots = roots_on_curve(frame, limits)
+            roots = find_roots_on_curve(frame, limits)
         if roots is None:
-            roots = roots_in_boxes(frame, limits, is_stopped, MOST_BOXES)
+            roots = isolate_roots_in_boxes(frame, limits, is_stopped, MOST_BOXES)
     if roots is None:
         return None if is_stopped() else BoxOutcome((), NEARLY_DOUBLE)
     return judged(frame, roots, limits)
@@ -93,11 +99,11 @@ def located(box: CandidateBox, limits: Limits) -> CandidateBox | None:
         before = place[:3]
         for turn in range(4):
             middle = [arb(one.mid()) for one in place[:3]]
-            values = contact_values(box, [*middle, place[3]])[:3]
+            values = compute_contact_values(box, [*middle, place[3]])[:3]
             slopes = [row[:3] for row in places(box, place).slopes[:3]]
             if turn < 3:
                 values, slopes = values[turn:] + values[:turn], slopes[turn:] + slopes[:turn]
-            elif (combined := decoupled(values, slopes)) is not None:
+            elif (combined := decouple_equations(values, slopes)) is not None:
                 values, slopes = combined
             else:
                 break
@@ -121,7 +127,7 @@ def located(box: CandidateBox, limits: Limits) -> CandidateBox | None:
     return evolve(box, middle=middles, reach=reaches)
 
 
-def roots_in_boxes(
+def isolate_roots_in_boxes(
     frame: SingularFrame, limits: Limits, is_stopped: Callable[[], bool], most: int
 ) -> list[list[arb]] | None:
     """Finds parts of a box with one solution each; None where that takes ``most`` boxes, or when stopped."""
@@ -141,7 +147,7 @@ def roots_in_boxes(
         if smaller is not None and unique:
             roots.append(smaller)
         elif smaller is not None:
-            waiting += [smaller] if is_smaller(smaller, place) else thirds(smaller)
+            waiting += [smaller] if is_smaller(smaller, place) else cut_in_thirds(smaller)
     return None
 
 

@@ -18,9 +18,9 @@ from flint import arb, arb_mat
 from numpy.typing import NDArray
 
 from workhold.kernels.base.tables import Limits
-from workhold.proof.ball_contacts import BoxContacts, CandidateBox, contact_values, places
+from workhold.proof.ball_contacts import BoxContacts, CandidateBox, compute_contact_values, places
 
-__all__ = ["SingularFrame", "decoupled", "is_smaller", "newton_step", "thirds"]
+__all__ = ["SingularFrame", "decouple_equations", "is_smaller", "newton_step", "cut_in_thirds"]
 
 # The exact solution of a box may lie on its rim, so boxes are made larger by this part.
 RIM = 0.1
@@ -75,7 +75,7 @@ class SingularFrame:
 
     def values(self, place: Sequence[arb]) -> list[arb]:
         """The combined contact equations at a place in the frame."""
-        values = contact_values(self.box, self.unknowns(place))
+        values = compute_contact_values(self.box, self.unknowns(place))
         return list((self.combining * arb_mat(4, 1, values)).entries())
 
     def slopes(self, here: BoxContacts) -> list[list[arb]]:
@@ -97,14 +97,14 @@ class SingularFrame:
         middle = [arb(p.mid()) for p in place]
         values, slopes = self.values(middle), self.slopes(here)
         if regular:
-            combined = decoupled(values, slopes)
+            combined = decouple_equations(values, slopes)
             if combined is None:
                 return place, False
             values, slopes = combined
         return newton_step(place, values, slopes)
 
 
-def decoupled(
+def decouple_equations(
     values: Sequence[arb], slopes: Sequence[Sequence[arb]]
 ) -> tuple[list[arb], list[list[arb]]] | None:
     """N equations and their Jacobian, combined by its inverse at the middle; None where it has none there."""
@@ -148,7 +148,7 @@ def is_smaller(part: list[arb], place: list[arb], share: float = SMALLER) -> boo
     return any(one.rad() < share * whole.rad() for one, whole in zip(part, place, strict=True))
 
 
-def thirds(place: list[arb]) -> list[list[arb]]:
+def cut_in_thirds(place: list[arb]) -> list[list[arb]]:
     """A place cut in three where it is longest, a narrow part in the middle, all a little larger.
 
     A double solution is in the middle of most boxes. Cut there, it would be on the rim of both halves.

@@ -26,10 +26,10 @@ from attrs import frozen
 from flint import arb, arb_mat, arb_series, ctx
 
 from workhold.kernels.base.tables import Limits
-from workhold.proof.ball_contacts import contact_values, is_empty
-from workhold.proof.singular_frame import SingularFrame, is_smaller, newton_step, thirds
+from workhold.proof.ball_contacts import compute_contact_values, is_empty
+from workhold.proof.singular_frame import SingularFrame, cut_in_thirds, is_smaller, newton_step
 
-__all__ = ["SolutionCurve", "TaylorForm", "roots_on_curve"]
+__all__ = ["SolutionCurve", "TaylorForm", "find_roots_on_curve"]
 
 # The order n of the remainder: two more than that of the triple roots that whole numbers make.
 ORDER = 5
@@ -112,7 +112,7 @@ class SolutionCurve:
 
 
 @contextmanager
-def terms_of_series(count: int) -> Iterator[None]:
+def set_series_terms(count: int) -> Iterator[None]:
     """Power series are worked with to so many terms."""
     before, ctx.cap = ctx.cap, count
     try:
@@ -121,15 +121,15 @@ def terms_of_series(count: int) -> Iterator[None]:
         ctx.cap = before
 
 
-def roots_on_curve(frame: SingularFrame, limits: Limits) -> list[list[arb]] | None:
+def find_roots_on_curve(frame: SingularFrame, limits: Limits) -> list[list[arb]] | None:
     """Finds all solutions of a box that may be fixtures, each alone in a part of the box.
 
     None where the well determined coordinates are not shown to be a function of the other one, or where f
     vanishes so nearly that ``MOST_PARTS`` parts do not decide.
     """
     *well, t = frame.start()
-    well, is_curve = along_curve(frame, well, t)
-    whole = curve_about(frame, well, t) if is_curve else None
+    well, is_curve = bound_along_curve(frame, well, t)
+    whole = find_curve_about(frame, well, t) if is_curve else None
     if whole is None:
         return None
     waiting, roots = [(whole, t)], list[tuple[SolutionCurve, arb]]()
@@ -144,8 +144,8 @@ def roots_on_curve(frame: SingularFrame, limits: Limits) -> list[list[arb]] | No
             place = curve.place(t)
             if not is_empty(frame.box, frame.places(place), limits):
                 if curve.is_blurred(t):
-                    curve = curve_about(frame, place[:3], t) or curve
-                waiting += [(curve, part) for (part,) in thirds([t])]
+                    curve = find_curve_about(frame, place[:3], t) or curve
+                waiting += [(curve, part) for (part,) in cut_in_thirds([t])]
         elif not any(is_same(whole, known, root) for _, known in roots for root in found):
             roots += [(curve, root) for root in found]
     return None
@@ -177,7 +177,7 @@ def newton(curve: SolutionCurve, t: arb) -> list[arb] | None:
 def sharpened(frame: SingularFrame, place: list[arb]) -> list[arb]:
     """The place of one root known better, on the curve expanded there."""
     for _ in range(SHARPENINGS):
-        curve = curve_about(frame, place[:3], place[3])
+        curve = find_curve_about(frame, place[:3], place[3])
         found = newton(curve, place[3]) if curve is not None and place[3].rad() > SHARP else None
         if curve is None or not found:
             break
@@ -185,19 +185,19 @@ def sharpened(frame: SingularFrame, place: list[arb]) -> list[arb]:
     return place
 
 
-def curve_about(frame: SingularFrame, well: list[arb], t: arb) -> SolutionCurve | None:
+def find_curve_about(frame: SingularFrame, well: list[arb], t: arb) -> SolutionCurve | None:
     """The curve where its last coordinate is in a ball; it is known to be there, and where the others are."""
     middle = arb(t.mid())
-    whole, begun = along_curve(frame, well, t)[0], along_curve(frame, well, middle)[0]
-    with terms_of_series(ORDER + 1):
-        at_middle, anywhere = power_series(frame, begun, middle), power_series(frame, whole, t)
+    whole, begun = bound_along_curve(frame, well, t)[0], bound_along_curve(frame, well, middle)[0]
+    with set_series_terms(ORDER + 1):
+        at_middle, anywhere = expand_power_series(frame, begun, middle), expand_power_series(frame, whole, t)
     if at_middle is None or anywhere is None:
         return None
     forms = [TaylorForm(near[:ORDER], far[ORDER]) for near, far in zip(at_middle, anywhere, strict=True)]
     return SolutionCurve(middle, forms[:3], forms[3])
 
 
-def along_curve(frame: SingularFrame, well: list[arb], t: arb) -> tuple[list[arb], bool]:
+def bound_along_curve(frame: SingularFrame, well: list[arb], t: arb) -> tuple[list[arb], bool]:
     """The part of three coordinates that is passed for the fourth in a ball, and whether by a curve.
 
     It is by one where a step of Hansen and Sengupta in three unknowns maps the part into its own inside, for
@@ -233,7 +233,7 @@ def inverse_of(slopes: Sequence[Sequence[arb]], middle: bool = False) -> Any:
         return None
 
 
-def power_series(frame: SingularFrame, well: list[arb], t: arb) -> list[list[arb]] | None:
+def expand_power_series(frame: SingularFrame, well: list[arb], t: arb) -> list[list[arb]] | None:
     """Coefficients of q_1, q_2, q_3 and f about a point of the curve, or about all points in a part of it.
 
     The residual of order k of the three equations is linear in the coefficients of order k. So these are
@@ -244,19 +244,19 @@ def power_series(frame: SingularFrame, well: list[arb], t: arb) -> list[list[arb
         return None
     terms, last = [[value] for value in well], arb_series([t, 1])
     for k in range(1, ORDER + 1):
-        values = series_values(frame, [*(arb_series(known) for known in terms), last])
+        values = compute_series_values(frame, [*(arb_series(known) for known in terms), last])
         steps = (inverse * arb_mat(3, 1, [value[k] for value in values[:3]])).entries()
         for known, step in zip(terms, steps, strict=True):
             known.append(-step)
-    rest = series_values(frame, [*(arb_series(known) for known in terms), last])[3]
+    rest = compute_series_values(frame, [*(arb_series(known) for known in terms), last])[3]
     return [*terms, [rest[k] for k in range(ORDER + 1)]]
 
 
-def series_values(frame: SingularFrame, place: Sequence[Any]) -> list[Any]:
+def compute_series_values(frame: SingularFrame, place: Sequence[Any]) -> list[Any]:
     """The combined contact equations at power series of the frame's coordinates."""
     turn, *steps = product(frame.turning, place)
     unknowns = [m + s for m, s in zip(frame.box.middle, [turn / frame.length, *steps], strict=True)]
-    return product(frame.combining, contact_values(frame.box, unknowns))
+    return product(frame.combining, compute_contact_values(frame.box, unknowns))
 
 
 def product(matrix: Any, vector: Sequence[Any]) -> list[Any]:

@@ -15,14 +15,14 @@ import numpy as np
 from attrs import define, evolve, field, frozen
 from numpy.typing import NDArray
 
-from workhold.contact.features import end_distances
+from workhold.contact.features import measure_end_distances
 from workhold.contact.problem import Frame, Problem
-from workhold.contact.swept import keeps_of
-from workhold.contact.trimming import most_in_the_way
+from workhold.contact.swept import list_swept_clearances
+from workhold.contact.trimming import find_line_most_in_the_way
 from workhold.conventions import END_SLACK, GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE
 from workhold.errors import InputError, listed
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.symmetry import rotated
+from workhold.geometry.symmetry import rotate_vectors
 from workhold.kernels.base.feature import HIGH_SLACK, LOW_SLACK
 from workhold.kernels.contact import record
 from workhold.limits import thread_count
@@ -30,7 +30,7 @@ from workhold.listing.asked import are_precise, touch_all
 from workhold.listing.canonical_form import Candidates, candidates_of, canonical_form, listed_once
 from workhold.listing.placing import placeable, placed
 from workhold.listing.ranking import measured
-from workhold.model.fixture_table import FixtureTable, fixture_at
+from workhold.model.fixture_table import FixtureTable, make_fixture_of_row
 from workhold.model.quality import LOCATION_ERROR
 from workhold.model.query import Query
 from workhold.model.requirements import Restrictions
@@ -39,25 +39,25 @@ from workhold.proof.deciding import is_standing
 from workhold.search.cells import run_blocks
 from workhold.search.shares import has_body_to_pass
 from workhold.search.toolkit_search import ToolkitSearch, contacts_of
-from workhold.statics.contact_matrix import outward_normals
+from workhold.statics.contact_matrix import compute_outward_normals
 from workhold.units import Unit
 
 __all__ = [
     "Removals",
     "SECOND_CLAMP",
-    "all_contacts",
-    "body_rule",
-    "line_in_the_way",
-    "program_rule",
-    "removals_of",
-    "stroke_rule",
+    "find_all_contacts",
+    "describe_body_rule",
+    "find_program_line_in_the_way",
+    "describe_program_rule",
+    "count_removals",
+    "describe_stroke_rule",
 ]
 
 # What is asked last of locators and a clamp, where two clamps are needed.
 SECOND_CLAMP = "a second clamp that holds the part together with the first, and is needed for it"
 
 
-def with_some_before(removals: Iterable[Removal]) -> tuple[Removal, ...]:
+def drop_removals_of_nothing(removals: Iterable[Removal]) -> tuple[Removal, ...]:
     """Removals without those of rules for which no contact was left."""
     return tuple(removal for removal in removals if removal.before > 0)
 
@@ -74,7 +74,7 @@ class Removals:
     """
 
     first: int
-    removals: tuple[Removal, ...] = field(converter=with_some_before)
+    removals: tuple[Removal, ...] = field(converter=drop_removals_of_nothing)
     nearest: NearestMiss | None
 
     @classmethod
@@ -132,7 +132,7 @@ class ContactSets:
         return ContactSets(self.candidates.take(chosen), *rest)
 
 
-def removals_of(problem: Problem, threads: int | None, unit: Unit, alone: bool) -> Removals:
+def count_removals(problem: Problem, threads: int | None, unit: Unit, alone: bool) -> Removals:
     """How many contacts there are without any restriction, what each rule takes away of them, and what comes
     nearest.
 
@@ -141,8 +141,8 @@ def removals_of(problem: Problem, threads: int | None, unit: Unit, alone: bool) 
     alone : whether one clamp is to hold the part; of two the contacts are those of three locators and one of
         them. None comes nearest, as each is a clamp short.
     """
-    contacts = all_contacts(problem, threads)
-    first, removals = restriction_removals(problem, threads, len(contacts.margin))
+    contacts = find_all_contacts(problem, threads)
+    first, removals = count_restriction_removals(problem, threads, len(contacts.margin))
     if not alone:
         return Removals(first, [*removals, Removal(SECOND_CLAMP, len(contacts.margin), 0)], None)
     nearest = None
@@ -152,12 +152,12 @@ def removals_of(problem: Problem, threads: int | None, unit: Unit, alone: bool) 
         kept = keeps(contacts)
         removals.append(Removal(rule, len(kept), int(kept.sum())))
         if not kept.any():
-            nearest = nearest_miss(contacts, miss(contacts), problem)
+            nearest = make_nearest_miss(contacts, miss(contacts), problem)
         contacts = contacts.take(kept)
     return Removals(first, removals, nearest)
 
 
-def all_contacts(problem: Problem, threads: int | None) -> ContactSets:
+def find_all_contacts(problem: Problem, threads: int | None) -> ContactSets:
     """Every set of four simultaneous contacts of a problem, whatever the rules say of it."""
     workers = thread_count(threads)
     search = ToolkitSearch.of(problem, counting=True, most_listed=MOST_LISTED, threads=workers)
@@ -167,19 +167,19 @@ def all_contacts(problem: Problem, threads: int | None) -> ContactSets:
     together = together[(together[:, record.STANDING] > 0.0) & np.isfinite(together).all(axis=1)]
     c = listed_once(facing(canonical_form(candidates_of(together, problem), swapped), swapped))
     rows = problem.rows[c.feature]
-    normals = outward_normals(rows, c.point)
+    normals = compute_outward_normals(rows, c.point)
     # All entries are -1 where the wrenches do not span the space.
     spans = (c.null > -1.0).any(axis=1)
     null = c.null * np.where(c.null.min(axis=1) >= -c.null.max(axis=1), 1.0, -1.0)[:, None]
-    along, _ = rotated(normals[..., 0], normals[..., 1], c.theta[:, None])
+    along, _ = rotate_vectors(normals[..., 0], normals[..., 1], c.theta[:, None])
     return ContactSets(
         evolve(c, force=null),
         margin=np.where(spans, null.min(axis=1, initial=1.0), -1.0),
         null=null,
         clamping=-problem.toolkit.clamping * (null * along * is_standing(c.standing)).sum(axis=1),
-        end_distance=(end_distances(rows, c.point) + rows[..., LOW_SLACK : HIGH_SLACK + 1] - END_SLACK).min(
-            axis=(1, 2), initial=np.inf
-        ),
+        end_distance=(
+            measure_end_distances(rows, c.point) + rows[..., LOW_SLACK : HIGH_SLACK + 1] - END_SLACK
+        ).min(axis=(1, 2), initial=np.inf),
     )
 
 
@@ -190,12 +190,12 @@ def facing(c: Candidates, swapped: int) -> Candidates:
     Either chord may be on the left, and each set of four contacts is found both ways. Where neither is
     farther right, the lower one is taken for the right one.
     """
-    across, upward = rotated(c.point[..., 0], c.point[..., 1], c.theta[:, None])
+    across, upward = rotate_vectors(c.point[..., 0], c.point[..., 1], c.theta[:, None])
     right, lower = (v[:, 2:].sum(axis=1) - v[:, :2].sum(axis=1) for v in (across, -upward))
     return c.take((c.standing != swapped) | (right > EVEN) | ((right > -EVEN) & (lower > 0.0)))
 
 
-def restriction_removals(problem: Problem, threads: int | None, left: int) -> tuple[int, list[Removal]]:
+def count_restriction_removals(problem: Problem, threads: int | None, left: int) -> tuple[int, list[Removal]]:
     """Simultaneous contacts without any restriction, and what each kind of restriction takes away of them.
 
     Parameters
@@ -215,7 +215,7 @@ def restriction_removals(problem: Problem, threads: int | None, left: int) -> tu
         zones = Restrictions(avoid=asked.avoid, zones=asked.zones)
         steps.append(("keep-out zones", zones, toolkit.without(holes), bare))
     if whole.program is not None:
-        steps.append((program_rule(whole), evolve(asked, angles=()), toolkit.without(holes), whole))
+        steps.append((describe_program_rule(whole), evolve(asked, angles=()), toolkit.without(holes), whole))
     if holes or bodies:
         steps.append((toolkit.wording.holes, evolve(asked, angles=()), toolkit, whole))
     if asked.angles:
@@ -247,7 +247,7 @@ def rules(problem: Problem, unit: Unit) -> list[Rule]:
             (
                 "contact margin",
                 lambda c: c.end_distance >= margin - END_SLACK,
-                partial(short_of_margin, margin, unit),
+                partial(find_miss_of_margin, margin, unit),
             )
         )
     if frame.toolkit.gap is not None:
@@ -255,16 +255,16 @@ def rules(problem: Problem, unit: Unit) -> list[Rule]:
             (
                 "smallest gap",
                 lambda c: c.candidates.gap >= frame.gap - GAP_SLACK,
-                partial(too_near, frame, unit),
+                partial(find_miss_of_gap, frame, unit),
             )
         )
-    out.append(("closure", lambda c: c.margin > LEAST_CLOSURE, open_contact))
-    out.append(("clamping", lambda c: c.clamping > LEAST_CLAMPING, partial(unclamped, frame)))
-    out += [*placing_rules(problem), *rules_asked(problem, unit)]
-    return [*out, ("the exact test of what is left", no_contact, on_the_edge)]
+    out.append(("closure", lambda c: c.margin > LEAST_CLOSURE, find_miss_of_closure))
+    out.append(("clamping", lambda c: c.clamping > LEAST_CLAMPING, partial(find_miss_of_clamping, frame)))
+    out += [*list_placing_rules(problem), *list_fixture_rules(problem, unit)]
+    return [*out, ("the exact test of what is left", keep_no_contact, find_miss_of_exact_test)]
 
 
-def placing_rules(problem: Problem) -> list[Rule]:
+def list_placing_rules(problem: Problem) -> list[Rule]:
     """The rules about where fixtures stand on the carriers, as far as the toolkit and the user have any.
 
     The angles come after the pegs' bodies, and each rule is asked together with those before it.
@@ -289,7 +289,7 @@ def placing_rules(problem: Problem) -> list[Rule]:
         if limit.bounds == "travel" and has_body_to_pass(problem.query):
             # First without what the tools do to the body that the stroke gives the clamp.
             rule(limit.rule, number + 1, ruled_out, problem.query.without_program)
-            rule(body_rule(problem.query), number + 1, ruled_out)
+            rule(describe_body_rule(problem.query), number + 1, ruled_out)
         else:
             rule(limit.rule, number + 1, ruled_out)
     if first == len(limits) and asked.angles:
@@ -297,7 +297,7 @@ def placing_rules(problem: Problem) -> list[Rule]:
     return out
 
 
-def rules_asked(problem: Problem, unit: Unit) -> list[Rule]:
+def list_fixture_rules(problem: Problem, unit: Unit) -> list[Rule]:
     """The rules that are asked of each fixture by itself, as far as the user has any."""
     query, out = problem.query, list[Rule]()
 
@@ -331,12 +331,12 @@ def rules_asked(problem: Problem, unit: Unit) -> list[Rule]:
     return out
 
 
-def no_contact(contacts: ContactSets) -> BoolArray:
+def keep_no_contact(contacts: ContactSets) -> BoolArray:
     """None of the contacts."""
     return np.zeros(len(contacts.margin), np.bool_)
 
 
-def short_of_margin(margin: float, unit: Unit, c: ContactSets) -> tuple[int, str]:
+def find_miss_of_margin(margin: float, unit: Unit, c: ContactSets) -> tuple[int, str]:
     """The contact whose pegs are farthest from the ends of their faces."""
     index = int(c.end_distance.argmax())
     return index, (
@@ -345,7 +345,7 @@ def short_of_margin(margin: float, unit: Unit, c: ContactSets) -> tuple[int, str
     )
 
 
-def too_near(frame: Frame, unit: Unit, c: ContactSets) -> tuple[int, str]:
+def find_miss_of_gap(frame: Frame, unit: Unit, c: ContactSets) -> tuple[int, str]:
     """The contact whose moving pegs are farthest along the travel from the others."""
     index = int(c.candidates.gap.argmax())
     gap = c.candidates.gap[index]
@@ -357,7 +357,7 @@ def too_near(frame: Frame, unit: Unit, c: ContactSets) -> tuple[int, str]:
     )
 
 
-def open_contact(c: ContactSets) -> tuple[int, str]:
+def find_miss_of_closure(c: ContactSets) -> tuple[int, str]:
     """The contact that comes nearest to force closure."""
     index = int(c.margin.argmax())
     if c.margin[index] > -ROUNDING:
@@ -371,7 +371,7 @@ def open_contact(c: ContactSets) -> tuple[int, str]:
     return index, f"{many} would have to pull the part instead of pressing on it: the part can slip out."
 
 
-def unclamped(frame: Frame, c: ContactSets) -> tuple[int, str]:
+def find_miss_of_clamping(frame: Frame, c: ContactSets) -> tuple[int, str]:
     """The contact that comes nearest to being clamped."""
     return int(c.clamping.argmax()), f"it holds when {frame.toolkit.wording.backwards}."
 
@@ -383,21 +383,21 @@ def no_place(noun: str, words: str, c: ContactSets) -> tuple[int, str]:
     ), f"it would hold, but the limits that were given for the {noun} forbid it: {words}."
 
 
-def on_the_edge(c: ContactSets) -> tuple[int, str]:
+def find_miss_of_exact_test(c: ContactSets) -> tuple[int, str]:
     """The best of what the exact test removes."""
     return int(c.margin.argmax()), "it meets every rule to within rounding, but not exactly."
 
 
-def nearest_miss(contacts: ContactSets, miss: tuple[int, str], problem: Problem) -> NearestMiss:
+def make_nearest_miss(contacts: ContactSets, miss: tuple[int, str], problem: Problem) -> NearestMiss:
     """A contact that is no fixture, placed in a toolkit without limits."""
     index, words = miss
     toolkit = problem.toolkit.without(problem.toolkit.limits)
     part = evolve(problem, query=evolve(problem.query, toolkit=toolkit, restrictions=None))
     table = placed(contacts.candidates.take(np.array([index])), part)
-    return NearestMiss(fixture_at(table, toolkit, 0, problem.workpiece), words)
+    return NearestMiss(make_fixture_of_row(table, toolkit, 0, problem.workpiece), words)
 
 
-def line_in_the_way(query: Query) -> int | None:
+def find_program_line_in_the_way(query: Query) -> int | None:
     """The line of a query's program whose tool passes the longest stretch of places for pegs.
 
     None without a program, where it passes none, and where there are no pegs.
@@ -410,27 +410,27 @@ def line_in_the_way(query: Query) -> int | None:
         return None
     carriers = Frame.of(query.toolkit, problem.diameter).carriers
     for locus, carrier in zip(problem.loci, carriers, strict=True):
-        pieces, beyond = keeps_of(query, carrier)[0]
-        line = most_in_the_way([feature.segment for feature in locus], pieces, beyond)
+        pieces, beyond = list_swept_clearances(query, carrier)[0]
+        line = find_line_most_in_the_way([feature.segment for feature in locus], pieces, beyond)
         if line is not None:
             return line
     return None
 
 
-def program_rule(query: Query) -> str:
+def describe_program_rule(query: Query) -> str:
     """What a program asks, as the rule that takes contacts away.
 
     It reads such as "tools of the program, most in line 7".
     """
-    line = line_in_the_way(query)
+    line = find_program_line_in_the_way(query)
     return "tools of the program" + ("" if line is None else f", most in line {line}")
 
 
-def body_rule(query: Query) -> str:
+def describe_body_rule(query: Query) -> str:
     """What a program asks of the bodies of clamps, from the tip back to the hole."""
     return f"body of the {query.toolkit.moving.noun} clear of the program's tools"
 
 
-def stroke_rule(query: Query, rule: str) -> str:
+def describe_stroke_rule(query: Query, rule: str) -> str:
     """The rule on a clamp's stroke, with what a program asks of the body that the clamp then has."""
-    return f"{rule}, {body_rule(query)}" if has_body_to_pass(query) else rule
+    return f"{rule}, {describe_body_rule(query)}" if has_body_to_pass(query) else rule

@@ -18,7 +18,14 @@ from workhold.contact.curves import CurveTable
 from workhold.contact.problem import Progress
 from workhold.listing.collector import Needed
 
-__all__ = ["Block", "cell_edges", "cost_of", "member_counts", "members_of_cell", "run_blocks"]
+__all__ = [
+    "Block",
+    "divide_into_cells",
+    "estimate_cost",
+    "count_curves_in_cells",
+    "find_curves_in_cell",
+    "run_blocks",
+]
 
 Records = NDArray[np.float64]
 
@@ -58,32 +65,32 @@ class Block:
     dense: float = 1.0
 
 
-def cost_of(blocks: Iterable[Block]) -> float:
+def estimate_cost(blocks: Iterable[Block]) -> float:
     """A guess of how long blocks take, in the unit of ``Block.cost``."""
     return sum(block.cost for block in blocks)
 
 
-def cell_edges(half_turns: int, cells: int) -> NDArray[np.float64]:
+def divide_into_cells(half_turns: int, cells: int) -> NDArray[np.float64]:
     """Edges (cells + 1,) in radians of equal cells over one or two half turns of orientations."""
     return FIRST_ORIENTATION + half_turns * pi * np.arange(cells + 1) / cells
 
 
-def members_of_cell(table: CurveTable, low: float, high: float) -> NDArray[np.int64]:
+def find_curves_in_cell(table: CurveTable, low: float, high: float) -> NDArray[np.int64]:
     """Indices of the curves that exist somewhere in a cell of orientations (or within 1e-9 of it)."""
     begin = (low - SLACK) % tau
     end = begin + (high - low) + 2 * SLACK
     sector = int(begin / SECTOR)
     if not (sector * SECTOR <= begin and end <= (sector + 1) * SECTOR):
-        return members_between(table.spans, begin, end)
+        return find_curves_between(table.spans, begin, end)
     # Those of a sector are sought once for all of its cells.
     if sector not in table.sectors:
-        table.sectors[sector] = members_between(table.spans, sector * SECTOR, (sector + 1) * SECTOR)
+        table.sectors[sector] = find_curves_between(table.spans, sector * SECTOR, (sector + 1) * SECTOR)
     some = table.sectors[sector]
     first, last = table.spans
-    return some[members_between((first[some], last[some]), begin, end)]
+    return some[find_curves_between((first[some], last[some]), begin, end)]
 
 
-def members_between(
+def find_curves_between(
     spans: tuple[NDArray[np.float64], NDArray[np.float64]], begin: float, end: float
 ) -> NDArray[np.int64]:
     """Which curves, given their spans (N,), exist somewhere from one orientation in [0, 2 pi) to another."""
@@ -93,7 +100,7 @@ def members_between(
     return np.flatnonzero(there | (first <= end - tau) | (last >= begin + tau))
 
 
-def member_counts(
+def count_curves_in_cells(
     table: CurveTable, low: NDArray[np.float64], high: NDArray[np.float64]
 ) -> NDArray[np.int64]:
     """How many curves exist somewhere in each of some cells (K,), but for a hair at their ends."""

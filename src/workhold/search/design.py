@@ -32,44 +32,44 @@ from workhold.listing.results import (
     listed_result,
     stage,
 )
-from workhold.model.first_choice import figures_ranked_by
+from workhold.model.first_choice import list_ranking_figures
 from workhold.model.fixture import Fixture
 from workhold.model.notes import STAGES, NoFixture, NoPlace, Note, round_to_two_digits
-from workhold.model.quality import FIGURES, WARNINGS, asked_ranking, ranked_number
+from workhold.model.quality import FIGURES, WARNINGS, find_ranked_number, read_asked_ranking
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Restrictions, Tolerance
 from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
-from workhold.search.broken_rules import line_in_the_way
+from workhold.search.broken_rules import find_program_line_in_the_way
 from workhold.search.cells import run_blocks
 from workhold.search.error_limits import (
     ErrorLimit,
     LocatorSpots,
+    bound_location_errors,
     can_limit_errors,
-    first_limit,
+    choose_first_limit,
+    choose_next_limit,
     is_enough,
-    next_limit,
-    precision_of,
 )
-from workhold.search.estimate import estimated_fixtures
+from workhold.search.estimate import estimate_fixtures
 from workhold.search.lattice_shares import (
     LatticeShares,
-    blocks_of_search,
-    problems_of,
+    count_ways,
+    list_search_blocks,
+    make_problems,
     searches_of,
-    ways_in,
 )
-from workhold.search.seated import Sink, seated_answer
+from workhold.search.seated import Sink, answer_with_seating
 from workhold.search.shares import (
     LIMITED_FROM,
     OF_TWO,
     Preview,
     Previews,
-    answer_in_shares,
+    answer_by_shares,
     best_first,
     has_body_to_pass,
     limited_work,
-    one_clamp,
+    select_one_clamp,
     work_of,
 )
 from workhold.search.toolkit_search import ANY_ERROR, ToolkitSearch, contacts_of, is_round, lattice_steps
@@ -138,7 +138,7 @@ def design(
     >>> [peg.hole for peg in result[0].pegs]
     ['L-A1', 'L-A2', 'R-A1', 'R-A2']
     """
-    ranking = asked_ranking(rank_by, prefer, loads)
+    ranking = read_asked_ranking(rank_by, prefer, loads)
     query = Query(
         workpiece,
         toolkit,
@@ -201,33 +201,35 @@ def answer(
     workers = thread_count(counting_number("threads", threads))
     if query.toolkit.flat_jaws is not None:
         # What holds by friction loads its own solver, which pegs do not need.
-        from workhold.search.jaw_search import answer_between_jaws
+        from workhold.search.jaw_search import find_fixtures_between_jaws
 
-        return deliver(answer_between_jaws(query, progress, cancel), sink)
+        return send_to_sink(find_fixtures_between_jaws(query, progress, cancel), sink)
     if query.seating is not None:
         search = partial(answer, threads=workers, preview=preview)
-        return seated_answer(query, search, threads=workers, progress=progress, cancel=cancel, sink=sink)
+        return answer_with_seating(
+            query, search, threads=workers, progress=progress, cancel=cancel, sink=sink
+        )
     if WALL_END in query.toolkit.contacts:
         # What searches beside walls loads ball arithmetic, which no other toolkit needs beforehand.
         from workhold.search.wall_shares import WallShares
 
-        return deliver(answer_in_shares(WallShares.of(query, cancel), progress, cancel), sink)
+        return send_to_sink(answer_by_shares(WallShares.of(query, cancel), progress, cancel), sink)
     if can_limit_errors(query) and is_large(query, workers, cancel):
-        result = best_answer(query, workers, progress, cancel, preview)
+        result = find_best_fixtures(query, workers, progress, cancel, preview)
         if result is not None:
-            return deliver(result, sink)
+            return send_to_sink(result, sink)
     if query.toolkit.travels > 1:
         with LatticeShares.of(query, workers, cancel) as shares:
-            return deliver(answer_in_shares(shares, progress, cancel, preview), sink)
+            return send_to_sink(answer_by_shares(shares, progress, cancel, preview), sink)
     ways = query.toolkit.ways
     if len(ways) == 1:
-        return answer_of_a_way(query, workers, progress, cancel, preview, sink)
+        return answer_one_direction(query, workers, progress, cancel, preview, sink)
     results = []
     for number, way in enumerate(ways):
         share = stage(progress, number / len(ways), (number + 1) / len(ways))
         part = evolve(query, toolkit=way)
-        results.append(answer_of_a_way(part, workers, share, cancel, preview, is_part=True))
-    return deliver(joined_ways(results, query), sink)
+        results.append(answer_one_direction(part, workers, share, cancel, preview, is_part=True))
+    return send_to_sink(joined_ways(results, query), sink)
 
 
 def is_large(query: Query, threads: int, cancel: Event | None) -> bool:
@@ -235,7 +237,7 @@ def is_large(query: Query, threads: int, cancel: Event | None) -> bool:
     if any(one.pegs[0] < 3 for one in query.toolkit.arrangements if one.name in query.types):
         # Of two pegs that stand still nobody knows where they touch for a small error.
         return False
-    problem = Problem.of(one_clamp(query, query.toolkit.ways[0]))
+    problem = Problem.of(select_one_clamp(query, query.toolkit.ways[0]))
     first, end = problem.standing
     steps = lattice_steps((problem.frame.standing,), problem.diameter).steps
     # Pairs of chords that the lattice may join. A search looks at a tenth to a thousandth of them.
@@ -245,32 +247,34 @@ def is_large(query: Query, threads: int, cancel: Event | None) -> bool:
     if pairs / 1000.0 > LIMITED_FROM:
         return True
     if query.toolkit.travels > 1:
-        return ways_in(map(blocks_of_search, searches_of(query, threads, cancel))) > OF_TWO * LIMITED_FROM
+        return (
+            count_ways(map(list_search_blocks, searches_of(query, threads, cancel))) > OF_TWO * LIMITED_FROM
+        )
     ways = [Problem.of(evolve(query, toolkit=way)) for way in query.toolkit.ways]
     searches = [ToolkitSearch.of(way, threads=threads, cancel=cancel) for way in ways]
-    return ways_in(search.blocks(query.types) for search in searches) > LIMITED_FROM
+    return count_ways(search.blocks(query.types) for search in searches) > LIMITED_FROM
 
 
-def best_answer(
+def find_best_fixtures(
     query: Query, threads: int, progress: Progress | None, cancel: Event | None, preview: Preview | None
 ) -> Result | None:
     """The best fixtures, found by limits of the location error; None where every one has to be looked at."""
     is_paired = query.toolkit.travels > 1
     problems = (
-        problems_of(query)
+        make_problems(query)
         if is_paired
         else [Problem.of(evolve(query, toolkit=way)) for way in query.toolkit.ways]
     )
     spots = [LocatorSpots.of(problem) for problem in problems[: 1 if is_paired else None]]
-    most, number = first_limit(spots, query), 0
-    search_up_to = paired_up_to if is_paired else ways_up_to
+    most, number = choose_first_limit(spots, query), 0
+    search_up_to = find_paired_fixtures_within_limits if is_paired else find_fixtures_within_limits
     while most < inf:
         share, number = stage(progress, 1.0 - 0.5**number, 1.0 - 0.5 ** (number + 1)), number + 1
         limits = [one.limit(most) for one in spots]
         keys, finish = search_up_to(limits, problems, query, threads, share, cancel, preview)
         if is_enough(most, keys, query) or (cancel is not None and cancel.is_set()):
             return finish()
-        most = next_limit(most, keys, query, number)
+        most = choose_next_limit(most, keys, query, number)
     return None
 
 
@@ -278,7 +282,7 @@ def best_answer(
 FoundUpTo = tuple[OrderKeys, Callable[[], Result]]
 
 
-def ways_up_to(
+def find_fixtures_within_limits(
     limits: Sequence[ErrorLimit],
     problems: Sequence[Problem],
     query: Query,
@@ -307,7 +311,7 @@ def ways_up_to(
     return keys, finish
 
 
-def paired_up_to(
+def find_paired_fixtures_within_limits(
     limits: Sequence[ErrorLimit],
     problems: Sequence[Problem],
     query: Query,
@@ -318,12 +322,12 @@ def paired_up_to(
 ) -> FoundUpTo:
     """What two clamps hold up to a limit."""
     with LatticeShares.of(query, threads, cancel, limits[0]) as shares:
-        result = answer_in_shares(shares, progress, cancel, preview)
+        result = answer_by_shares(shares, progress, cancel, preview)
     statistics = {**result.statistics, **limits[0].statistics}
     return shares.collector.ranked.keys, lambda: evolve(result, statistics=statistics)
 
 
-def answer_of_a_way(
+def answer_one_direction(
     query: Query,
     threads: int,
     progress: Progress | None,
@@ -337,14 +341,14 @@ def answer_of_a_way(
     Of one of several ways, it is all that may be among the best of all.
     """
     problem = Problem.of(query)
-    precision = precision_of(problem) if can_limit_errors(query) else ANY_ERROR
+    precision = bound_location_errors(problem) if can_limit_errors(query) else ANY_ERROR
     search = ToolkitSearch.of(problem, threads=threads, cancel=cancel, precision=precision)
     kept = None if query.best is None else BestFixtures(problem, cancel)
     look = None if preview is None else Previews(problem, preview).add
     before, rest = stage(progress, 0.0, SEARCH), stage(progress, SEARCH, 1.0)
     if kept is not None:
         work = best_first(search, kept, threads, before, cancel, look)
-        return deliver(with_reason(best_result(kept, work, is_part), search, threads, cancel), sink)
+        return send_to_sink(add_reason(best_result(kept, work, is_part), search, threads, cancel), sink)
     blocks = search.blocks(query.types)
     if sink is not None:
         with ThreadPoolExecutor(max_workers=threads) as pool:
@@ -354,7 +358,7 @@ def answer_of_a_way(
                 result = collected_result(
                     collector, work_of(search, blocks, done), stage(rest, 0.0, MEASURED)
                 )
-                result = with_reason(result, search, threads, cancel)
+                result = add_reason(result, search, threads, cancel)
                 listed = collector.listed
                 if listed < sum(result.found.values()):
                     result = result.cut_short(listed)
@@ -365,30 +369,30 @@ def answer_of_a_way(
     result = listed_result(
         problem, records, work, progress=rest, cancel=cancel, threads=threads, is_part=is_part
     )
-    return deliver(with_reason(result, search, threads, cancel), sink)
+    return send_to_sink(add_reason(result, search, threads, cancel), sink)
 
 
-def deliver(result: Result, sink: Sink | None) -> Result:
+def send_to_sink(result: Result, sink: Sink | None) -> Result:
     """A result that is whole in memory, after a sink, if there is one, has taken it."""
     if sink is not None:
         sink.receive(result, len(result), [result.table])
     return result
 
 
-def with_reason(result: Result, search: ToolkitSearch, threads: int, cancel: Event | None) -> Result:
+def add_reason(result: Result, search: ToolkitSearch, threads: int, cancel: Event | None) -> Result:
     """A result, with the reason where it has no fixture and nobody is in a hurry."""
     if not result.complete or any(result.found.values()) or result.reasons:
         return result
     proven = 0 if result.proof is None else result.proof.verified
     reason = why_none(search, int(search.totals[CONTACTS]), proven, threads, cancel)
-    reason = of_what_is_left(reason, search.problem, threads)
+    reason = blame_what_was_asked(reason, search.problem, threads)
     return result if cancel is not None and cancel.is_set() else evolve(result, notes=(reason,))
 
 
 def why_none(search: ToolkitSearch, contacts: int, proven: int, threads: int, cancel: Event | None) -> Note:
     """The reason when a search finds no fixture."""
     problem, table, wording = search.problem, search.table, search.problem.toolkit.wording
-    line = line_in_the_way(problem.query)
+    line = find_program_line_in_the_way(problem.query)
     if is_round(problem):
         # The program is not to blame for a part that is round without it.
         alone = problem.query.program is None or is_round(Problem.of(problem.query.without_program))
@@ -403,7 +407,7 @@ def why_none(search: ToolkitSearch, contacts: int, proven: int, threads: int, ca
     return NoFixture("hold", wording, line)
 
 
-def of_what_is_left(reason: Note, problem: Problem, threads: int) -> Note:
+def blame_what_was_asked(reason: Note, problem: Problem, threads: int) -> Note:
     """A reason that blames part or pitch, or one that blames what was asked for where that is the cause."""
     query, toolkit = problem.query, problem.toolkit
     if not isinstance(reason, NoFixture) or reason.stage not in STAGES[:2] or reason.line is not None:
@@ -469,7 +473,7 @@ def explore(
         try:
             if isinstance(query, InputError):
                 raise query
-            count = estimated_fixtures(query, thread_count(None), cancel) if query.best is None else None
+            count = estimate_fixtures(query, thread_count(None), cancel) if query.best is None else None
             # Where there are many, the first is enough.
             result = answer(query if count is None else evolve(query, best=1), cancel=cancel)
         except InputError as error:
@@ -517,7 +521,7 @@ def first_choice(
     quality = np.array([[item.figures.get(figure.key, np.nan) for figure in FIGURES] for item in able])
     keys = [np.array([not item.fit for item in able]), np.array([not is_sold(item.name) for item in able])]
     held = np.array([item.held for item in able])
-    known = [name for name in figures_ranked_by(ranking) if ranked_number(name) is not None]
+    known = [name for name in list_ranking_figures(ranking) if find_ranked_number(name) is not None]
     figures, warned = figure_keys(quality, known) if known else [], FIGURES[WARNINGS].key
     # What flat jaws hold has figures of its own, of which the area that they touch counts.
     figures += [np.array([-item.figures.get("contact_area", 0.0) for item in able])]

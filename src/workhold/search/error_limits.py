@@ -26,8 +26,8 @@ from numpy.typing import NDArray
 from workhold.contact.curves import loosened
 from workhold.contact.problem import Problem
 from workhold.conventions import SQUARE_TILT
-from workhold.geometry.hull import convex_hull
-from workhold.geometry.segment import Line, Point, distance_to_segment
+from workhold.geometry.hull import compute_convex_hull
+from workhold.geometry.segment import Line, Point, measure_distance_to_segment
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS, SEGMENT_LENGTH, SIGN, X, Y
 from workhold.kernels.base.tables import NearSpots, Precision
 from workhold.kernels.contact.location_bounds import (
@@ -43,20 +43,20 @@ from workhold.listing.ranking import A_STEP, OrderKeys, best_possible, keys_of
 from workhold.model.first_choice import FACTORS
 from workhold.model.quality import LOCATION_ERROR, PENALTY, SMALLEST_FACE, TILT
 from workhold.model.query import Query
-from workhold.search.toolkit_search import ASLANT, with_limit
-from workhold.statics.effective_error import faces_unasked_for
+from workhold.search.toolkit_search import ASLANT, limit_precision
+from workhold.statics.effective_error import find_unasked_faces
 from workhold.statics.judging import Judging
-from workhold.statics.quality import extremes, face_sizes, main_direction
+from workhold.statics.quality import extremes, main_direction, measure_faces
 
 __all__ = [
     "ErrorLimit",
     "LocatorSpots",
     "can_limit_errors",
-    "first_limit",
+    "choose_first_limit",
     "is_enough",
-    "keys_beyond",
-    "next_limit",
-    "precision_of",
+    "bound_keys_beyond_limit",
+    "choose_next_limit",
+    "bound_location_errors",
 ]
 
 Array = NDArray[np.float64]
@@ -130,8 +130,8 @@ class LocatorSpots:
     @classmethod
     def of(cls, problem: Problem) -> LocatorSpots:
         """The spots of a problem."""
-        rows, precision = loosened(problem.rows[:, :SEGMENT_LENGTH]), precision_of(problem)
-        apart = largest_apart(outermost(problem))
+        rows, precision = loosened(problem.rows[:, :SEGMENT_LENGTH]), bound_location_errors(problem)
+        apart = find_largest_distance(outermost(problem))
         first, end = problem.standing
         cut = [
             cut_feature(row, number, give, apart, problem.wrench_length)
@@ -144,13 +144,13 @@ class LocatorSpots:
         sizes = [1 if is_one else len(levels[-1]) for is_one, levels in zip(whole, cut, strict=True)]
         starts = np.cumsum([0, *sizes])
         roots = sum(len(levels[0]) for levels in cut)
-        return cls(joined_spots(cut, starts), roots, starts, precision)
+        return cls(join_spots(cut, starts), roots, starts, precision)
 
     def limit(self, most: float) -> ErrorLimit:
         """A limit of the effective error in mm."""
         (square, one), (aslant, other) = self.near(most), self.near(most / ASLANT)
         boxes, ruled_out = (one + other).tolist()
-        return ErrorLimit(with_limit(self.precision, most), square, aslant, boxes, ruled_out)
+        return ErrorLimit(limit_precision(self.precision, most), square, aslant, boxes, ruled_out)
 
     def near(self, most: float) -> tuple[NearSpots, IntArray]:
         """Which two spots locators may touch up to an effective error in mm, and counts of boxes."""
@@ -167,7 +167,7 @@ class LocatorSpots:
         return float(least_middle_error(self.spots, self.roots, self.precision, np.empty((4, 3))))
 
 
-def precision_of(problem: Problem) -> Precision:
+def bound_location_errors(problem: Problem) -> Precision:
     """What bounds location errors of a problem, without a limit."""
     points = outermost(problem)
     query, length = problem.query, problem.wrench_length
@@ -177,12 +177,12 @@ def precision_of(problem: Problem) -> Precision:
     probes = np.concatenate([np.repeat(along, len(points), axis=0), turn.reshape(-1, 1)], axis=1)
     doubts = np.ones(len(problem.rows))
     if all(carrier.contact.is_placed for carrier in query.toolkit.carriers):
-        doubts[faces_unasked_for(query)[problem.faces]] = IN_BORE
+        doubts[find_unasked_faces(query)[problem.faces]] = IN_BORE
     tolerance = query.tolerance
     return Precision(
         problem.faces.astype(np.int64),
         doubts,
-        gives_of(problem.rows, points),
+        compute_contact_allowances(problem.rows, points),
         np.ascontiguousarray(probes),
         tolerance.peg,
         tolerance.face,
@@ -210,31 +210,31 @@ def outermost(problem: Problem) -> Array:
     return np.array(out)
 
 
-def largest_apart(points: Array) -> float:
+def find_largest_distance(points: Array) -> float:
     """The largest distance in mm of two points."""
     return max(float(np.hypot(*(points - point).T).max()) for point in points)
 
 
-def gives_of(rows: Array, points: Array) -> Array:
+def compute_contact_allowances(rows: Array, points: Array) -> Array:
     """What contacts on features (F,) may be off by for a location error of 1.
 
     On a line it is for each mm that the contact is moved, on an arc for each radian. Points (C, 2) are those
     of the silhouette. Nothing between them moves farther than they.
     """
-    apart, hull = largest_apart(points), convex_hull(map(tuple, points.tolist()))
+    apart, hull = find_largest_distance(points), compute_convex_hull(map(tuple, points.tolist()))
     away = [
-        distance_from_hull(hull, place) if is_arc else 0.0
+        measure_distance_from_hull(hull, place) if is_arc else 0.0
         for is_arc, *place in rows[:, [IS_ARC, X, Y]].tolist()
     ]
     return np.where(rows[:, IS_ARC] == 0.0, 2.0 / apart, 1.0 + 2.0 * np.array(away) / apart)
 
 
-def distance_from_hull(hull: Sequence[Point], place: Point) -> float:
+def measure_distance_from_hull(hull: Sequence[Point], place: Point) -> float:
     """The distance in mm of a place from a convex hull, as ``geometry.hull`` gives it; 0 inside."""
     sides = [Line(one, other) for one, other in zip(hull, [*hull[1:], hull[0]], strict=True)]
     if len(hull) > 2 and all(is_left_of(side, place) for side in sides):
         return 0.0
-    return min(distance_to_segment(place, side) for side in sides)
+    return min(measure_distance_to_segment(place, side) for side in sides)
 
 
 def is_left_of(side: Line, place: Point) -> bool:
@@ -248,7 +248,7 @@ def cut_feature(row: Array, number: int, give: float, apart: float, length: floa
 
     Parameters
     ----------
-    give : see :func:`gives_of`.
+    give : see :func:`compute_contact_allowances`.
     apart : the largest distance in mm of two points of the silhouette.
     length : L in mm.
     """
@@ -279,7 +279,7 @@ def spots_of(row: Array, number: int, count: int, give: float, length: float) ->
     return out
 
 
-def joined_spots(cut: Sequence[Sequence[Array]], starts: IntArray) -> Array:
+def join_spots(cut: Sequence[Sequence[Array]], starts: IntArray) -> Array:
     """All spots (S, 7) of features, the coarsest of each first, and what they are made of.
 
     Parameters
@@ -303,7 +303,7 @@ def joined_spots(cut: Sequence[Sequence[Array]], starts: IntArray) -> Array:
     return np.concatenate([levels[k] for k in range(MOST_CUTS + 1) for levels in cut if k < len(levels)])
 
 
-def keys_beyond(most: float, query: Query) -> OrderKeys:
+def bound_keys_beyond_limit(most: float, query: Query) -> OrderKeys:
     """The least keys of fixtures that are not found up to a limit of the effective error in mm.
 
     They are one row for each class of angles, without and with a dowel in a bore, which the limit counts.
@@ -315,18 +315,18 @@ def keys_beyond(most: float, query: Query) -> OrderKeys:
     # Where the drawing lies aslant, other angles may be square.
     is_square = main_direction(query.workpiece) == 0.0
     quality[:, TILT] = [SQUARE_TILT * (is_square and place == 2) for place, _ in rows]
-    quality[:, SMALLEST_FACE] = np.nanmax(face_sizes(query.workpiece))
+    quality[:, SMALLEST_FACE] = np.nanmax(measure_faces(query.workpiece))
     judging = Judging.of(1.0, query.toolkit, query.tolerance)
     quality[:, PENALTY] = evolve(judging, small_face=0.0).penalty(quality)
     return keys_of(quality, query, np.full(len(rows), most), np.array([place for place, _ in rows]))
 
 
-def first_limit(spots: Sequence[LocatorSpots], query: Query) -> float:
+def choose_first_limit(spots: Sequence[LocatorSpots], query: Query) -> float:
     """The limit in mm to begin with, given the spots of each way of the toolkit."""
-    return growth_of(query)[0] * min(one.least for one in spots)
+    return choose_limit_growth(query)[0] * min(one.least for one in spots)
 
 
-def growth_of(query: Query) -> tuple[float, float, int]:
+def choose_limit_growth(query: Query) -> tuple[float, float, int]:
     """The first limit and each next one, relative to the one before, and how many there are."""
     return OF_ONE if query.toolkit.travels == 1 else OF_TWO
 
@@ -335,15 +335,15 @@ def is_enough(most: float, kept: OrderKeys, query: Query) -> bool:
     """Whether nothing beyond a limit in mm is among the best, given the keys of what was found up to it."""
     if most == inf:
         return True
-    bound = keys_beyond(most, query)
+    bound = bound_keys_beyond_limit(most, query)
     return bool(bound.beaten(kept, query.best or 0, bound.lowest).all())
 
 
-def next_limit(most: float, kept: OrderKeys, query: Query, number: int) -> float:
+def choose_next_limit(most: float, kept: OrderKeys, query: Query, number: int) -> float:
     """The limit in mm after one that was not enough, the so-manieth, given the keys of what it found."""
     known = kept.last_fine_error(query.best or 0)
     if known is None:
-        _, times, limits = growth_of(query)
+        _, times, limits = choose_limit_growth(query)
         return inf if number >= limits else times * most
     # Of the limits up to where all others surely have a step more, the least that will be enough.
     last = A_STEP * known

@@ -29,12 +29,12 @@ from workhold.listing.seat_order import seat_numbers
 from workhold.listing.seats import ClampedSeats
 from workhold.model.clamps import LOCATORS
 from workhold.model.query import Query
-from workhold.search.cells import Block, cost_of, run_blocks
-from workhold.search.error_limits import precision_of
+from workhold.search.cells import Block, estimate_cost, run_blocks
+from workhold.search.error_limits import bound_location_errors
 from workhold.search.lattice_shares import LatticeShares, searches_of
-from workhold.search.toolkit_search import MOST_CELLS, ToolkitSearch, one_in
+from workhold.search.toolkit_search import MOST_CELLS, ToolkitSearch, sample_numbers
 
-__all__ = ["LISTED", "MANY", "best_where_many", "estimated_fixtures"]
+__all__ = ["LISTED", "MANY", "ask_for_best_where_many", "estimate_fixtures"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -59,7 +59,7 @@ ASIDE = 1e-6
 BEGIN = 0.618
 
 
-def estimated_fixtures(query: Query, threads: int, cancel: Event | None = None) -> int | None:
+def estimate_fixtures(query: Query, threads: int, cancel: Event | None = None) -> int | None:
     """How many fixtures a query has, about.
 
     None where they are surely few, beside a wall, with rules for their seating or for each by itself, and once
@@ -70,24 +70,26 @@ def estimated_fixtures(query: Query, threads: int, cancel: Event | None = None) 
         return None
     query = evolve(query, best=None)
     if query.toolkit.travels > 1:
-        return estimated_pairs(query, threads, cancel)
-    ways = [estimated_of_a_way(evolve(query, toolkit=way), threads, cancel) for way in query.toolkit.ways]
+        return estimate_clamp_pairs(query, threads, cancel)
+    ways = [estimate_one_direction(evolve(query, toolkit=way), threads, cancel) for way in query.toolkit.ways]
     known = [count for count in ways if count is not None]
     return sum(known) if known else None
 
 
-def best_where_many(query: Query, threads: int, cancel: Event | None = None) -> tuple[Query, int | None]:
+def ask_for_best_where_many(
+    query: Query, threads: int, cancel: Event | None = None
+) -> tuple[Query, int | None]:
     """A query for all fixtures, or for the best where there are more than anybody reads.
 
     With it comes how many there are, about; None where they are few, or the query is for the best already.
     """
     if query.best is not None:
         return query, None
-    count = estimated_fixtures(query, threads, cancel)
+    count = estimate_fixtures(query, threads, cancel)
     return (query, count) if count is None or count <= MANY else (evolve(query, best=LISTED), count)
 
 
-def estimated_of_a_way(query: Query, threads: int, cancel: Event | None) -> int | None:
+def estimate_one_direction(query: Query, threads: int, cancel: Event | None) -> int | None:
     """How many fixtures there are about in a toolkit of which one carrier moves; None where they are few."""
     problem = Problem.of(query)
     search = ToolkitSearch.of(problem, threads=threads, cancel=cancel)
@@ -97,7 +99,7 @@ def estimated_of_a_way(query: Query, threads: int, cancel: Event | None) -> int 
         return None
     dense = np.array([block.dense for block in blocks])
     finds = costs * dense
-    drawn, chances = drawn_by(finds, max(number_for(WORK, costs, finds), FEWEST_DRAWN))
+    drawn, chances = draw_by_size(finds, max(number_for(WORK, costs, finds), FEWEST_DRAWN))
     # Where these cells hold too much work, only some chord curves are looked at. What crosses is made of two
     # of them, what slides of one.
     search.every = max(int(sqrt(costs[drawn].sum() / MOST_WORK)), 1)
@@ -109,25 +111,25 @@ def estimated_of_a_way(query: Query, threads: int, cancel: Event | None) -> int 
     if len(weights) == 0:
         return 0
     # Of all records so many are decided, drawn by their weights.
-    chosen, again = drawn_by(weights, DECIDED)
+    chosen, again = draw_by_size(weights, DECIDED)
     kept, _ = finish([np.concatenate(records)[chosen]], problem, cancel)
     proven = len(kept.standing) / len(chosen)
     # The chance of a record grows with its weight, so each stands for as many as any other.
     return round(float((weights[chosen] / again).sum()) * proven)
 
 
-def estimated_pairs(query: Query, threads: int, cancel: Event | None) -> int | None:
+def estimate_clamp_pairs(query: Query, threads: int, cancel: Event | None) -> int | None:
     """How many fixtures two clamps have, about, as they are listed; None where they are few."""
     searches = searches_of(query, threads, cancel)
     one = searches[0]
     blocks = one.blocks(one.problem.toolkit.types, MOST_CELLS)
-    if cost_of(blocks) < FEW:
+    if estimate_cost(blocks) < FEW:
         return None
     starts, costs, finds = cells_of(blocks)
     width, total = float(np.diff(starts, append=starts[0] + tau).min()), 0.0
     count = min(max(number_for(WORK_OF_TWO, costs, finds), FEWEST_OF_TWO), MOST_OF_TWO)
     problems = [search.problem for search in searches]
-    for cell, chance in zip(*drawn_by(finds, count), strict=True):
+    for cell, chance in zip(*draw_by_size(finds, count), strict=True):
         # The part's angle is -psi, and a quarter turn more for each that the frame of the search is turned.
         high = (one.frame.quarters * pi / 2 - starts[cell]) % tau
         ranges = [(low, low + width) for low in (high - width, high - width + tau, high - width - tau)]
@@ -167,7 +169,7 @@ class Stretches:
             return cls(every, EVERYWHERE, numbers)
         # A sum does not tell in which order locators are.
         sums = numbers[:, None] + numbers
-        triples = np.stack([one_in(sums + number, every) for number in numbers.tolist()])
+        triples = np.stack([sample_numbers(sums + number, every) for number in numbers.tolist()])
         joined = np.ones(sums.shape, np.int8)
         return cls(every, NearSpots(starts, joined, triples.astype(np.int8)), numbers)
 
@@ -189,7 +191,9 @@ class Stretches:
         starts = self.near.starts
         count = starts[feature + 1] - starts[feature]
         place = np.floor((at + 1.0) / 2.0 * count + ASIDE).astype(np.int64)
-        return one_in(self.numbers[starts[feature] + np.clip(place, 0, count - 1)].sum(axis=1), self.every)
+        return sample_numbers(
+            self.numbers[starts[feature] + np.clip(place, 0, count - 1)].sum(axis=1), self.every
+        )
 
 
 def cells_of(blocks: Sequence[Block]) -> tuple[Array, Array, Array]:
@@ -219,7 +223,7 @@ def listed_in(
     inside = [(low + 2.0 * ANGLE_HAIR, high - 2.0 * ANGLE_HAIR)]
     found = []
     for search in searches:
-        chosen = evolve(search, near=stretches.near, precision=precision_of(search.problem))
+        chosen = evolve(search, near=stretches.near, precision=bound_location_errors(search.problem))
         blocks = chosen.blocks(search.problem.toolkit.types, MOST_CELLS, within=inside)
         records = run_blocks(blocks, threads, None, cancel, stop=chosen.stop)[0]
         found.append(stretches.chosen(records, search.problem))
@@ -238,10 +242,10 @@ def thinned(records: Array, problem: Problem, every: int) -> Array:
     holes, theta, *_ = seat_numbers(records, problem)
     # Seats with the same holes and nearly the same orientation are taken together.
     seats = holes * 0x85EBCA6B + np.round(theta / (100.0 * SAME_POSE)).astype(np.int64)
-    return np.asarray(records[one_in(seats, every)])
+    return np.asarray(records[sample_numbers(seats, every)])
 
 
-def drawn_by(sizes: Array, count: float) -> tuple[IntArray, Array]:
+def draw_by_size(sizes: Array, count: float) -> tuple[IntArray, Array]:
     """About so many numbers, drawn with chances that grow with their sizes (N,), and the chances."""
     chances = np.minimum(count * sizes / sizes.sum(), 1.0)
     steps = np.floor(np.cumsum(chances) + BEGIN)

@@ -22,12 +22,12 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.limits import counting_number, thread_count
 from workhold.listing.placing import placeable, placed
 from workhold.model.fixture_table import FixtureTable
-from workhold.model.own_outlines import outline_diameter
+from workhold.model.own_outlines import measure_outline_diameter
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Restrictions, Tolerance
 from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
-from workhold.search.broken_rules import all_contacts
+from workhold.search.broken_rules import find_all_contacts
 from workhold.search.design import answer
 
 __all__ = ["Evaluation", "evaluate"]
@@ -112,7 +112,7 @@ def evaluate(
         jaw_force=jaw_force,
         listing="all" if toolkit.travels > 1 else None,
     )
-    far = setup.too_far(outline_diameter(query.workpiece))
+    far = setup.too_far(measure_outline_diameter(query.workpiece))
     if far:
         return Evaluation(given, Result(query, FixtureTable.empty(query.toolkit), *no_counts(query)), far)
     result = answer(query, threads=threads)
@@ -151,7 +151,7 @@ class OwnSetUp:
                 )
         bolted = [name for name in names if name.lower().startswith(CLAMP)]
         pegs, clamps = (
-            tuple(hole_in(name.removeprefix(CLAMP), lattices) for name in some)
+            tuple(find_named_hole(name.removeprefix(CLAMP), lattices) for name in some)
             for some in ([name for name in names if name not in bolted], [name.lower() for name in bolted])
         )
         moving = toolkit.travels if any(carrier.on for carrier in toolkit.carriers) else 0
@@ -254,7 +254,7 @@ class OwnSetUp:
         poses, pulls = 0, 4
         for way in query.toolkit.ways:
             problem = Problem.of(evolve(query, toolkit=way))
-            contacts = all_contacts(problem, threads)
+            contacts = find_all_contacts(problem, threads)
             contacts = contacts.take(placeable(contacts.candidates, problem))
             contacts = contacts.take(self.matches(placed(contacts.candidates, problem), way))
             poses += len(contacts.margin)
@@ -276,7 +276,7 @@ def name_of(hole: Holes, carrier: Carrier) -> str:
     return carrier.place_name(hole.column, hole.row or 0)
 
 
-def hole_in(name: str, lattices: Iterable[Carrier]) -> Holes:
+def find_named_hole(name: str, lattices: Iterable[Carrier]) -> Holes:
     """The hole of a name; refuses one that there is not, and a column."""
     carriers = {carrier.name: carrier for carrier in lattices}
     first = next(iter(carriers.values()))

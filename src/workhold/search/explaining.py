@@ -21,7 +21,7 @@ from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Change, Toolkit
 from workhold.listing.asked import are_as_asked
 from workhold.listing.ranking import measured
-from workhold.model.fixture_table import FixtureTable, fixture_at
+from workhold.model.fixture_table import FixtureTable, make_fixture_of_row
 from workhold.model.notes import NoFixture, Note, Remark
 from workhold.model.quality import WARNINGS
 from workhold.model.query import Query
@@ -32,10 +32,10 @@ from workhold.model.workpiece import Workpiece
 from workhold.search.broken_rules import (
     SECOND_CLAMP,
     Removals,
-    line_in_the_way,
-    program_rule,
-    removals_of,
-    stroke_rule,
+    count_removals,
+    describe_program_rule,
+    describe_stroke_rule,
+    find_program_line_in_the_way,
 )
 from workhold.search.design import answer
 from workhold.search.flush_search import FlushSearch
@@ -45,10 +45,10 @@ from workhold.search.wall_search import WallSearch
 from workhold.search.wall_shares import LatticePairSearch
 from workhold.units import MILLIMETRE, Unit
 
-__all__ = ["explain", "removals_beside_wall"]
+__all__ = ["explain", "count_removals_beside_wall"]
 
 
-def removals_beside_wall(query: Query, alone: bool) -> Removals:
+def count_removals_beside_wall(query: Query, alone: bool) -> Removals:
     """What the rules leave of the pairs of contacts in a toolkit of which one clamp moves.
 
     It says how many pairs of contacts of locator and clamp there are before any rule, what each rule takes
@@ -58,7 +58,7 @@ def removals_beside_wall(query: Query, alone: bool) -> Removals:
     ----------
     alone : whether one clamp is to hold the part; of two none comes nearest, as each pair is a clamp short.
     """
-    counts = list(left_by_rules(query, alone))
+    counts = list(count_left_by_rules(query, alone))
     before = first = counts[0][1]
     removals = []
     for rule, count in counts[1:]:
@@ -71,7 +71,7 @@ def removals_beside_wall(query: Query, alone: bool) -> Removals:
     return Removals(first, removals, nearest)
 
 
-def left_by_rules(query: Query, alone: bool) -> Iterator[tuple[str, int]]:
+def count_left_by_rules(query: Query, alone: bool) -> Iterator[tuple[str, int]]:
     """The rules in the order they are asked, with how many pairs are left after each; the first is no
     rule."""
     toolkit, asked = query.toolkit, query.restrictions
@@ -90,7 +90,7 @@ def left_by_rules(query: Query, alone: bool) -> Iterator[tuple[str, int]]:
         (True, "", {}),
         (bool(asked.avoid), "faces to avoid", {"restrictions": Restrictions(avoid=asked.avoid)}),
         (bool(asked.zones), "keep-out zones", {"restrictions": evolve(asked, angles=(), touch=())}),
-        (query.program is not None, program_rule(query), passed),
+        (query.program is not None, describe_program_rule(query), passed),
         (bool(asked.angles), "angles of the part", {"restrictions": evolve(asked, touch=())}),
         (bool(holes.limits), toolkit.wording.holes, {"toolkit": holes}),
         (query.contact_margin > 0.0, "contact margin", {"contact_margin": query.contact_margin}),
@@ -107,7 +107,7 @@ def left_by_rules(query: Query, alone: bool) -> Iterator[tuple[str, int]]:
     yield toolkit.wording.clear, placed(bare)
     for number, limit in enumerate(others, 1):
         held_in = toolkit.without(others[number:])
-        yield stroke_rule(query, limit.rule), placed(evolve(bare, toolkit=held_in))
+        yield describe_stroke_rule(query, limit.rule), placed(evolve(bare, toolkit=held_in))
     bare = evolve(bare, toolkit=toolkit)
     if asked.touch:
         bare = restricted(bare, touch=asked.touch)
@@ -154,7 +154,7 @@ def placed(query: Query) -> int:
 
 def miss_of(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> NearestMiss:
     """The pair that comes nearest to pressing the part, as it would stand."""
-    fixture = fixture_at(table, toolkit, 0, workpiece)
+    fixture = make_fixture_of_row(table, toolkit, 0, workpiece)
     pulls = sum(peg.force < 0 for peg in fixture.pegs)
     if pulls == 0:
         words = "one of its contacts would not press at all."
@@ -184,17 +184,17 @@ def explain(query: Query, threads: int | None = None, unit: Unit = MILLIMETRE) -
     toolkit, alone = query.toolkit, query.toolkit.travels == 1
     ways = [held_in(query, way) for way in toolkit.ways]
     if toolkit.flat_jaws is not None:
-        found = [removals_between_jaws(query)]
+        found = [count_removals_between_jaws(query)]
     elif WALL_END in toolkit.contacts:
-        found = [removals_beside_wall(way, alone) for way in ways]
+        found = [count_removals_beside_wall(way, alone) for way in ways]
     else:
-        found = [removals_of(Problem.of(way), threads, unit, alone) for way in ways]
+        found = [count_removals(Problem.of(way), threads, unit, alone) for way in ways]
     together, helped = Removals.together(found), helps(query, threads, unit)
     nothing = None if together.first else no_contacts(ways)
     return Explanation(together.first, together.removals, together.nearest, helped, nothing)
 
 
-def removals_between_jaws(query: Query) -> Removals:
+def count_removals_between_jaws(query: Query) -> Removals:
     """What the rules leave of the ways in which a part can lie between flat jaws, and which rule takes how many."""
     rules = Counter(one.rule for one in JawSearch(query).examined())
     first = left = sum(rules.values())
@@ -220,7 +220,7 @@ def helps(query: Query, threads: int | None, unit: Unit) -> tuple[Help, ...]:
     for change in changes(query, unit):
         result = answer_of(change.change, query, threads)
         if result is not None and any(result.found.values()):
-            words = change.words + nearest_turn(query, result)
+            words = change.words + describe_nearest_turn(query, result)
             found = sum(result.found.values())
             out.append(Help(words, found, result.complete, change.fields, change.rules))
         if change.is_whole:
@@ -267,7 +267,7 @@ def together(query: Query, lifts: Sequence[Lift], threads: int | None) -> Iterat
         yield Help(words, sum(result.found.values()), result.complete, None, rules)
 
 
-def nearest_turn(query: Query, result: Result) -> str:
+def describe_nearest_turn(query: Query, result: Result) -> str:
     """Where angles were asked for, how far beyond them the part can be held, without warnings if that can
     be."""
     if not query.restrictions.angles or result.query.restrictions.angles:
@@ -331,7 +331,7 @@ def changes(query: Query, unit: Unit) -> Iterator[Lift]:
     if asked.zones:
         yield lift("without the keep-out zones", partial(restricted, zones=()), ("keep-out zones",))
     if query.program is not None:
-        line = line_in_the_way(query)
+        line = find_program_line_in_the_way(query)
         first = "" if line is None else f", of which line {line} is most in the way"
         without = attrgetter("without_program")
         yield lift(f"without the program{first}", without, ("tools of the program",))
@@ -347,10 +347,10 @@ def changes(query: Query, unit: Unit) -> Iterator[Lift]:
     if len(query.types) < len(toolkit.types):
         yield lift("with all types", partial(evolve, types=None), ("types sought",))
     for limit in toolkit.limits:
-        held, fields = partial(held_in_another, change=limit.lifted), limit.lifted.fields
+        held, fields = partial(change_toolkit, change=limit.lifted), limit.lifted.fields
         yield lift(limit.lifted.words, held, (limit.rule,), fields)
     for change in toolkit.further_changes(unit):
-        yield lift(change.words, partial(held_in_another, change=change), (), change.fields, is_whole=False)
+        yield lift(change.words, partial(change_toolkit, change=change), (), change.fields, is_whole=False)
 
 
 def restricted(query: Query, **changed: Any) -> Query:
@@ -358,7 +358,7 @@ def restricted(query: Query, **changed: Any) -> Query:
     return evolve(query, restrictions=evolve(query.restrictions, **changed))
 
 
-def held_in_another(query: Query, change: Change) -> Query:
+def change_toolkit(query: Query, change: Change) -> Query:
     """A query in a changed toolkit.
 
     Raises

@@ -15,17 +15,17 @@ import numpy as np
 from attrs import define, field, frozen
 from numpy.typing import NDArray
 
-from workhold.contact.features import avoided_faces
+from workhold.contact.features import list_avoided_faces
 from workhold.contact.problem import Problem
 from workhold.conventions import CLEARANCE, GAP_SLACK, LEAST_SPAN, PARALLEL
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import bounding_box
-from workhold.geometry.symmetry import rotated
+from workhold.geometry.symmetry import rotate_vectors
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.pose import Pose
-from workhold.model.requirements import are_within
+from workhold.model.requirements import lie_in_angle_ranges
 from workhold.model.search_report import Undecided
 
 __all__ = ["FlushSearch", "PartOnWall", "part_on_wall"]
@@ -72,14 +72,14 @@ def part_on_wall(problem: Problem, edge: int) -> PartOnWall:
     return PartOnWall(out, length, turn, 16 * UNIT_ROUNDOFF * size + turn * size)
 
 
-def allowed_edges(problem: Problem) -> list[int]:
+def list_allowed_edges(problem: Problem) -> list[int]:
     """The numbers of the hull edges on which a part may lie.
 
     There it is at an angle that is allowed, on faces that may be touched. No keep-out zone reaches into the
     wall, and the program's tools pass clear of it.
     """
     part, asked = problem.workpiece, problem.restrictions
-    avoided, carriers = avoided_faces(part, asked), problem.toolkit.carriers
+    avoided, carriers = list_avoided_faces(part, asked), problem.toolkit.carriers
     swept, out = problem.swept(next(one for one in carriers if one.contact is WALL_END)), []
     for number, (theta, touching) in enumerate(
         zip(part.flush.theta.tolist(), part.flush.touching, strict=True)
@@ -87,10 +87,10 @@ def allowed_edges(problem: Problem) -> list[int]:
         if any(map(avoided.issuperset, touching)):
             continue
         turned = float(np.degrees(theta))
-        if not are_within(turned, asked.angles):
+        if not lie_in_angle_ranges(turned, asked.angles):
             continue
         x, y = part.flush.ends[number, 0].tolist()
-        pose = Pose(turned, 0.0, -float(rotated(x, y, theta)[1]))
+        pose = Pose(turned, 0.0, -float(rotate_vectors(x, y, theta)[1]))
         if swept is not None and swept[0].above(theta, -pose.y)[0] < swept[1] - GAP_SLACK:
             continue
         zones = [pose.carry(segment) for zone in asked.zones for segment in zone.segments]
@@ -128,7 +128,7 @@ class FlushSearch:
     @property
     def edges(self) -> list[int]:
         """The numbers of the hull edges on which the part may lie."""
-        return allowed_edges(self.problem)
+        return list_allowed_edges(self.problem)
 
     @property
     def alone(self) -> Toolkit:

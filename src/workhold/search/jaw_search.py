@@ -24,32 +24,32 @@ from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Progress
-from workhold.contact.swept import swept_below
+from workhold.contact.swept import find_swept_below
 from workhold.conventions import PARALLEL, READING, SQUARE_TILT, TOUCHING
 from workhold.fixels.jaw_pair import JawPair
-from workhold.geometry.hull import HullEdge, HullTouch, hull_edges, touches_along
+from workhold.geometry.hull import HullEdge, HullTouch, find_touches_along, hull_edges
 from workhold.geometry.segment import Arc, Segment
-from workhold.geometry.symmetry import rotations_onto_itself
-from workhold.model.fixture_table import FixtureTable, table_of_flat_jaws
-from workhold.model.friction import friction_of
+from workhold.geometry.symmetry import find_rotations_onto_itself
+from workhold.model.fixture_table import FixtureTable, make_flat_jaw_table
+from workhold.model.friction import find_friction_coefficient
 from workhold.model.jaw_hold import JawHold, Patch, ProgramNeed
 from workhold.model.notes import NoFixture, Note, Remark, Stage
 from workhold.model.program import Program
 from workhold.model.query import Query
-from workhold.model.requirements import Load, are_within
+from workhold.model.requirements import Load, lie_in_angle_ranges
 from workhold.model.result import Result
 from workhold.model.solid import Band
 from workhold.model.workpiece import Workpiece
 from workhold.statics.friction import (
     Grip,
     corners_of_load,
+    find_least_peak_pressure,
     is_pressed_all_over,
-    least_largest_pressure,
 )
 from workhold.statics.jaw_program import CuttingPieces, worst_of_program
 from workhold.statics.patches import PressedPatch, hulls_meet
 
-__all__ = ["RULES", "Examined", "JawSearch", "answer_between_jaws"]
+__all__ = ["RULES", "Examined", "JawSearch", "find_fixtures_between_jaws"]
 
 Array = NDArray[np.float64]
 # The rules in the order in which they are asked.
@@ -238,7 +238,7 @@ class Lying:
         else:
             start = self.turned(edge.start.point)[0]
             along = []
-            for one in touches_along(edge, self.of.segments, self.of.outline.outer_face_counts):
+            for one in find_touches_along(edge, self.of.segments, self.of.outline.outer_face_counts):
                 low, high = sorted((start - way * one.low, start - way * one.high))
                 along.append(HullTouch(low, high, one.faces))
         out = list[JawTouch]()
@@ -261,7 +261,7 @@ class Lying:
             if edge is None:
                 indices = [index for *_, faces in self.reaches[0, way][1] for index in faces]
             else:
-                touched = touches_along(edge, self.of.segments, self.of.outline.outer_face_counts)
+                touched = find_touches_along(edge, self.of.segments, self.of.outline.outer_face_counts)
                 along = [one for one in touched if len(one.faces) == 1]
                 indices = [index for one in along or touched for index in one.faces]
             out |= {self.of.number(index) for index in indices}
@@ -275,7 +275,7 @@ def gripped(touches: Sequence[JawTouch], top: float, least: float) -> list[JawTo
     return [one for one in high if not one.is_point] or high
 
 
-def patch_of(touches: Sequence[JawTouch], shift: float, width: float) -> Patch | None:
+def clip_touches_to_jaws(touches: Sequence[JawTouch], shift: float, width: float) -> Patch | None:
     """What of some touches lies on jaws of a width, moved along them by ``shift``; None where nothing does."""
     moved = [evolve(one, low=one.low + shift, high=one.high + shift) for one in touches]
     rows = list[tuple[float, float, float, float]]()
@@ -294,7 +294,7 @@ def patch_of(touches: Sequence[JawTouch], shift: float, width: float) -> Patch |
     return Patch(tuple(rows), tuple(sorted(dict.fromkeys(faces))), not faces)
 
 
-def common_middle(one: Sequence[JawTouch], other: Sequence[JawTouch]) -> float | None:
+def find_common_middle(one: Sequence[JawTouch], other: Sequence[JawTouch]) -> float | None:
     """The middle of what the ranges of two jaws' touches have in common; None where that is nothing."""
     low = max(min(touch.low for touch in touches) for touches in (one, other))
     high = min(max(touch.high for touch in touches) for touches in (one, other))
@@ -359,7 +359,7 @@ class JawSearch:
         query, jaws = self.query, self.jaws
         top = jaws.top(parallels)
         nothing = Examined(lying.theta, (0.0, 0.0), None, "grip")
-        if not are_within(degrees(lying.theta), query.restrictions.angles):
+        if not lie_in_angle_ranges(degrees(lying.theta), query.restrictions.angles):
             return evolve(nothing, rule="angles")
         least = jaws.least_grip if query.part_height is not None else 0.0
         if top < jaws.least_grip:
@@ -367,7 +367,7 @@ class JawSearch:
         fixed, moving = (gripped(touches, top, least) for touches in lying.touched)
         if not fixed or not moving:
             return nothing
-        middle = common_middle(fixed, moving)
+        middle = find_common_middle(fixed, moving)
         low, high = -lying.reach(-1, 0), lying.reach(1, 0)
         match stop:
             case "left":
@@ -376,7 +376,9 @@ class JawSearch:
                 shift = jaws.width - jaws.stop_offset - high
             case _:
                 shift = jaws.width / 2 - ((low + high) / 2 if middle is None else middle)
-        on_fixed, on_moving = (patch_of(touches, shift, jaws.width) for touches in (fixed, moving))
+        on_fixed, on_moving = (
+            clip_touches_to_jaws(touches, shift, jaws.width) for touches in (fixed, moving)
+        )
         if on_fixed is None or on_moving is None:
             return nothing
         hold = JawHold(
@@ -414,7 +416,7 @@ class JawSearch:
 
     def line_near_jaws(self, program: Program, one: Examined, hold: JawHold) -> int | None:
         """The line of a program whose tool comes too near a jaw, a box from its face outward; None where none does."""
-        swept = swept_below(program, self.jaws.top(hold.parallels))
+        swept = find_swept_below(program, self.jaws.top(hold.parallels))
         if not len(swept):
             return None
         depth = JAW_DEPTH if self.jaws.thickness is None else self.jaws.thickness
@@ -445,7 +447,12 @@ class JawSearch:
             high = min(self.jaws.top(hold.parallels), self.height)
             points = [(x, each, z) for each in sorted({min(y), max(y)}) for z in (0.0, high)]
         return Grip.of(
-            hold.fixed, hold.moving, hold.opening, friction_of(self.query.friction, "jaw"), points, way
+            hold.fixed,
+            hold.moving,
+            hold.opening,
+            find_friction_coefficient(self.query.friction, "jaw"),
+            points,
+            way,
         )
 
     @property
@@ -495,11 +502,11 @@ class JawSearch:
         of_program = self.first_cut
         if self.query.is_loaded and hold.full_contact:
             grip = self.grip(one, hold)
-            each = [worst_of(grip.forces_needed(self.wrenches(load, one, grip))) for load in loads]
+            each = [find_largest_force(grip.forces_needed(self.wrenches(load, one, grip))) for load in loads]
             of_program = self.asked_by_program(one, grip)
         hold = evolve(hold, clamp_needed_each=tuple(each), program_need=of_program)
         needed = hold.clamp_needed
-        pressure = None if not needed else least_largest_pressure(hold.fixed, hold.moving, needed)
+        pressure = None if not needed else find_least_peak_pressure(hold.fixed, hold.moving, needed)
         hold = evolve(hold, max_pressure=None if self.query.part_height is None else pressure)
         return evolve(one, hold=evolve(hold, warnings=tuple(self.warnings(hold))))
 
@@ -542,7 +549,7 @@ class JawSearch:
             yield "the part reaches to the end of the jaws or beyond"
 
 
-def worst_of(needs: Sequence[float | None]) -> float | None:
+def find_largest_force(needs: Sequence[float | None]) -> float | None:
     """The largest of some forces; None where one of them is none."""
     known = [need for need in needs if need is not None]
     return max(known) if len(known) == len(needs) else None
@@ -586,7 +593,7 @@ def order_of(one: Examined, query: Query) -> tuple[float, ...]:
     return (*key, round(one.theta, 9), hold.parallels, stops.index(hold.stop) if hold.stop else -1)
 
 
-def answer_between_jaws(
+def find_fixtures_between_jaws(
     query: Query, progress: Progress | None = None, cancel: Event | None = None
 ) -> Result:
     """Finds every way to hold a part between the flat jaws of a query's toolkit."""
@@ -624,7 +631,7 @@ def answer_between_jaws(
 def table_of(listed: Sequence[Examined]) -> FixtureTable:
     """The table of some fixtures."""
     holds = [one.hold for one in listed if one.hold is not None]
-    return table_of_flat_jaws(
+    return make_flat_jaw_table(
         [one.theta for one in listed],
         [one.position for one in listed],
         [hold.opening for hold in holds],
@@ -635,7 +642,9 @@ def table_of(listed: Sequence[Examined]) -> FixtureTable:
 def distinct(found: Sequence[Examined], workpiece: Workpiece) -> int:
     """How many fixtures there are where such that a rotation of the part makes the same count once."""
     every = workpiece.numbered
-    turns = [one.angle for one in rotations_onto_itself([face.segment for face in every.faces], every.marks)]
+    turns = [
+        one.angle for one in find_rotations_onto_itself([face.segment for face in every.faces], every.marks)
+    ]
     seen = set[tuple[object, ...]]()
     for one in found:
         assert one.hold is not None

@@ -7,7 +7,7 @@ back by the difference of their holes. So pairs are the crossings of one curve w
 of the lattice. Two lines have one crossing; a line and a circle, or two circles, have two.
 
 Where two curves have a common stretch (parallel lines, equal arcs about one centre) or only graze each other,
-both normals are parallel there. With the wall's they then span no space, so nothing closes (``closure_of``).
+both normals are parallel there. With the wall's they then span no space, so nothing closes (``compute_pair_closure``).
 
 Bounds of the error. Places in the wall's frame are exact to ``off`` mm and directions to ``turn`` radians
 (``PartOnWall``). A crossing is off by ``off`` over the sine of the angle between both normals. This holds as
@@ -40,10 +40,10 @@ from workhold.kernels.base.feature import (
 )
 from workhold.kernels.contact.rules import ROUNDING
 from workhold.listing.canonical_form import Rows
-from workhold.proof.flush import LatticePair, verdict_on_pair
+from workhold.proof.flush import LatticePair, decide_pair
 from workhold.search.flush_search import PartOnWall
 
-__all__ = ["LatticePairs", "are_pressed", "pairs_on"]
+__all__ = ["LatticePairs", "select_pressed_pairs", "find_pairs_on_edge"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -96,7 +96,7 @@ class LatticePairs(Rows):
         return LatticePair(edge, features, step, int(self.branch[number]))
 
 
-def pairs_on(
+def find_pairs_on_edge(
     lying: PartOnWall, pitch: tuple[float, float], most: tuple[float, float], margin: float
 ) -> Iterator[LatticePairs]:
     """The pairs of pegs that touch a part on a wall, nearly ``margin`` mm inside their features or farther.
@@ -174,18 +174,18 @@ def crossings(lying: PartOnWall, feature: IntArray, step: IntArray, pitch: Array
             continue
         with np.errstate(divide="ignore", invalid="ignore"):
             if number == 0:
-                which, branch, offset = of_two_lines(between[chosen], axes[chosen])
+                which, branch, offset = cross_two_lines(between[chosen], axes[chosen])
             elif number == 1:
-                which, branch, offset = of_line_and_circle(
+                which, branch, offset = cross_line_and_circle(
                     between[chosen], axes[chosen, 0], radius[chosen, 1], lying.off
                 )
             elif number == 2:
-                which, branch, offset = of_line_and_circle(
+                which, branch, offset = cross_line_and_circle(
                     -between[chosen], axes[chosen, 1], radius[chosen, 0], lying.off
                 )
                 offset = offset + between[chosen[which]]
             else:
-                which, branch, offset = of_two_circles(between[chosen], radius[chosen], lying.off)
+                which, branch, offset = cross_two_circles(between[chosen], radius[chosen], lying.off)
         chosen = chosen[which]
         point = rows[feature[chosen, 0]][:, [X, Y]] + offset
         yield touching(
@@ -193,7 +193,7 @@ def crossings(lying: PartOnWall, feature: IntArray, step: IntArray, pitch: Array
         )
 
 
-def of_two_lines(between: Array, axes: Array) -> tuple[IntArray, Array, Array]:
+def cross_two_lines(between: Array, axes: Array) -> tuple[IntArray, Array, Array]:
     """Which pairs (M,) of lines cross, the branch, and the place (K, 2) from the middle of the first.
 
     Parameters
@@ -207,7 +207,7 @@ def of_two_lines(between: Array, axes: Array) -> tuple[IntArray, Array, Array]:
     return which, np.ones(len(which)), along[:, None] * axes[which, 0]
 
 
-def of_line_and_circle(
+def cross_line_and_circle(
     between: Array, axis: Array, radius: Array, off: float
 ) -> tuple[IntArray, Array, Array]:
     """Which pairs (M,) of a line and a circle cross, at which branch, and the place (K, 2) in mm.
@@ -225,7 +225,7 @@ def of_line_and_circle(
     return both_of((radius - away) * (radius + away), radius, off, foot, axis)
 
 
-def of_two_circles(between: Array, radius: Array, off: float) -> tuple[IntArray, Array, Array]:
+def cross_two_circles(between: Array, radius: Array, off: float) -> tuple[IntArray, Array, Array]:
     """Which pairs (M,) of circles cross, at which branch, and the place (K, 2) from the middle of the first.
 
     Parameters
@@ -297,7 +297,7 @@ def perpendicular(vectors: Array) -> Array:
     return np.stack([-vectors[..., 1], vectors[..., 0]], axis=-1)
 
 
-def closure_of(
+def compute_pair_closure(
     pairs: LatticePairs, lying: PartOnWall, problem: Problem
 ) -> tuple[LatticePairs, BoolArray, BoolArray]:
     """Pairs with the forces of wall and pegs, which (N,) press the part on the wall, and of which it is open.
@@ -328,18 +328,18 @@ def closure_of(
     return evolve(pairs, null=null), held, ~held & ~hopeless
 
 
-def are_pressed(
+def select_pressed_pairs(
     pairs: LatticePairs, edge: int, lying: PartOnWall, problem: Problem
 ) -> tuple[LatticePairs, IntArray, int]:
     """Pairs that press the part on a hull edge, the numbers of those left open, and how many needed balls.
 
     Pairs whose doubles are too coarse are decided in balls, and their places and forces taken from there.
     """
-    pairs, held, open_ = closure_of(pairs, lying, problem)
+    pairs, held, open_ = compute_pair_closure(pairs, lying, problem)
     point, null, undecided = pairs.point.copy(), pairs.null.copy(), []
     sharpened = np.flatnonzero(open_ | (held & (pairs.reach > SAME_PLACE / 2)))
     for k in sharpened.tolist():
-        verdict, sharp = verdict_on_pair(pairs.candidate(k, edge), problem)
+        verdict, sharp = decide_pair(pairs.candidate(k, edge), problem)
         held[k] = verdict is True
         if verdict is None:
             undecided.append(k)

@@ -39,12 +39,12 @@ from workhold.listing.seats import ClampedSeats, Seats, seats_of
 from workhold.model.notes import NoPair
 from workhold.model.query import Query
 from workhold.proof.deciding import Account, Course, decided
-from workhold.search.cells import Block, cost_of, run_blocks
+from workhold.search.cells import Block, estimate_cost, run_blocks
 from workhold.search.error_limits import ErrorLimit
-from workhold.search.shares import one_clamp, tilted_bound
+from workhold.search.shares import bound_tilted_keys, select_one_clamp
 from workhold.search.toolkit_search import ANY_ERROR, LEAST_BLOCKS, ToolkitSearch
 
-__all__ = ["LatticeShares", "blocks_of_search", "problems_of", "searches_of", "ways_in"]
+__all__ = ["LatticeShares", "list_search_blocks", "make_problems", "searches_of", "count_ways"]
 
 Array = NDArray[np.float64]
 # Ranges of orientation in radians, from and up to but without the second.
@@ -105,8 +105,8 @@ class LatticeShares:
             first = preferred_angles(query)
             square = searches_of(query, threads, cancel, limit, limit.square, first)
             aslant = searches_of(query, threads, cancel, limit, limit.aslant)
-            blocks = [blocks_of_search(search) for search in aslant]
-            ranges = square_first(ranges_of(blocks), first)
+            blocks = [list_search_blocks(search) for search in aslant]
+            ranges = order_square_ranges_first(ranges_of(blocks), first)
             seats = ClampedSeats(query, square[0].problem, is_limited=True)
             bound = tilted_keys(query, square[0].problem)
             seats.ranked.has_dropped = True
@@ -114,18 +114,18 @@ class LatticeShares:
                 yield cls(aslant, seats, blocks, ranges, bound, pool, threads, cancel, square)
             return
         searches = searches_of(query, threads, cancel)
-        blocks = [blocks_of_search(search) for search in searches]
+        blocks = [list_search_blocks(search) for search in searches]
         x0, y0, x1, y1 = query.workpiece.bounds
         refuse_much_work(
-            ways_in(blocks),
+            count_ways(blocks),
             (x1 - x0, y1 - y0),
             query.toolkit.carriers[0].pitch,
-            partial(ways_at_pitch, query, threads),
+            partial(estimate_ways_at_pitch, query, threads),
         )
         problem = searches[0].problem
-        bound, ranges = tilted_bound(query, problem, ways_in(blocks)), ranges_of(blocks)
+        bound, ranges = bound_tilted_keys(query, problem, count_ways(blocks)), ranges_of(blocks)
         if bound is not None:
-            ranges = square_first(ranges, preferred_angles(query))
+            ranges = order_square_ranges_first(ranges, preferred_angles(query))
         seats = ClampedSeats(query, problem)
         with ThreadPoolExecutor(max_workers=threads) as pool:
             yield cls(searches, seats, blocks, ranges, bound, pool, threads, cancel)
@@ -260,34 +260,34 @@ def searches_of(
     precision = ANY_ERROR if limit is None else limit.precision
     return [
         ToolkitSearch.of(problem, threads=threads, cancel=cancel, near=near, precision=precision, only=only)
-        for problem in problems_of(query)
+        for problem in make_problems(query)
     ]
 
 
-def problems_of(query: Query) -> list[Problem]:
+def make_problems(query: Query) -> list[Problem]:
     """The problem of each direction of the clamp, for contacts that need not close."""
-    return [Problem.of(one_clamp(query, way), pairing=True) for way in query.toolkit.ways]
+    return [Problem.of(select_one_clamp(query, way), pairing=True) for way in query.toolkit.ways]
 
 
-def blocks_of_search(search: ToolkitSearch) -> list[Block]:
+def list_search_blocks(search: ToolkitSearch) -> list[Block]:
     """The blocks of one direction's search that together find everything."""
     return search.blocks(search.problem.toolkit.types, BLOCKS_PER_HALF_TURN)
 
 
-def ways_at_pitch(query: Query, threads: int, pitch: float) -> float:
+def estimate_ways_at_pitch(query: Query, threads: int, pitch: float) -> float:
     """The ways in which two pairs of contacts may go together with another pitch in mm."""
     asked = evolve(query, toolkit=query.toolkit.changed({PITCH.name: (pitch, pitch)}))
-    return ways_in(map(blocks_of_search, searches_of(asked, threads, None)))
+    return count_ways(map(list_search_blocks, searches_of(asked, threads, None)))
 
 
 def ranges_of(whole_turn: Sequence[list[Block]]) -> list[Ranges]:
     """Equal ranges of a whole turn, each with no more work than is to be done at a time."""
-    large, many = int(ways_in(whole_turn) / WAYS_TOGETHER), max(map(len, whole_turn))
+    large, many = int(count_ways(whole_turn) / WAYS_TOGETHER), max(map(len, whole_turn))
     count = min(max(many // BLOCKS_TOGETHER, large, 1), MOST_RANGES)
     return [[pair] for pair in pairwise((np.linspace(0.0, tau, count + 1) - SAME_POSE).tolist())]
 
 
-def square_first(ranges: Sequence[Ranges], square: Ranges) -> list[Ranges]:
+def order_square_ranges_first(ranges: Sequence[Ranges], square: Ranges) -> list[Ranges]:
     """Ranges of a whole turn with those, in degrees, before them in which the part lies square, and without
     these."""
     begin, end = ranges[0][0][0], ranges[-1][-1][1]
@@ -308,6 +308,6 @@ def counting(progress: Progress | None, found: int) -> Progress | None:
     return None if progress is None else lambda fraction, _: progress(fraction, found)
 
 
-def ways_in(blocks: Iterable[Iterable[Block]]) -> float:
+def count_ways(blocks: Iterable[Iterable[Block]]) -> float:
     """The ways in which two pairs of contacts may go together in the blocks of some searches."""
-    return cost_of(chain.from_iterable(blocks))
+    return estimate_cost(chain.from_iterable(blocks))

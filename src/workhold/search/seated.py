@@ -24,15 +24,15 @@ from workhold.listing.ranking import billionths, keys_of, usual_errors
 from workhold.listing.results import stage
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.notes import BestOnly, Cut, Note, PushedByHand, Seated
-from workhold.model.quality import FIGURES, SEATING_FIGURES, WARNINGS, whole_rows
+from workhold.model.quality import FIGURES, SEATING_FIGURES, WARNINGS, fill_figure_rows
 from workhold.model.query import SEATING_KEYS, Query
 from workhold.model.result import Result
 from workhold.model.seating import Seating
 from workhold.seating.part_features import refuse_own_outlines
 from workhold.seating.pattern import refuse_unseated
-from workhold.statics.effective_error import angle_classes
+from workhold.statics.effective_error import classify_angles
 
-__all__ = ["Sink", "refuse_unasked", "seated_answer"]
+__all__ = ["Sink", "refuse_unasked", "answer_with_seating"]
 
 # The share of the work, as progress reports it, that is the search.
 SEARCHED = 0.3
@@ -76,7 +76,7 @@ class SeatingWork:
     cancel: Event | None
 
 
-def seated_answer(
+def answer_with_seating(
     query: Query,
     search: Callable[..., Result],
     *,
@@ -111,7 +111,7 @@ def seated_answer(
     taker = {} if sink is None else {"sink": SeatedSink(sink, work)}
     result = search(query.without_seating, progress=progress, cancel=cancel, **taker)
     if by_hand:
-        return put_in_by_hand(result, query)
+        return explain_putting_in_by_hand(result, query)
     return seated(result, work) if sink is None else evolve(result, query=query)
 
 
@@ -141,7 +141,7 @@ def refuse_unasked(query: Query) -> None:
         )
 
 
-def put_in_by_hand(result: Result, query: Query) -> Result:
+def explain_putting_in_by_hand(result: Result, query: Query) -> Result:
     """The result of a query with seating for two clamps: the same fixtures, and how the part is put in."""
     notes = (*result.reasons, PushedByHand()) if sum(result.found.values()) else result.reasons
     return evolve(result, query=query, notes=notes)
@@ -208,12 +208,12 @@ def order_of(
     further = [[one.figures[figure.key] for figure in SEATING_FIGURES] for one in seatings]
     seating = np.array(further).reshape(len(seatings), len(SEATING_FIGURES))
     # What there is of a program stays the last column.
-    whole = whole_rows(table.quality)
+    whole = fill_figure_rows(table.quality)
     quality = np.hstack([whole[:, : len(FIGURES)], seating, whole[:, len(FIGURES) :]])
     quality[:, WARNINGS] += [one.warning_count for one in seatings]
     effective = usual_errors(query)
     error = None if effective is None else effective.errors(table)
-    keys = keys_of(quality, query, error, angle_classes(table.theta))
+    keys = keys_of(quality, query, error, classify_angles(table.theta))
     return keys.order(
         None if least_effective_error is None else int(billionths(np.array([least_effective_error]))[0])
     )
@@ -255,7 +255,7 @@ class SeatedSink:
     def receive(self, result: Result, listed: int, tables: Iterable[FixtureTable]) -> None:
         """Takes a result and its fixtures, best first, in tables one after the other."""
         if is_put_in_by_hand(self.work.query):
-            self.sink.receive(put_in_by_hand(result, self.work.query), listed, tables)
+            self.sink.receive(explain_putting_in_by_hand(result, self.work.query), listed, tables)
             return
         rest = iter(tables)
         held = list(taken(rest, self.work.query.seating or 0)) or [result.table]

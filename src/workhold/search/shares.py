@@ -36,7 +36,7 @@ from workhold.model.notes import Note
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.proof.deciding import Account
-from workhold.search.cells import Block, cost_of, run_blocks
+from workhold.search.cells import Block, estimate_cost, run_blocks
 from workhold.search.error_limits import ErrorLimit
 from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch
 
@@ -45,12 +45,12 @@ __all__ = [
     "Locating",
     "Preview",
     "Previews",
-    "answer_in_shares",
+    "answer_by_shares",
     "best_first",
     "has_body_to_pass",
     "limited_work",
-    "one_clamp",
-    "tilted_bound",
+    "select_one_clamp",
+    "bound_tilted_keys",
     "work_of",
 ]
 
@@ -154,7 +154,7 @@ class Locating(Protocol):
         """Why a search that came to its end has no fixture."""
 
 
-def answer_in_shares(
+def answer_by_shares(
     locating: Locating, progress: Progress | None, cancel: Event | None, preview: Preview | None = None
 ) -> Result:
     """The fixtures that a search finds share by share, see ``search.design.answer``."""
@@ -177,7 +177,7 @@ def answer_in_shares(
     return evolve(result, notes=(locating.why_none(),))
 
 
-def one_clamp(query: Query, way: Toolkit) -> Query:
+def select_one_clamp(query: Query, way: Toolkit) -> Query:
     """A query with one clamp of those that are needed together, in one direction."""
     return evolve(query, toolkit=way, types=None, rank_by=None, best=None, listing=None)
 
@@ -210,8 +210,8 @@ def best_first(
     query, problem = search.problem.query, search.problem
     # Smaller blocks learn earlier what margin is to be reached.
     blocks_in = partial(ToolkitSearch.blocks, types=query.types, least=4 * LEAST_BLOCKS)
-    total = cost_of(blocks_in(search))
-    bound = tilted_bound(query, problem, total)
+    total = estimate_cost(blocks_in(search))
+    bound = bound_tilted_keys(query, problem, total)
     first = () if bound is None else preferred_angles(query)
     if total > SCOUTED_FROM and len(search.precision.probes):
         scout, known = evolve(search, every=SCOUTED), BestFixtures(problem, cancel)
@@ -225,8 +225,8 @@ def best_first(
     for part in parts:
         if begun and bound is not None and kept.rules_out(bound):
             break
-        before, begun = cost_of(begun) / total if begun else 0.0, begun + part
-        share = stage(progress, before, 1.0 if part is parts[-1] else cost_of(begun) / total)
+        before, begun = estimate_cost(begun) / total if begun else 0.0, begun + part
+        share = stage(progress, before, 1.0 if part is parts[-1] else estimate_cost(begun) / total)
         done += run_blocks(part, threads, share, cancel, kept.add, look, search.stop, needed=kept.needed)[1]
     return work_of(search, begun, done)
 
@@ -265,7 +265,7 @@ def limited_work(
     )
 
 
-def tilted_bound(query: Query, problem: Problem, cost: float) -> OrderKeys | None:
+def bound_tilted_keys(query: Query, problem: Problem, cost: float) -> OrderKeys | None:
     """The least keys of fixtures at other than preferred angles, where a search of a cost begins with these.
 
     None where it does not.

@@ -23,10 +23,10 @@ from workhold.contact.curves import (
     EVERYWHERE,
     CurveTable,
     LatticeSteps,
-    center_numbers,
     curve_table,
     joined,
     loosened,
+    number_centers,
 )
 from workhold.contact.problem import Frame, Problem
 from workhold.conventions import ANGLE_HAIR, GAP_SLACK, MARGIN_SLACK, PARALLEL, WEAK_CLOSURE
@@ -57,9 +57,9 @@ from workhold.search.block_memory import BlockMemory
 from workhold.search.cells import (
     FIRST_ORIENTATION,
     Block,
-    cell_edges,
-    member_counts,
-    members_of_cell,
+    count_curves_in_cells,
+    divide_into_cells,
+    find_curves_in_cell,
     run_blocks,
 )
 
@@ -142,7 +142,7 @@ def is_between_free_holes(carrier: Carrier, steps: NDArray[np.int64]) -> NDArray
     return np.asarray(there & (pairs[column % shape[0], row % shape[1]] > 0.5))
 
 
-def tables_of(
+def make_curve_tables(
     problem: Problem,
     loose: Array,
     threads: int,
@@ -184,7 +184,7 @@ def may_lie_at(
     return wanted
 
 
-def cells_of_half_turn(problem: Problem) -> int:
+def count_half_turn_cells(problem: Problem) -> int:
     """How many cells there are in a half turn of orientations.
 
     In a cell heights should change by no more than part of a pitch, so that most pairs of pieces cannot cross.
@@ -207,12 +207,12 @@ def neighbours(wanted: NDArray[np.bool_], together: int) -> Iterator[tuple[int, 
         first = last
 
 
-def with_limit(precision: Precision, most: float) -> Precision:
+def limit_precision(precision: Precision, most: float) -> Precision:
     """Bounds of location errors with a largest effective one of interest, in mm."""
     return precision._replace(most=most, most_aslant=most / ASLANT)
 
 
-def one_in(numbers: NDArray[np.int64], many: int) -> NDArray[np.bool_]:
+def sample_numbers(numbers: NDArray[np.int64], many: int) -> NDArray[np.bool_]:
     """Which numbers (N,) are among one in so many, as if drawn, and always the same."""
     mixed = numbers.astype(np.uint64) * np.uint64(0x9E3779B97F4A7C15)
     return np.asarray((mixed >> np.uint64(33)) % np.uint64(many) == 0)
@@ -221,7 +221,7 @@ def one_in(numbers: NDArray[np.int64], many: int) -> NDArray[np.bool_]:
 def is_round(problem: Problem) -> bool:
     """Whether every face that a peg could touch is an arc about one centre."""
     arcs = problem.rows[:, IS_ARC] != 0.0
-    return bool(arcs.all()) and len(set(center_numbers(problem.rows).tolist())) == 1
+    return bool(arcs.all()) and len(set(number_centers(problem.rows).tolist())) == 1
 
 
 @define(eq=False)
@@ -274,10 +274,10 @@ class ToolkitSearch:
         loose = loosened(problem.rows[:, :SEGMENT_LENGTH])
         within = ANY_TURN
         if only:
-            edges = cell_edges(2, 2 * cells_of_half_turn(problem))
+            edges = divide_into_cells(2, 2 * count_half_turn_cells(problem))
             chosen = may_lie_at(edges, only, 2, 90.0 * problem.frame.quarters)
             within = np.stack([edges[:-1], edges[1:]], axis=1)[chosen]
-        table = tables_of(problem, loose, threads, cancel, near, within)
+        table = make_curve_tables(problem, loose, threads, cancel, near, within)
         return cls(problem, loose, table, precision, near, counting, most_listed)
 
     @property
@@ -331,7 +331,7 @@ class ToolkitSearch:
         """
         # All lines of action pass a round part's centre, so nothing keeps it from turning.
         is_idle = not self.counting and is_round(self.problem)
-        cells = cells_of_half_turn(self.problem)
+        cells = count_half_turn_cells(self.problem)
         most = max(cells // least, 1)
         together = int(min(max(PAIRS_PER_BLOCK / max(self.alive, 1.0) ** 2, 1.0), most))
         blocks: list[Block] = []
@@ -340,7 +340,7 @@ class ToolkitSearch:
             if arrangement.name not in types:
                 continue
             half_turns = 1 if arrangement.pegs[0] == frame.swapped else 2
-            edges = cell_edges(half_turns, half_turns * cells)
+            edges = divide_into_cells(half_turns, half_turns * cells)
             wanted = may_lie_at(edges, self.problem.restrictions.angles, half_turns, 90.0 * frame.quarters)
             if within:
                 wanted &= may_lie_at(edges, within, half_turns, 90.0 * frame.quarters)
@@ -356,7 +356,7 @@ class ToolkitSearch:
                     for pairs, here in zip(sliding_pairs, is_first, strict=True)
                 ]
             ranges = np.array(list(neighbours(crossing, together)), np.int64).reshape(-1, 2)
-            counts = member_counts(self.table, edges[ranges[:, 0]], edges[ranges[:, 1]])
+            counts = count_curves_in_cells(self.table, edges[ranges[:, 0]], edges[ranges[:, 1]])
             for (begin, end), count in zip(ranges.tolist(), counts.tolist(), strict=True):
                 blocks.append(self.crossing_block(arrangement, edges[begin : end + 1], count))
             for begin, end in neighbours(wanted, together):
@@ -410,7 +410,7 @@ class ToolkitSearch:
             )
             for cell in cells
         ]
-        members = member_counts(self.table, edges[cells], edges[np.add(cells, 1)])
+        members = count_curves_in_cells(self.table, edges[cells], edges[np.add(cells, 1)])
         cost = float(members @ np.array([len(sliding_pairs[cell]) for cell in cells]))
         return Block(
             lambda needed: np.concatenate([part(needed) for part in parts]),
@@ -437,11 +437,11 @@ class ToolkitSearch:
         most = min(self.precision.most, needed.error)
         features = self.features
         if most < self.precision.most and len(self.precision.probes):
-            features = features._replace(precision=with_limit(features.precision, most))
+            features = features._replace(precision=limit_precision(features.precision, most))
         limits = self.limits_from(needed.margin, features.precision.most)
-        members = members_of_cell(self.table, low, high)
+        members = find_curves_in_cell(self.table, low, high)
         if self.every > 1:
-            members = members[one_in(members, self.every)]
+            members = members[sample_numbers(members, self.every)]
         curves, lattice = self.table.curves, self.frame.lattice
         return self.memory.run(kernel, members, stats, features, curves, lattice, limits, self.counting)
 

@@ -49,7 +49,7 @@ __all__ = [
     "PinContacts",
     "closure",
     "may_oppose",
-    "pin_contacts_on",
+    "find_pin_contacts",
     "seating",
 ]
 
@@ -88,7 +88,7 @@ class PinContacts(Rows):
     branch: Array
 
 
-def pin_contacts_on(
+def find_pin_contacts(
     lying: PartOnWall, chosen: tuple[int, int], levels: Array, upright: bool, margin: float
 ) -> PinContacts:
     """Contacts of pegs on lines with some features, at least nearly ``margin`` mm inside their ends; at a

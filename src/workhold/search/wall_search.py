@@ -31,18 +31,24 @@ from workhold.listing.wall_fixtures import WallFixtures, placed_on_wall, wall_ta
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.query import Query
 from workhold.model.search_report import AT_AN_EDGE, Undecided
-from workhold.proof.flush import Candidate, pressing, reactions_on_fence, sharp_contacts, sharp_place
+from workhold.proof.flush import (
+    Candidate,
+    compute_fence_reactions,
+    locate_contact_exactly,
+    locate_contacts_exactly,
+    pressing,
+)
 from workhold.search.flush_search import FlushSearch, PartOnWall
 from workhold.search.wall_contacts import (
     ContactPairs,
     PinContacts,
     closure,
+    find_pin_contacts,
     may_oppose,
-    pin_contacts_on,
     seating,
 )
 
-__all__ = ["WallSearch", "fixtures_on", "searches_of"]
+__all__ = ["WallSearch", "find_fixtures_on_edge", "searches_of"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -87,7 +93,7 @@ class WallSearch(FlushSearch):
 
     def fixtures(self, edge: int) -> Iterator[WallFixtures]:
         """The pairs that press the part as it lies on a hull edge, some at a time."""
-        return (part for _, part in fixtures_on([self], edge))
+        return (part for _, part in find_fixtures_on_edge([self], edge))
 
     def placed(self, parts: list[WallFixtures], edge: int) -> FixtureTable:
         """The table of those pairs whose clamps have a place, each once."""
@@ -96,12 +102,12 @@ class WallSearch(FlushSearch):
     def on_rows(self, edge: int, lying: PartOnWall, chosen: tuple[int, int], rows: Array) -> PinContacts:
         """Contacts of pegs in rows of holes; balls decide those where a row grazes an arc."""
         problem = self.problem
-        places = pin_contacts_on(lying, chosen, rows, False, problem.contact_margin)
+        places = find_pin_contacts(lying, chosen, rows, False, problem.contact_margin)
         near = np.flatnonzero(places.reach > SAME_PLACE / 2)
         kept = np.ones(len(places), np.bool_)
         for k in near.tolist():
             numbers = int(places.line[k]), int(places.feature[k]), float(places.branch[k])
-            sharp = sharp_place(edge, *numbers, problem, self.plate)
+            sharp = locate_contact_exactly(edge, *numbers, problem, self.plate)
             kept[k] = sharp is not None
             if sharp is not None:
                 places.point[k], places.normal[k], places.slack[k] = sharp
@@ -139,7 +145,7 @@ class WallSearch(FlushSearch):
         for start in range(0, len(locators) if len(steps) else 0, together):
             some = u[start : start + together]
             levels = (some[:, None] + pitch * steps).ravel()
-            places = pin_contacts_on(lying, problem.moving, levels, True, problem.contact_margin)
+            places = find_pin_contacts(lying, problem.moving, levels, True, problem.contact_margin)
             locator, step = np.divmod(places.line, len(steps))
             locator += start
             # The column is as uncertain as the locator it is counted from.
@@ -216,11 +222,11 @@ class WallSearch(FlushSearch):
         if not self.problem.pairing:
             return places
         null, push = places.null.copy(), places.push.copy()
-        doubt = reaction_doubts(places, lying, one, two, locator, self.problem)
+        doubt = bound_reaction_errors(places, lying, one, two, locator, self.problem)
         grazes = two.swing > FORCES_OFF * push
         for k in np.flatnonzero((doubt > DOUBTFUL) | grazes).tolist():
             candidate = self.candidate(edge, one, two, locator, k)
-            sharp = reactions_on_fence(candidate, self.problem, self.plate, self.push)
+            sharp = compute_fence_reactions(candidate, self.problem, self.plate, self.push)
             if sharp is not None:
                 null[k, :3], doubt[k] = sharp.taken, sharp.doubt
                 push[k] = sharp.push if grazes[k] else push[k]
@@ -236,7 +242,9 @@ class WallSearch(FlushSearch):
         far = np.flatnonzero(np.maximum(one.reach[locator], two.reach) > SAME_PLACE / 2)
         places, tip, null = pressed.locator.copy(), pressed.tip.copy(), pressed.null.copy()
         for k in far.tolist():
-            sharp = sharp_contacts(self.candidate(edge, one, two, locator, k), self.problem, self.plate)
+            sharp = locate_contacts_exactly(
+                self.candidate(edge, one, two, locator, k), self.problem, self.plate
+            )
             if sharp is not None:
                 places[k], tip[k] = sharp.points
                 null[k] = null[k] if self.problem.pairing else sharp.null
@@ -272,7 +280,7 @@ class WallSearch(FlushSearch):
         )
 
 
-def reaction_doubts(
+def bound_reaction_errors(
     pressed: WallFixtures,
     lying: PartOnWall,
     one: PinContacts,
@@ -299,7 +307,9 @@ def searches_of(query: Query, ways: Sequence[Toolkit], pairing: bool = False) ->
     return [WallSearch(problem), *(WallSearch(evolve(problem, query=other)) for other in others)]
 
 
-def fixtures_on(searches: Sequence[WallSearch], edge: int) -> Iterator[tuple[WallSearch, WallFixtures]]:
+def find_fixtures_on_edge(
+    searches: Sequence[WallSearch], edge: int
+) -> Iterator[tuple[WallSearch, WallFixtures]]:
     """The pairs that press the part as it lies on a hull edge, some at a time, each with its search.
 
     What does not depend on the clamp's direction is looked at once for all searches (``searches_of``). This

@@ -24,17 +24,22 @@ from workhold.listing.clamp_placement import last_holes
 from workhold.listing.results import RankedTable, Work
 from workhold.listing.seats import ClampedSeats, Seats, seats_of
 from workhold.listing.wall_fixtures import WallFixtures, first_of_each, turned
-from workhold.model.fixture_table import FixtureTable, unknown_quality
+from workhold.model.fixture_table import FixtureTable, make_unknown_quality
 from workhold.model.notes import NoFixture, NoPair, NoPlace, Note
 from workhold.model.query import Query
 from workhold.model.search_report import AT_AN_EDGE, Undecided
-from workhold.model.wall_ends import common_stretch, touches_of, wall_ends
+from workhold.model.wall_ends import find_common_stretch, list_hull_touches, wall_ends
 from workhold.proof.deciding import Account
-from workhold.search.broken_rules import line_in_the_way
+from workhold.search.broken_rules import find_program_line_in_the_way
 from workhold.search.flush_search import FlushSearch
-from workhold.search.lattice_pairs import LatticePairs, are_pressed, closure_of, pairs_on
-from workhold.search.shares import has_body_to_pass, one_clamp
-from workhold.search.wall_search import fixtures_on, searches_of
+from workhold.search.lattice_pairs import (
+    LatticePairs,
+    compute_pair_closure,
+    find_pairs_on_edge,
+    select_pressed_pairs,
+)
+from workhold.search.shares import has_body_to_pass, select_one_clamp
+from workhold.search.wall_search import find_fixtures_on_edge, searches_of
 
 __all__ = ["LatticePairSearch", "WallShares"]
 
@@ -67,14 +72,16 @@ class LatticePairSearch(FlushSearch):
     def fixtures(self, edge: int) -> Iterator[LatticePairs]:
         """The pairs that press the part as it lies on a hull edge, some at a time."""
         problem, lying = self.problem, self.lying_on(edge)
-        for pairs in pairs_on(lying, self.lattice.pitch, last_holes(self.lattice), problem.contact_margin):
-            good, open_, sharpened = are_pressed(pairs, edge, lying, problem)
+        for pairs in find_pairs_on_edge(
+            lying, self.lattice.pitch, last_holes(self.lattice), problem.contact_margin
+        ):
+            good, open_, sharpened = select_pressed_pairs(pairs, edge, lying, problem)
             self.examined += len(pairs)
             self.verified += len(good)
             self.escalated += sharpened
             self.undecided += [self.entry(pairs, k, edge) for k in open_.tolist()]
             if self.explains:
-                self.look_at(closure_of(pairs, lying, problem)[0], edge)
+                self.look_at(compute_pair_closure(pairs, lying, problem)[0], edge)
             yield good
 
     def look_at(self, pairs: LatticePairs, edge: int) -> None:
@@ -120,7 +127,7 @@ class LatticePairSearch(FlushSearch):
         """
         flush, pitch = self.problem.workpiece.flush, self.lattice.pitch[0]
         columns, first = self.lattice.column_count, np.full(len(pairs), -1, np.int64)
-        null, touches = pairs.null.copy(), touches_of(self.problem.workpiece, edge)
+        null, touches = pairs.null.copy(), list_hull_touches(self.problem.workpiece, edge)
         both, middle = null[:, :2].sum(axis=1), (reach[0] + reach[1]) / 2.0
         acts = flush.length[edge] * null[:, 1] / both
         together = max(TOGETHER // (columns * len(touches)), 1)
@@ -129,7 +136,7 @@ class LatticePairSearch(FlushSearch):
             # How far x is from u, for each column of the first peg.
             shift = np.arange(columns) * pitch - pairs.point[some, 0, 0, None]
             low, high = ((end - shift).ravel() for end in reach)
-            common = common_stretch(touches, low, high)
+            common = find_common_stretch(touches, low, high)
             start, end = (values.reshape(shift.shape) for values in (common.start, common.end))
             inside = np.minimum(acts[some, None] - start, end - acts[some, None]) > SAME_PLACE
             inside &= np.arange(columns) + pairs.step[some, :1] < columns
@@ -173,7 +180,7 @@ class LatticePairSearch(FlushSearch):
             position=position,
             jaw_separation=pairs.point[:, 0, 1] - row[:, 2] * self.lattice.pitch[1] - level,
             force=share / share[:, :2].sum(axis=1, keepdims=True),
-            quality=unknown_quality(share.min(axis=1, initial=1.0)),
+            quality=make_unknown_quality(share.min(axis=1, initial=1.0)),
         )
 
     def entry(self, pairs: LatticePairs, number: int, edge: int) -> Undecided:
@@ -224,9 +231,11 @@ class WallShares:
             search = LatticePairSearch(Problem.of(query))
             ranked = RankedTable(query, search.problem)
             return cls([search], lambda edge: zip(repeat(search), search.fixtures(edge)), ranked, cancel)
-        searches = searches_of(one_clamp(query, toolkit.ways[0]) if pairing else query, toolkit.ways, pairing)
+        searches = searches_of(
+            select_one_clamp(query, toolkit.ways[0]) if pairing else query, toolkit.ways, pairing
+        )
         collector = (ClampedSeats if pairing else RankedTable)(query, searches[0].problem)
-        return cls(searches, partial(fixtures_on, searches), collector, cancel)
+        return cls(searches, partial(find_fixtures_on_edge, searches), collector, cancel)
 
     @property
     def shares(self) -> int:
@@ -279,7 +288,7 @@ class WallShares:
     def why_none(self) -> Note:
         """Why a search that came to its end has no fixture."""
         query, search, verified = self.collector.query, self.searches[0], self.total("verified")
-        wording, line = query.toolkit.wording, line_in_the_way(query)
+        wording, line = query.toolkit.wording, find_program_line_in_the_way(query)
         if isinstance(self.collector, RankedTable) and verified:
             return NoPlace(verified, wording, has_body_to_pass(query))
         if not self.edges:

@@ -36,11 +36,11 @@ from workhold.kernels.seating.columns import (
     Given,
 )
 from workhold.kernels.seating.parallel_and_concentric import ALPHA, at_tangencies, tangent_chords
-from workhold.seating.closing import candidate_of, filled
+from workhold.seating.closing import filled, make_candidate
 from workhold.seating.obstacle_boundary import ObstacleBoundary, contains
 from workhold.seating.pattern import Pattern
 
-__all__ = ["AntipodalContacts", "antipodal_candidates", "antipodal_contacts", "parallel_candidates"]
+__all__ = ["AntipodalContacts", "find_antipodal_candidates", "antipodal_contacts", "find_parallel_candidates"]
 
 Array = NDArray[np.float64]
 # mm. Shorter distances are none.
@@ -96,12 +96,14 @@ def antipodal_contacts(boundary: ObstacleBoundary) -> list[AntipodalContacts]:
     Those on parallel lines and on concentric arcs, which are whole families, are left out.
     """
     standing, moving = range(*boundary.parts[0]), range(*boundary.parts[1])
-    found = [normal for a, b in product(standing, moving) for normal in of_pieces(boundary.rows, a, b)]
+    found = [
+        normal for a, b in product(standing, moving) for normal in pair_antipodal_pieces(boundary.rows, a, b)
+    ]
     for v, (piece, _) in enumerate(boundary.pocket_pieces.tolist()):
         if piece in standing:
-            found += [normal for b in moving for normal in of_pocket(boundary, v, b)]
+            found += [normal for b in moving for normal in find_antipodal_in_pocket(boundary, v, b)]
         if piece in moving:
-            found += [normal.turned for a in standing for normal in of_pocket(boundary, v, a)]
+            found += [normal.turned for a in standing for normal in find_antipodal_in_pocket(boundary, v, a)]
     for v, w in product(range(len(boundary.pockets)), repeat=2):
         if boundary.pocket_pieces[v, 0] not in standing or boundary.pocket_pieces[w, 0] not in moving:
             continue
@@ -141,7 +143,7 @@ def reached(row: Array, ux: float, uy: float, x: float, y: float) -> tuple[float
     return x + d * ux, y + d * uy
 
 
-def of_pieces(rows: Array, a: int, b: int) -> list[AntipodalContacts]:
+def pair_antipodal_pieces(rows: Array, a: int, b: int) -> list[AntipodalContacts]:
     one, two = rows[a], rows[b]
     if one[IS_ARC] == 0.0 and two[IS_ARC] == 0.0:
         return []
@@ -165,7 +167,7 @@ def of_pieces(rows: Array, a: int, b: int) -> list[AntipodalContacts]:
     return found
 
 
-def of_pocket(boundary: ObstacleBoundary, pocket: int, b: int) -> list[AntipodalContacts]:
+def find_antipodal_in_pocket(boundary: ObstacleBoundary, pocket: int, b: int) -> list[AntipodalContacts]:
     """The antipodal contacts of a pocket and piece b: normals of b that press a peg into the pocket."""
     row, (x, y) = boundary.rows[b], boundary.pockets[pocket, :2].tolist()
     ways = [(row[AXIS_Y], -row[AXIS_X])] if row[IS_ARC] == 0.0 else between(row[X] - x, row[Y] - y)
@@ -186,7 +188,7 @@ def between(x: float, y: float) -> list[tuple[float, float]]:
     return [] if size < SHORTEST / 10.0 else [(x / size, y / size), (-x / size, -y / size)]
 
 
-def antipodal_candidates(boundary: ObstacleBoundary, pattern: Pattern) -> Array:
+def find_antipodal_candidates(boundary: ObstacleBoundary, pattern: Pattern) -> Array:
     """Candidates (N, 24) of a peg of each jaw on antipodal contacts, with the direction in which S falls.
 
     Where it falls in two directions, the second derivative is NaN.
@@ -216,7 +218,7 @@ def pressed(
     rx, ry = c * px - s * py, s * px + c * py
     contacts = [(peg, piece) for peg, pieces in zip((i, j), normal.pieces, strict=True) for piece in pieces]
     place = pattern.pegs[i, 0] - rx, pattern.pegs[i, 1] - ry
-    row = candidate_of((theta, *place, separation), contacts)
+    row = make_candidate((theta, *place, separation), contacts)
     second, along_one, along_two = normal.descent_direction
     row[SECOND] = second
     # Both places go along the same way, square to the line; the part turns against the chord.
@@ -226,7 +228,7 @@ def pressed(
     return row
 
 
-def parallel_candidates(boundary: ObstacleBoundary, pattern: Pattern, given: Given) -> list[Array]:
+def find_parallel_candidates(boundary: ObstacleBoundary, pattern: Pattern, given: Given) -> list[Array]:
     """Candidates (N, 24) of pegs of a jaw on a line and an arc, with a third peg on a parallel line.
 
     The third line may be the first line itself.
@@ -235,7 +237,7 @@ def parallel_candidates(boundary: ObstacleBoundary, pattern: Pattern, given: Giv
     for i, j in permutations(range(len(pegs)), 2):
         if right[i] != right[j]:
             continue
-        chords = chords_at_tangencies(
+        chords = find_chord_tangencies(
             boundary, hypot(pegs[j][0] - pegs[i][0], pegs[j][1] - pegs[i][1]), right[i]
         )
         if len(chords):
@@ -244,7 +246,7 @@ def parallel_candidates(boundary: ObstacleBoundary, pattern: Pattern, given: Giv
     return out
 
 
-def chords_at_tangencies(boundary: ObstacleBoundary, d: float, jaw: int) -> Array:
+def find_chord_tangencies(boundary: ObstacleBoundary, d: float, jaw: int) -> Array:
     """Tangencies (C, 5) of the chords of a length, for pegs of a jaw.
 
     See ``kernels.seating.parallel_and_concentric``.

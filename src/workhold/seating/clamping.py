@@ -38,13 +38,19 @@ from workhold.errors import listed
 from workhold.fixels.toolkit import Carrier, Toolkit
 from workhold.kernels.seating.sticking import least_friction
 from workhold.limits import MOST_FRICTION
-from workhold.model.clamps import LOCATORS, clamp_names, first_clamps, order_words, second_over_first
+from workhold.model.clamps import (
+    LOCATORS,
+    compute_clamp_force_ratio,
+    name_clamps,
+    name_first_clamps,
+    order_words,
+)
 from workhold.model.fixture import Fixture, Pair, Peg
 from workhold.model.seating import DRY_STEEL, length
-from workhold.model.setup import LengthSetting, settings_of
+from workhold.model.setup import LengthSetting, list_length_settings
 from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import Touched
-from workhold.statics.loads import cone_edges, contacts_on_part
+from workhold.statics.loads import find_contacts_on_part, make_cone_edges
 from workhold.units import MILLIMETRE
 
 __all__ = [
@@ -54,7 +60,7 @@ __all__ = [
     "OpeningWords",
     "by_hand",
     "sticking_friction",
-    "sticking_friction_of_two",
+    "find_sticking_friction_of_two",
 ]
 
 
@@ -107,7 +113,7 @@ class Gauge:
     @property
     def setting(self) -> LengthSetting:
         """What is read in the fixture's own pose."""
-        return settings_of(self.fixture, self.toolkit)[0]
+        return list_length_settings(self.fixture, self.toolkit)[0]
 
     @property
     def ways(self) -> OpeningWords:
@@ -146,7 +152,7 @@ class Gauge:
         12.5
         """
         moved = evolve(self.fixture, pegs=self.pegs(travelled), travel=travelled)
-        return settings_of(moved, self.toolkit)[0].length
+        return list_length_settings(moved, self.toolkit)[0].length
 
 
 Array = NDArray[np.float64]
@@ -175,18 +181,20 @@ def sticking_friction(points: Array, normals: Array, right: Array) -> float:
     )
 
 
-def sticking_friction_of_two(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> float:
+def find_sticking_friction_of_two(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> float:
     """The least friction at which two clamps, in their working ratio, balance without one of the locators.
 
     It is infinite where they balance at none up to ``MOST_FRICTION``.
     """
-    ratio = second_over_first(fixture)
+    ratio = compute_clamp_force_ratio(fixture)
     touched = Touched.of(workpiece, toolkit)
-    contacts = contacts_on_part(fixture, workpiece, toolkit, touched, touched.of_fixture(fixture, toolkit))
+    contacts = find_contacts_on_part(
+        fixture, workpiece, toolkit, touched, touched.of_fixture(fixture, toolkit)
+    )
     low, high = 0.0, MOST_FRICTION
 
     def sticks(friction: float) -> bool:
-        edges, share = cone_edges(*contacts, friction, touched.length)
+        edges, share = make_cone_edges(*contacts, friction, touched.length)
         return balances_without_a_locator(edges, share, ratio)
 
     if not sticks(high):
@@ -203,7 +211,7 @@ def balances_without_a_locator(edges: Array, share: Array, ratio: float) -> bool
     If there is a solution that is not negative, one has no more entries above zero than there are equations
     (V. Chvatal, *Linear Programming*, 1983, chapter 3). So all choices of so many entries are tried.
 
-    Edges and shares, see ``statics.loads.cone_edges``, are of five pegs, the clamps last. The ratio is the
+    Edges and shares, see ``statics.loads.make_cone_edges``, are of five pegs, the clamps last. The ratio is the
     second clamp's force over the first's.
     """
     count = len(edges) // 2
@@ -276,8 +284,8 @@ class ByHand:
         text : writes a length in mm with its unit.
         """
         return {
-            "clamps": list(clamp_names(self.fixture)),
-            "first": list(first_clamps(self.fixture)),
+            "clamps": list(name_clamps(self.fixture)),
+            "first": list(name_first_clamps(self.fixture)),
             "unpressed": [[peg.hole for peg in pegs] for pegs in self.unpressed],
             "ratio": [length(end) for end in self.pair.ratio],
             "working_ratio": length(self.pair.working_ratio),
@@ -326,7 +334,7 @@ class ByHand:
     def hold_words(self) -> str:
         """Until when to hold the part."""
         hold = "Hold the part in its place until both clamps are tight"
-        first, names = first_clamps(self.fixture), clamp_names(self.fixture)
+        first, names = name_first_clamps(self.fixture), name_clamps(self.fixture)
         loose = [
             f"{name} alone does not press it on {listed(places_of(pegs, self.toolkit))}"
             for name, pegs in zip(names, self.unpressed, strict=True)
@@ -336,7 +344,7 @@ class ByHand:
 
     def friction_words(self) -> list[str]:
         """What friction does, one sentence or none."""
-        least, (first, second) = self.sticking_friction, clamp_names(self.fixture)
+        least, (first, second) = self.sticking_friction, name_clamps(self.fixture)
         if least is None:
             return []
         ratio = self.pair.working_ratio
@@ -360,8 +368,8 @@ class ByHand:
 
     def after_words(self, text: Callable[[float], str]) -> str:
         """What to look at in the end."""
-        settings = settings_of(self.fixture, self.toolkit)
-        names = clamp_names(self.fixture)
+        settings = list_length_settings(self.fixture, self.toolkit)
+        names = name_clamps(self.fixture)
         lengths = [
             f"a {one.name} of {text(one.length)} at {name}" for one, name in zip(settings, names, strict=True)
         ]
@@ -371,7 +379,7 @@ class ByHand:
 
 def by_hand(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> ByHand:
     """How to put a part into the two clamps of a fixture, and what is known of it there."""
-    friction = None if toolkit.has_flats else sticking_friction_of_two(fixture, workpiece, toolkit)
+    friction = None if toolkit.has_flats else find_sticking_friction_of_two(fixture, workpiece, toolkit)
     return ByHand(fixture, toolkit, friction)
 
 

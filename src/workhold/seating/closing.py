@@ -49,8 +49,8 @@ __all__ = [
     "Closing",
     "DescentCache",
     "DescentPaths",
-    "candidate_of",
-    "descent_starts",
+    "make_candidate",
+    "find_descent_starts",
     "filled",
     "with_room",
 ]
@@ -75,7 +75,7 @@ def with_room(rows: NDArray[Any], count: int, more: int) -> NDArray[Any]:
     return out
 
 
-def candidate_of(
+def make_candidate(
     config: NDArray[np.float64] | tuple[float, ...], contacts: Sequence[tuple[int, int]]
 ) -> NDArray[np.float64]:
     """A candidate (24,) without forces: theta, x, y and S, and the pegs that touch, each with its piece."""
@@ -230,7 +230,7 @@ IntArray = NDArray[np.int64]
 ROOM = 65_536
 
 
-def descent_starts(rows: Array, size: float) -> tuple[Array, Array]:
+def find_descent_starts(rows: Array, size: float) -> tuple[Array, Array]:
     """Where descent paths begin, to one and the other side of each of some passes (N, 24).
 
     Configurations (2 N, 4), and how long the first steps are in mm (2 N, 2).
@@ -309,7 +309,7 @@ class DescentPaths:
 
     def follow(self, numbers: IntArray) -> None:
         # Another thread may follow some at the same time: then both are there, and are the same.
-        starts, first = descent_starts(self.candidates[numbers - self.first], self.closing.size)
+        starts, first = find_descent_starts(self.candidates[numbers - self.first], self.closing.size)
         self.cache.add(numbers, *self.closing.followed(starts, first, self.seats))
 
     @cached_property

@@ -190,21 +190,21 @@ def follow(closing: Closing, config: Array, is_cancelled: Callable[[], bool]) ->
         for level in np.linspace(before, low, LEVELS + 1)[1:]:
             if is_cancelled() or len(path) >= MOST:
                 break
-            go_down(closing, path, float(level), HALVINGS)
+            follow_to_level(closing, path, float(level), HALVINGS)
         if before - path[-1][3] < LEVEL:
             break
     return path
 
 
-def go_down(closing: Closing, path: list[Array], level: float, halvings: int) -> None:
+def follow_to_level(closing: Closing, path: list[Array], level: float, halvings: int) -> None:
     """Follows a path on to a level, with levels between where the part moves far."""
     before = path[-1]
     if level >= before[3]:
         return
     after = closing.run(before[None], FIRST_STEP, level=level)[0][0]
     if halvings and len(path) < MOST and distances(after[None], before, closing.size)[0] > FAR * closing.size:
-        go_down(closing, path, (before[3] + float(after[3])) / 2.0, halvings - 1)
-        go_down(closing, path, level, halvings - 1)
+        follow_to_level(closing, path, (before[3] + float(after[3])) / 2.0, halvings - 1)
+        follow_to_level(closing, path, level, halvings - 1)
     else:
         path.append(after)
 

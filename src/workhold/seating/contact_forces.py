@@ -35,7 +35,7 @@ from workhold.kernels.seating.columns import (
     Given,
 )
 from workhold.kernels.seating.obstacles import clearances
-from workhold.seating.closing import Closing, candidate_of
+from workhold.seating.closing import Closing, make_candidate
 from workhold.seating.obstacle_boundary import ObstacleBoundary
 from workhold.seating.pattern import Pattern
 from workhold.seating.wall_equilibria import ON_WALL, WallEquilibria
@@ -44,8 +44,8 @@ __all__ = [
     "OTHERS_MAY_BE",
     "WAS_NOT_FOUND",
     "as_candidate",
-    "contact_normals",
-    "forces_of",
+    "find_contact_normals",
+    "solve_contact_forces",
     "is_equilibrium",
     "settle_on_wall",
     "verdicts",
@@ -68,7 +68,9 @@ def verdicts(candidates: Array, slack: float, slack_in_doubt: float) -> NDArray[
     return out
 
 
-def contact_normals(boundary: ObstacleBoundary, pattern: Pattern, row: Array) -> tuple[Array, Array, Array]:
+def find_contact_normals(
+    boundary: ObstacleBoundary, pattern: Pattern, row: Array
+) -> tuple[Array, Array, Array]:
     """The contacts of a candidate, in directions of the closing frame.
 
     Places (n, 2) from the part's, outward normals (n, 2), and 1 where what touches moves (n,).
@@ -127,12 +129,12 @@ def settle_on_wall(candidates: Array, boundary: ObstacleBoundary, pattern: Patte
                 first, end = boundary.parts[side].tolist()
                 clearances(pegs[peg : peg + 1], boundary.rows, first, end, touched)
                 row[CLEAR] = min(row[CLEAR], float(touched[0]))
-        forces, residual, rank = forces_of(boundary, pattern, row, size)
+        forces, residual, rank = solve_contact_forces(boundary, pattern, row, size)
         if rank == count:
             row[FORCE : FORCE + count], row[RESIDUAL] = forces, residual
 
 
-def forces_of(
+def solve_contact_forces(
     boundary: ObstacleBoundary, pattern: Pattern, row: Array, size: float
 ) -> tuple[Array, float, int]:
     """The forces (n,) of the contacts of a candidate, per unit of the force on what moves.
@@ -140,7 +142,7 @@ def forces_of(
     Moments are divided by the size in mm. Beside the forces, how well they balance, and how many of the
     contacts are independent.
     """
-    places, normals, moves = contact_normals(boundary, pattern, row)
+    places, normals, moves = find_contact_normals(boundary, pattern, row)
     moments = (places[:, 0] * normals[:, 1] - places[:, 1] * normals[:, 0]) / size
     balance, target = (
         np.stack([normals[:, 0], normals[:, 1], moments, normals[:, 0] * moves]),
@@ -167,7 +169,7 @@ def is_equilibrium(row: Array, closing: Closing) -> bool:
             1.0, closing.size
         ):
             return False
-    places, normals, moves = contact_normals(closing.boundary, closing.pattern, row)
+    places, normals, moves = find_contact_normals(closing.boundary, closing.pattern, row)
     moments = (places[:, 0] * normals[:, 1] - places[:, 1] * normals[:, 0]) / closing.size
     wrenches = np.stack([normals[:, 0], normals[:, 1], moments, normals[:, 0] * moves], axis=1).tolist()
     # Loose rest may touch with more than three: some of them do.
@@ -240,6 +242,6 @@ def as_candidate(
         contacts += [
             wall.on(piece, at > 0) for at, piece in zip(range(len(ON_WALL)), side.pieces, strict=True)
         ]
-    row = candidate_of(config, contacts)
-    row[FORCE : FORCE + 4] = forces_of(boundary, pattern, row, size)[0]
+    row = make_candidate(config, contacts)
+    row[FORCE : FORCE + 4] = solve_contact_forces(boundary, pattern, row, size)[0]
     return row

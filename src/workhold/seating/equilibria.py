@@ -50,12 +50,12 @@ from workhold.kernels.seating.gathering import GATHERED_LENGTH, SUBSET, first_of
 from workhold.kernels.seating.parallel_and_concentric import about_one_center
 from workhold.kernels.seating.slides import slides_blocked, slides_held, slides_squared
 from workhold.kernels.seating.three_contacts import ROOT_LENGTH, three_contacts
-from workhold.seating.antipodal_contacts import antipodal_candidates, parallel_candidates
+from workhold.seating.antipodal_contacts import find_antipodal_candidates, find_parallel_candidates
 from workhold.seating.closing import Closing, DescentCache, DescentPaths, filled, with_room
 from workhold.seating.contact_forces import settle_on_wall, verdicts, with_forces
 from workhold.seating.obstacle_boundary import ObstacleBoundary
 from workhold.seating.part_features import HullSide
-from workhold.seating.pattern import Pattern, PegSubset, subsets_of
+from workhold.seating.pattern import Pattern, PegSubset, list_subsets
 from workhold.seating.self_motions import (
     NO_MOTIONS,
     SHORTEST,
@@ -63,17 +63,17 @@ from workhold.seating.self_motions import (
     ManifoldFinder,
     SelfMotion,
     balance,
+    find_motions_on_one_center,
+    find_motions_on_one_line,
+    find_motions_on_parallel_lines,
+    find_pattern_motions,
     joined,
-    of_pattern,
-    on_one_center,
-    on_one_line,
-    on_parallel_lines,
     turning,
 )
 from workhold.seating.two_contact_curves import TwoContactCurves
-from workhold.seating.wall_equilibria import LOCATOR, ON_WALL, TIP, WallEquilibria, wall_candidates
+from workhold.seating.wall_equilibria import LOCATOR, ON_WALL, TIP, WallEquilibria, find_wall_candidates
 
-__all__ = ["Equilibria", "SubsetCache", "SubsetEquilibria", "equilibria", "equilibria_of_subset"]
+__all__ = ["Equilibria", "SubsetCache", "SubsetEquilibria", "equilibria", "find_subset_equilibria"]
 
 Array = NDArray[np.float64]
 # Subsets of which something is kept, and nodes of their descent paths, of 80 bytes; with more, all are
@@ -141,7 +141,7 @@ class SubsetCache:
         return cls()
 
 
-def equilibria_of_subset(
+def find_subset_equilibria(
     kept: SubsetCache, boundary: ObstacleBoundary, subset: PegSubset, size: float
 ) -> SubsetEquilibria:
     """The equilibria of a subset, found now or before; ``size`` is the part's in mm."""
@@ -149,11 +149,11 @@ def equilibria_of_subset(
     found = kept.found.get(key)
     if found is None:
         kind = (
-            jaw_equilibria
+            find_jaw_equilibria
             if subset.is_of_a_jaw
             else pair_equilibria
             if len(subset.sides) == 2
-            else triple_equilibria
+            else find_triple_equilibria
         )
         candidates, motions = kind(boundary, subset, size)
         passes = NONE if subset.is_of_a_jaw else candidates
@@ -166,13 +166,13 @@ def equilibria_of_subset(
 def pair_equilibria(boundary: ObstacleBoundary, subset: PegSubset, size: float) -> Found:
     """Equilibria of a peg of each jaw: antipodal contacts, and self-motions along one line."""
     pattern, given = subset.pattern, TwoContactCurves.of_jaw_alone(boundary, subset).given
-    candidates = antipodal_candidates(boundary, pattern)
-    return in_balance(candidates, given, size), ManifoldFinder(boundary, pattern).free(
-        on_one_line(boundary, pattern)
+    candidates = find_antipodal_candidates(boundary, pattern)
+    return balance_candidates(candidates, given, size), ManifoldFinder(boundary, pattern).free(
+        find_motions_on_one_line(boundary, pattern)
     )
 
 
-def triple_equilibria(boundary: ObstacleBoundary, subset: PegSubset, size: float) -> Found:
+def find_triple_equilibria(boundary: ObstacleBoundary, subset: PegSubset, size: float) -> Found:
     """Equilibria of two pegs of a jaw and one of the other."""
     # The only peg of the other jaw has two contacts in pockets alone.
     pattern, curves = subset.pattern, TwoContactCurves.of_jaw_alone(boundary, subset)
@@ -184,16 +184,19 @@ def triple_equilibria(boundary: ObstacleBoundary, subset: PegSubset, size: float
     candidates = [
         filled(CANDIDATE_LENGTH, len(roots) + 1, complete_three, roots, given, boundary.pocket_pieces),
         *([filled(CANDIDATE_LENGTH, 256, slides_squared, slides, given)] if len(slides) else []),
-        *parallel_candidates(boundary, pattern, given),
+        *find_parallel_candidates(boundary, pattern, given),
         filled(CANDIDATE_LENGTH, 64, about_one_center, given, pattern.stop, pattern.widest),
     ]
     every = np.concatenate(candidates)
-    motions = [*on_parallel_lines(boundary, pattern, slides, given), *on_one_center(boundary, pattern)]
+    motions = [
+        *find_motions_on_parallel_lines(boundary, pattern, slides, given),
+        *find_motions_on_one_center(boundary, pattern),
+    ]
     reached = every[pattern.reaches(every[:, SEPARATION])]
-    return in_balance(reached, given, size), ManifoldFinder(boundary, pattern).free(motions)
+    return balance_candidates(reached, given, size), ManifoldFinder(boundary, pattern).free(motions)
 
 
-def jaw_equilibria(boundary: ObstacleBoundary, subset: PegSubset, _: float) -> Found:
+def find_jaw_equilibria(boundary: ObstacleBoundary, subset: PegSubset, _: float) -> Found:
     """Poses that pegs of one jaw fix by three contacts: three pegs, or two of which one is in a pocket."""
     curves, stack = TwoContactCurves.of_jaw_alone(boundary, subset), np.empty((DEPTH, 2))
     [(known, _, _)] = curves.jaws.values()
@@ -207,16 +210,16 @@ def jaw_equilibria(boundary: ObstacleBoundary, subset: PegSubset, _: float) -> F
     return np.concatenate(fixed), NO_MOTIONS
 
 
-def in_balance(candidates: Array, given: Given, size: float) -> Array:
+def balance_candidates(candidates: Array, given: Given, size: float) -> Array:
     return np.asarray(candidates[verdicts(with_forces(candidates, given, size), inf, inf) != NO_BALANCE])
 
 
-def wall_manifolds(finder: ManifoldFinder) -> list[Manifolds]:
+def find_wall_manifolds(finder: ManifoldFinder) -> list[Manifolds]:
     wall = WallEquilibria(finder.boundary, finder.pattern)
-    return sliding_on_wall(finder, wall) + turning_on_wall(finder, wall)
+    return find_wall_slides(finder, wall) + find_wall_turns(finder, wall)
 
 
-def sliding_on_wall(finder: ManifoldFinder, wall: WallEquilibria) -> list[Manifolds]:
+def find_wall_slides(finder: ManifoldFinder, wall: WallEquilibria) -> list[Manifolds]:
     """A hull edge on the wall and the tip on a face parallel to it, between the ends of the edge."""
     if wall.half_plane[0] <= 0.0:
         return []
@@ -242,12 +245,12 @@ def sliding_on_wall(finder: ManifoldFinder, wall: WallEquilibria) -> list[Manifo
             )
             manifolds = finder.cut(finder.free([SelfMotion(configs, [(TIP, number)], False, None)]))
             for candidate in manifolds.rows:
-                with_both_ends(candidate, wall, side)
+                name_both_edge_ends(candidate, wall, side)
             out.append(manifolds)
     return out
 
 
-def with_both_ends(row: Array, wall: WallEquilibria, side: HullSide) -> None:
+def name_both_edge_ends(row: Array, wall: WallEquilibria, side: HullSide) -> None:
     """Names both ends of a hull edge on the wall, of which a candidate has one piece, in the candidate."""
     count = int(row[CONTACTS])
     pegs = row[PEG : PEG + count].tolist()
@@ -257,7 +260,7 @@ def with_both_ends(row: Array, wall: WallEquilibria, side: HullSide) -> None:
         row[CONTACTS] = count + 1
 
 
-def turning_on_wall(finder: ManifoldFinder, wall: WallEquilibria) -> list[Manifolds]:
+def find_wall_turns(finder: ManifoldFinder, wall: WallEquilibria) -> list[Manifolds]:
     """Arcs of one centre on the wall and the tip, and on the locator if the tip is not square to the wall."""
     out, (ux, uy, off) = list[Manifolds](), wall.half_plane
     (lx, ly), (tx, ty) = finder.pattern.pegs[LOCATOR].tolist(), finder.pattern.pegs[TIP].tolist()
@@ -333,7 +336,7 @@ class Equilibria:
 def equilibria(boundary: ObstacleBoundary, pattern: Pattern, size: float) -> Equilibria:
     """All equilibria of a pattern; moments are divided by the part's ``size`` in mm."""
     if pattern.half_plane is not None:
-        return equilibria_on_wall(boundary, pattern, size)
+        return find_wall_equilibria(boundary, pattern, size)
     curves, finder = TwoContactCurves.of(boundary, pattern), ManifoldFinder(boundary, pattern)
     given, jaws, pockets = curves.given, (curves.of_jaw(0), curves.of_jaw(1)), boundary.pocket_pieces
     work = np.empty((2, CELL_LENGTH)), np.empty((DEPTH, 2)), np.empty(len(jaws[1].cells), np.int64)
@@ -341,28 +344,30 @@ def equilibria(boundary: ObstacleBoundary, pattern: Pattern, size: float) -> Equ
     two = filled(CANDIDATE_LENGTH, len(roots) + 1, complete_two, roots, given, pockets)
     slid = filled(CANDIDATE_LENGTH, 256, slides_held, curves.slides, *jaws, given, pockets)
     kept, ends = SubsetCache.on(boundary), (pattern.stop, pattern.widest)
-    parts = [(one, equilibria_of_subset(kept, boundary, one, size)) for one in subsets_of(pattern)]
+    parts = [(one, find_subset_equilibria(kept, boundary, one, size)) for one in list_subsets(pattern)]
     numbers = [(own.first, own.end, own.descents.first, *one.numbers_and_shift) for one, own in parts]
     room = len(two) + len(slid) + sum(own.end - own.first for _, own in parts) + 256
     given_subsets = np.array(numbers, dtype=np.float64), kept.candidates
     among = *given_subsets, two, slid, *ends, given, np.empty(CANDIDATE_LENGTH)
     found = filled(GATHERED_LENGTH, room, gathered, *among)
     every = with_forces(np.ascontiguousarray(found[:, :SUBSET]), given, size)
-    loose = finder.distinct(finder.cut(of_pattern([(one, own.motions) for one, own in parts])))
+    loose = finder.distinct(finder.cut(find_pattern_motions([(one, own.motions) for one, own in parts])))
     subsets = tuple((one, own.descents) for one, own in parts)
-    return sorted_out(every, loose, found[:, SUBSET:].astype(np.int64), subsets)
+    return sort_equilibria(every, loose, found[:, SUBSET:].astype(np.int64), subsets)
 
 
-def equilibria_on_wall(boundary: ObstacleBoundary, pattern: Pattern, size: float) -> Equilibria:
-    pressed = antipodal_candidates(boundary, pattern)
-    candidates = np.concatenate([pressed, wall_candidates(boundary, pattern)])
+def find_wall_equilibria(boundary: ObstacleBoundary, pattern: Pattern, size: float) -> Equilibria:
+    pressed = find_antipodal_candidates(boundary, pattern)
+    candidates = np.concatenate([pressed, find_wall_candidates(boundary, pattern)])
     settle_on_wall(candidates, boundary, pattern, size)
     finder = ManifoldFinder(boundary, pattern)
-    loose = joined([finder.cut(finder.free(on_one_line(boundary, pattern))), *wall_manifolds(finder)])
-    return sorted_out(candidates, finder.distinct(loose), np.full((len(candidates), 2), -1))
+    loose = joined(
+        [finder.cut(finder.free(find_motions_on_one_line(boundary, pattern))), *find_wall_manifolds(finder)]
+    )
+    return sort_equilibria(candidates, finder.distinct(loose), np.full((len(candidates), 2), -1))
 
 
-def sorted_out(
+def sort_equilibria(
     candidates: Array,
     loose: Manifolds,
     origins: NDArray[np.int64],

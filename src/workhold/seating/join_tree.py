@@ -37,7 +37,7 @@ from workhold.kernels.seating.columns import (
 )
 from workhold.kernels.seating.descent_paths import BESIDE, FALLS, free_until, leads_out, take_up, write_places
 from workhold.kernels.seating.gathering import first_sets, write_beyond
-from workhold.seating.closing import LONGEST_STEP, Closing, descent_starts
+from workhold.seating.closing import LONGEST_STEP, Closing, find_descent_starts
 from workhold.seating.equilibria import Equilibria
 from workhold.seating.obstacle_boundary import ObstacleBoundary
 
@@ -51,42 +51,44 @@ __all__ = [
     "JoinTree",
     "RestPoses",
     "distances",
-    "pass_descents",
+    "follow_pass_descents",
 ]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 
-def pass_descents(found: Equilibria, closing: Closing, seats: Array) -> tuple[Array, Array, NDArray[np.int8]]:
+def follow_pass_descents(
+    found: Equilibria, closing: Closing, seats: Array
+) -> tuple[Array, Array, NDArray[np.int8]]:
     """Where the descent paths off both sides of all passes begin, where they end (2 N, 4), and how.
 
     ``seats`` (M, 4) are configurations at which closing is known to end.
     """
-    starts, lengths = descent_starts(found.passes, closing.size)
+    starts, lengths = find_descent_starts(found.passes, closing.size)
     ends, how, left = np.array(starts), np.full(len(starts), AT_REST, np.int8), np.ones(len(starts), np.int8)
     known = np.flatnonzero(found.origins[:, 0] >= 0)
     if len(known):
-        cache, shifts = found.subsets[0][1].cache, shifts_of(found)
-        paths = free_paths(found, known, closing, shifts)
+        cache, shifts = found.subsets[0][1].cache, compute_subset_shifts(found)
+        paths = select_free_paths(found, known, closing, shifts)
         take_up(known, *paths, cache.nodes, cache.begins, cache.how, shifts, ends, lengths, left)
     rest = np.flatnonzero(left)
     ends[rest], how[rest] = closing.run(ends[rest], lengths[rest], seats)
     return starts, ends, how
 
 
-def shifts_of(found: Equilibria) -> Array:
+def compute_subset_shifts(found: Equilibria) -> Array:
     """The shifts (G, 4) by which configurations of each subset become those of the pattern."""
     return np.array([subset.shift for subset, _ in found.subsets])
 
 
-def free_paths(
+def select_free_paths(
     found: Equilibria, passes: IntArray, closing: Closing, shifts: Array
 ) -> tuple[IntArray, IntArray, IntArray]:
     """The paths off both sides of some passes, as far as the pattern's other pegs are not in the part.
 
     Numbers of the paths in the cache, their subsets, and the last node of each, all (2 N,). For the shifts
-    see ``shifts_of``.
+    see ``compute_subset_shifts``.
     """
     whose, numbers = found.origins[passes, 0], found.origins[passes, 1]
     cache = found.subsets[0][1].cache
@@ -157,7 +159,7 @@ class JoinTree:
         strict = strict[np.argsort(configs[strict, 3], kind="stable")]
         seats, off = configs[strict], ManifoldDescents.of(loose, closing, configs[strict])
         first = len(configs) + len(off.lying)
-        parts = off.both, pass_descents(found, closing, seats), off.one
+        parts = off.both, follow_pass_descents(found, closing, seats), off.one
         starts, ends, how = (np.concatenate([part[k] for part in parts]) for k in range(3))
         leaves = closing.leaves(starts, ends, how == AT_THE_STOP).astype(np.int8)
         doubtful, count = np.empty((len(found.doubtful) + len(ends), 4)), len(found.doubtful)

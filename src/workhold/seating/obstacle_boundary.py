@@ -20,8 +20,8 @@ import numpy as np
 from attrs import define, field
 from numpy.typing import NDArray
 
-from workhold.contact.curves import CurveTable, LatticeSteps, center_numbers, curve_table, loosened
-from workhold.contact.problem import centered
+from workhold.contact.curves import CurveTable, LatticeSteps, curve_table, loosened, number_centers
+from workhold.contact.problem import move_rows_to_origin
 from workhold.conventions import END_SLACK, SAME_CENTER
 from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, REST_X, SIGN, X, Y
@@ -29,7 +29,7 @@ from workhold.kernels.base.tables import HEAD, TAIL
 from workhold.kernels.seating.columns import Obstacles
 from workhold.model.seating import SeatContact
 from workhold.model.workpiece import Workpiece
-from workhold.seating.part_features import Hull, Touch, pockets_of, touched_pieces
+from workhold.seating.part_features import Hull, Touch, find_pockets, touched_pieces
 from workhold.seating.pattern import Pattern
 
 __all__ = ["ObstacleBoundary", "contains"]
@@ -79,9 +79,9 @@ class ObstacleBoundary:
         for radius in dict.fromkeys(radii):
             touched = touched_pieces(workpiece, radius)
             pieces = [piece for _, piece in touched]
-            rows.append(centered(segment_rows(pieces), workpiece.center))
+            rows.append(move_rows_to_origin(segment_rows(pieces), workpiece.center))
             touches += [touch for touch, _ in touched]
-            places, numbers = pockets_of(pieces, rows[-1])
+            places, numbers = find_pockets(pieces, rows[-1])
             pockets.append(places)
             whose.append(numbers + starts[-1])
             starts.append(starts[-1] + len(pieces))
@@ -214,7 +214,7 @@ class ObstacleBoundary:
     @cached_property
     def centers(self) -> dict[int, NDArray[np.int64]]:
         """The centres (N,) of pieces, numbered as in ``contact.curves``, by the first piece of each jaw."""
-        return {first: center_numbers(self.loose[first:end]) for first, end in self.parts.tolist()}
+        return {first: number_centers(self.loose[first:end]) for first, end in self.parts.tolist()}
 
     def once(self, find: Callable[[ObstacleBoundary], Found], anew: bool = False) -> Found:
         """What a function finds on this boundary, which is kept from its first call on, or from one anew."""

@@ -17,18 +17,18 @@ import numpy as np
 from attrs import define, frozen
 from numpy.typing import NDArray
 
-from workhold.contact.problem import centered
+from workhold.contact.problem import move_rows_to_origin
 from workhold.conventions import CLEARANCE, JOINT, LEAST_HULL_EDGE, SAME_POSE, TANGENT, TOUCHING
 from workhold.errors import InputError
 from workhold.geometry.hull import HullPieces
-from workhold.geometry.offset import joint_circle, kept_parts, raw_offset, trimmed_offsets
+from workhold.geometry.offset import keep_clear_parts, list_trimmed_offsets, make_joint_circle, offset_segment
 from workhold.geometry.segment import Arc, Point, Segment, segment_rows
 from workhold.kernels.base.distance import outline_distances
 from workhold.kernels.base.feature import X, Y
 from workhold.kernels.seating.obstacles import SUPPORTS, cover_same
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["Hull", "HullSide", "Silhouette", "Touch", "pockets_of", "refuse_own_outlines", "touched_pieces"]
+__all__ = ["Hull", "HullSide", "Silhouette", "Touch", "find_pockets", "refuse_own_outlines", "touched_pieces"]
 
 Array = NDArray[np.float64]
 # Corners that turn by less, in radians, are rounding.
@@ -53,15 +53,17 @@ def touched_pieces(workpiece: Workpiece, radius: float) -> list[tuple[Touch, Seg
     """The boundary for pegs of a radius in mm, and what they touch on each piece."""
     faces = workpiece.faces
     segments = [face.segment for face in faces]
-    pieces = [(Touch(faces[k].number, False), piece) for k, piece in trimmed_offsets(segments, radius)]
+    pieces = [(Touch(faces[k].number, False), piece) for k, piece in list_trimmed_offsets(segments, radius)]
     number = {segment.start: face.number for face, segment in zip(faces, segments, strict=True)}
-    return pieces + [(Touch(number[corner], True), arc) for corner, arc in rolled_corners(segments, radius)]
+    return pieces + [
+        (Touch(number[corner], True), arc) for corner, arc in make_rolled_corners(segments, radius)
+    ]
 
 
-def rolled_corners(segments: list[Segment], radius: float) -> list[tuple[Point, Arc]]:
+def make_rolled_corners(segments: list[Segment], radius: float) -> list[tuple[Point, Arc]]:
     """The arcs on which a disc rolls around convex corners of an outline, where nothing else is nearer."""
     rows, out = segment_rows(segments), []
-    raw = [piece for piece in (raw_offset(segment, radius) for segment in segments) if piece is not None]
+    raw = [piece for piece in (offset_segment(segment, radius) for segment in segments) if piece is not None]
     before = {segment.end: segment for segment in segments if not is_full(segment)}
     joints = [segment.start for segment in segments if not is_full(segment)]
 
@@ -78,8 +80,8 @@ def rolled_corners(segments: list[Segment], radius: float) -> list[tuple[Point, 
             continue
         arc = Arc(segment.start, radius, low + turn / 2, turn / 2, 1.0)
         near = [joint for joint in joints if 0.0 < dist(joint, segment.start) <= 2 * radius + CLEARANCE]
-        others = [*raw, *(joint_circle(joint, radius) for joint in near)]
-        out += [(segment.start, kept) for kept in kept_parts(arc, others, is_clear)]
+        others = [*raw, *(make_joint_circle(joint, radius) for joint in near)]
+        out += [(segment.start, kept) for kept in keep_clear_parts(arc, others, is_clear)]
     return [(corner, arc) for corner, arc in out if isinstance(arc, Arc)]
 
 
@@ -95,7 +97,7 @@ def end_angle(segment: Segment, end: float) -> float:
     return atan2(y, x)
 
 
-def pockets_of(pieces: list[Segment], rows: Array) -> tuple[Array, NDArray[np.int64]]:
+def find_pockets(pieces: list[Segment], rows: Array) -> tuple[Array, NDArray[np.int64]]:
     """The pockets, in which two pieces end with different normals: places, normals and numbers of pieces."""
     ends = [(k, s) for k, piece in enumerate(pieces) if not is_full(piece) for s in (-1.0, 1.0)]
     if not ends:
@@ -233,7 +235,7 @@ class Silhouette:
     def of(cls, workpiece: Workpiece) -> Silhouette:
         refuse_own_outlines(workpiece)
         segments = [face.segment for face in workpiece.faces]
-        rows = centered(segment_rows(segments), workpiece.center)
+        rows = move_rows_to_origin(segment_rows(segments), workpiece.center)
         points = [s.at(t) for s in segments for t in np.linspace(-s.half_extent, s.half_extent, POINTS)]
         return cls(rows, np.array(points) - workpiece.center)
 

@@ -42,9 +42,9 @@ __all__ = [
     "CommonToPatterns",
     "Pattern",
     "PegSubset",
-    "jaw_subsets",
+    "list_jaw_subsets",
     "refuse_unseated",
-    "subsets_of",
+    "list_subsets",
 ]
 
 Array = NDArray[np.float64]
@@ -382,7 +382,7 @@ def rounded(x: float) -> float:
 
 
 @lru_cache(maxsize=SIDES)
-def subsets_of(pattern: Pattern) -> tuple[PegSubset, ...]:
+def list_subsets(pattern: Pattern) -> tuple[PegSubset, ...]:
     """All subsets of three pegs, pairs of pegs of both jaws, and pairs of a jaw that has no third peg.
 
     They are kept for the other side of the part.
@@ -393,7 +393,7 @@ def subsets_of(pattern: Pattern) -> tuple[PegSubset, ...]:
 
 
 @lru_cache(maxsize=SIDES)
-def jaw_subsets(pattern: Pattern) -> dict[int, PegSubset]:
-    """The pegs of each jaw, by whether it moves (1) or not (0); kept like those of ``subsets_of``."""
+def list_jaw_subsets(pattern: Pattern) -> dict[int, PegSubset]:
+    """The pegs of each jaw, by whether it moves (1) or not (0); kept like those of ``list_subsets``."""
     sides = dict.fromkeys(pattern.right.tolist())
     return {side: PegSubset.of(pattern, np.flatnonzero(pattern.right == side).tolist()) for side in sides}

@@ -47,10 +47,10 @@ __all__ = [
     "Opposed",
     "SelfMotion",
     "joined",
-    "of_pattern",
-    "on_one_center",
-    "on_one_line",
-    "on_parallel_lines",
+    "find_pattern_motions",
+    "find_motions_on_one_center",
+    "find_motions_on_one_line",
+    "find_motions_on_parallel_lines",
     "turning",
 ]
 
@@ -104,7 +104,7 @@ class Opposed:
     high: float
 
 
-def opposed_lines(boundary: ObstacleBoundary) -> list[Opposed]:
+def list_opposed_lines(boundary: ObstacleBoundary) -> list[Opposed]:
     rows, found = boundary.rows.tolist(), list[Opposed]()
     standing, moving = (
         [k for k in range(first, end) if rows[k][IS_ARC] == 0.0] for first, end in boundary.parts.tolist()
@@ -155,7 +155,7 @@ def turning(
     return [SelfMotion(np.stack([theta, x, y, np.full(TURN_STEPS, s)], axis=1), contacts, True, across)]
 
 
-def on_one_line(boundary: ObstacleBoundary, pattern: Pattern) -> list[SelfMotion]:
+def find_motions_on_one_line(boundary: ObstacleBoundary, pattern: Pattern) -> list[SelfMotion]:
     """Self-motions on two pegs that press parallel faces, or arcs of one centre, along one line."""
     out, pegs, right = list[SelfMotion](), pattern.pegs.tolist(), pattern.right.tolist()
     for i, j in product(range(len(pegs)), repeat=2):
@@ -163,7 +163,7 @@ def on_one_line(boundary: ObstacleBoundary, pattern: Pattern) -> list[SelfMotion
             continue
         run, rise = pegs[j][0] - pegs[i][0], pegs[j][1] - pegs[i][1]
         least = abs(rise) * (1.0 + 1e-12)
-        for pair in boundary.once(opposed_lines):
+        for pair in boundary.once(list_opposed_lines):
             if abs(pair.width) > least:
                 a, b = pair.pieces
                 omega = asin(rise / pair.width)
@@ -187,7 +187,7 @@ def on_one_line(boundary: ObstacleBoundary, pattern: Pattern) -> list[SelfMotion
     return out
 
 
-def on_parallel_lines(
+def find_motions_on_parallel_lines(
     boundary: ObstacleBoundary, pattern: Pattern, slides: Array, given: Given
 ) -> list[SelfMotion]:
     """Self-motions on parallel faces: the middle one of three pegs presses against the outer two.
@@ -213,14 +213,14 @@ def on_parallel_lines(
     return out
 
 
-def on_one_center(boundary: ObstacleBoundary, pattern: Pattern) -> list[SelfMotion]:
+def find_motions_on_one_center(boundary: ObstacleBoundary, pattern: Pattern) -> list[SelfMotion]:
     """Self-motions on two pegs of one jaw and one of the other, all on arcs of one centre."""
     out, pegs, right = list[SelfMotion](), pattern.pegs.tolist(), pattern.right.tolist()
     pairs = [(p, q) for p, q in combinations(range(len(right)), 2) if right[p] == right[q]]
     for ring, (p, q) in product(boundary.rings, pairs):
         side, others = right[p], [k for k in range(len(right)) if right[k] != right[p]]
         for (a, one), (b, two) in product(ring[side], repeat=2):
-            for x, y in circles_meet(pegs[p], abs(one), pegs[q], abs(two)):
+            for x, y in find_circle_crossings(pegs[p], abs(one), pegs[q], abs(two)):
                 for (c, three), k in product(ring[1 - side], others):
                     square = abs(three) ** 2 - (y - pegs[k][1]) ** 2
                     for turn in (1.0, -1.0) if square >= 0.0 else ():
@@ -252,7 +252,7 @@ def balance(normals: list[Point], moves: list[int]) -> bool:
     return abs(total) >= LEAST_SHARE and all(force / total > LEAST_SHARE for force in forces)
 
 
-def circles_meet(one: Point, r1: float, two: Point, r2: float) -> list[Point]:
+def find_circle_crossings(one: Point, r1: float, two: Point, r2: float) -> list[Point]:
     """The points at given distances from two places."""
     dx, dy = two[0] - one[0], two[1] - one[1]
     d = hypot(dx, dy)
@@ -268,7 +268,7 @@ NO_MANIFOLDS = Manifolds.room(0, 0)
 NO_MOTIONS = SelfMotions.room(0, 0)
 
 
-def of_pattern(found: Sequence[tuple[PegSubset, SelfMotions]]) -> SelfMotions:
+def find_pattern_motions(found: Sequence[tuple[PegSubset, SelfMotions]]) -> SelfMotions:
     some = [(subset, motions) for subset, motions in found if len(motions.counts)]
     if not some:
         return NO_MOTIONS

@@ -30,7 +30,7 @@ from workhold.seating.contact_forces import (
     OTHERS_MAY_BE,
     WAS_NOT_FOUND,
     as_candidate,
-    contact_normals,
+    find_contact_normals,
     is_equilibrium,
 )
 from workhold.seating.equilibria import equilibria
@@ -356,7 +356,7 @@ class FixtureInPattern:
 
     def sticking(self, row: Array) -> float:
         boundary = self.solver.closing(self.known, False).boundary
-        places, normals, moves = contact_normals(boundary, self.known, row)
+        places, normals, moves = find_contact_normals(boundary, self.known, row)
         return sticking_friction(places, normals, moves)
 
 

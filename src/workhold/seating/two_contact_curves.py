@@ -51,7 +51,7 @@ from workhold.kernels.seating.slides import SLIDE_FIRST, SLIDE_LENGTH, SLIDE_SEC
 from workhold.kernels.seating.two_contact_curves import MIDDLE_LENGTH, make_cells, write_middles
 from workhold.seating.closing import filled
 from workhold.seating.obstacle_boundary import ObstacleBoundary
-from workhold.seating.pattern import Pattern, PegSubset, jaw_subsets
+from workhold.seating.pattern import Pattern, PegSubset, list_jaw_subsets
 
 __all__ = ["JawCurves", "TwoContactCurves"]
 
@@ -207,7 +207,7 @@ class TwoContactCurves:
         parts: list[tuple[NDArray[Any], ...]] = []
         jaws: dict[int, tuple[JawCurves, int, float]] = {}
         before = curves_before = 0
-        for side, subset in jaw_subsets(pattern).items():
+        for side, subset in list_jaw_subsets(pattern).items():
             known = JawCurves.known(boundary, subset)
             rows, slid = known.named(np.array([*subset.numbers, -1.0]))
             # Pockets, of which curves are none, come first.

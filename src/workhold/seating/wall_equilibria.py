@@ -40,12 +40,12 @@ from workhold.kernels.seating.tip_in_pocket import tip_in_pocket
 from workhold.kernels.seating.turning import SHAPE_LENGTH
 from workhold.kernels.seating.wall_equilibria import LOCATOR, TIP, Stood, stationary
 from workhold.kernels.seating.wall_equilibria import ON_WALL as FIRST_ON_WALL
-from workhold.seating.closing import candidate_of, filled
+from workhold.seating.closing import filled, make_candidate
 from workhold.seating.obstacle_boundary import ObstacleBoundary
 from workhold.seating.part_features import HullSide
 from workhold.seating.pattern import Pattern
 
-__all__ = ["LOCATOR", "ON_WALL", "TIP", "WallEquilibria", "wall_candidates"]
+__all__ = ["LOCATOR", "ON_WALL", "TIP", "WallEquilibria", "find_wall_candidates"]
 
 Array = NDArray[np.float64]
 # The first and the second contact with the wall, beside the two pegs of a pattern.
@@ -172,12 +172,12 @@ class WallEquilibria:
                 self.resting(side.pieces[0], theta),
             )
             fixed.append(
-                candidate_of((theta, *((known, 0.0) if self.is_upright else (0.0, known)), 0.0), ends)
+                make_candidate((theta, *((known, 0.0) if self.is_upright else (0.0, known)), 0.0), ends)
             )
             for ahead, up, held in self.pocketed(theta) if self.is_upright else ():
                 place = known, float(self.pattern.pegs[TIP, 1]) - up
                 out.append(
-                    candidate_of((theta, *place, known + ahead - self.pattern.pegs[TIP, 0]), ends + held)
+                    make_candidate((theta, *place, known + ahead - self.pattern.pegs[TIP, 0]), ends + held)
                 )
         return np.concatenate([self.with_tip(self.with_locator(rows_of(fixed))), rows_of(out)])
 
@@ -207,12 +207,14 @@ class WallEquilibria:
                 if abs(level) >= size:
                     continue
                 for turn in (1.0, -1.0):
-                    theta = not_before(low, atan2(uy, ux) - atan2(dy, dx) + turn * acos(level / size))
+                    theta = add_turns_until_past(
+                        low, atan2(uy, ux) - atan2(dy, dx) + turn * acos(level / size)
+                    )
                     if theta <= high:
                         c, s = cos(theta), sin(theta)
                         contacts = [(LOCATOR, one), (LOCATOR, two), self.on(piece)]
                         out.append(
-                            candidate_of((theta, lx - c * vx + s * vy, ly - s * vx - c * vy, 0.0), contacts)
+                            make_candidate((theta, lx - c * vx + s * vy, ly - s * vx - c * vy, 0.0), contacts)
                         )
         return self.with_tip(rows_of(out))
 
@@ -230,7 +232,7 @@ class WallEquilibria:
         for piece, low, high in self.runs:
             x, y = self.boundary.hull.rows[piece, :2].tolist()
             for (vx, vy), held in zip(places.tolist(), pieces.tolist(), strict=True):
-                theta = not_before(low, atan2(0.0, self.half_plane[0]) - atan2(vy - y, vx - x))
+                theta = add_turns_until_past(low, atan2(0.0, self.half_plane[0]) - atan2(vy - y, vx - x))
                 if hypot(vx - x, vy - y) <= SAME_PLACE or theta > high:
                     continue
                 c, s = cos(theta), sin(theta)
@@ -239,7 +241,7 @@ class WallEquilibria:
                     (self.resting(piece, theta), self.pattern.pegs[TIP, 1] - (s * vx + c * vy)),
                 )
                 contacts = [self.on(piece), *((TIP, k) for k in held)]
-                row = candidate_of((theta, *place, place[0] + ahead - self.pattern.pegs[TIP, 0]), contacts)
+                row = make_candidate((theta, *place, place[0] + ahead - self.pattern.pegs[TIP, 0]), contacts)
                 row[SECOND], row[MOTION], row[MOTION + 1], row[MOTION + 2] = -1.0, 1.0, s * x + c * y, -ahead
                 out.append(row)
         return np.concatenate([found, rows_of(out)])
@@ -264,7 +266,7 @@ class WallEquilibria:
                 c, s = cos(theta), sin(theta)
                 place = self.resting(side.pieces[0], theta), ty - (s * row[X] + c * row[Y])
                 contacts = [(TIP, number), self.on(side.pieces[0]), self.on(side.pieces[1], True)]
-                one = candidate_of(
+                one = make_candidate(
                     (theta, *place, place[0] + c * row[X] - s * row[Y] + signed - tx), contacts
                 )
                 one[SECOND], one[MOTION + 2] = -1.0 / signed, 1.0
@@ -278,14 +280,14 @@ class WallEquilibria:
                 angles = (
                     [-atan2(dy, dx), pi - atan2(dy, dx)] if is_arc else [-atan2(-row[AXIS_X], row[AXIS_Y])]
                 )
-                for theta in (not_before(low, angle) for angle in angles):
+                for theta in (add_turns_until_past(low, angle) for angle in angles):
                     if theta > high:
                         continue
                     c, s = cos(theta), sin(theta)
                     place = self.resting(piece, theta), ty - (s * hull[0] + c * hull[1])
                     ahead = c * dx - s * dy + (signed if is_arc else 0.0)
                     separation = place[0] + c * hull[0] - s * hull[1] + ahead - tx
-                    one = candidate_of((theta, *place, separation), [(TIP, number), self.on(piece)])
+                    one = make_candidate((theta, *place, separation), [(TIP, number), self.on(piece)])
                     # Over the turn, and the rise of the tip above the piece: see ``curvature``.
                     second, turn, rise = curvature(ahead, signed if is_arc else None)
                     one[SECOND], one[MOTION] = second, turn
@@ -314,7 +316,7 @@ def curvature(ahead: float, signed: float | None) -> tuple[float, float, float]:
     return (float(values[0]) if values[1] > 0.0 else np.nan), float(ways[0, 0]), float(ways[1, 0])
 
 
-def not_before(low: float, theta: float) -> float:
+def add_turns_until_past(low: float, theta: float) -> float:
     """An orientation moved by whole turns to the first that is not before another."""
     return theta + tau * ceil((low - theta) / tau)
 
@@ -324,7 +326,7 @@ def rows_of(candidates: list[Array]) -> Array:
     return np.array(candidates).reshape(-1, CANDIDATE_LENGTH)
 
 
-def wall_candidates(boundary: ObstacleBoundary, pattern: Pattern) -> Array:
+def find_wall_candidates(boundary: ObstacleBoundary, pattern: Pattern) -> Array:
     """Candidates (N, 24) of all equilibria on a wall; the first peg is the locator, the second the tip."""
     wall = WallEquilibria(boundary, pattern)
     pockets = wall.locator_in_pocket(), wall.tip_in_pocket()

@@ -13,7 +13,7 @@ from workhold.model.fixture import Fixture
 from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import Touched
 from workhold.statics.judging import is_beyond
-from workhold.statics.pins import PinRuns, bent_pins, limits_of
+from workhold.statics.pins import PinRuns, compute_bent_pins, limits_of
 from workhold.statics.quality import extremes
 from workhold.units import Unit
 
@@ -182,7 +182,7 @@ def bent_pegs(
     runs = PinRuns.of(faces, carriers, workpiece, toolkit, contacts.points, pressed_up_to, lift)
     silhouette = extremes(workpiece)
     middle, worst = (
-        bent_pins(contacts, runs.diameter, heights, jaw_force, touched.length, silhouette)
+        compute_bent_pins(contacts, runs.diameter, heights, jaw_force, touched.length, silhouette)
         for heights in (runs.middle, runs.high)
     )
     force = (STATED_FORCE if jaw_force is None else jaw_force) * np.abs(contacts.inverses[0, 3])

@@ -16,10 +16,10 @@ import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
-from workhold.contact.features import ContactFeature, end_slacks, feature_rows, features_met
+from workhold.contact.features import ContactFeature, end_slacks, list_features_met, make_feature_rows
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Line, segment_rows
-from workhold.geometry.symmetry import rotated
+from workhold.geometry.symmetry import rotate_vectors
 from workhold.kernels.base.feature import (
     AXIS_X,
     AXIS_Y,
@@ -32,19 +32,19 @@ from workhold.kernels.base.feature import (
     Y,
 )
 from workhold.kernels.contact.contact_matrix import contact_matrices_of
-from workhold.model.clamps import LOCATORS, working_forces
+from workhold.model.clamps import LOCATORS, compute_working_forces
 from workhold.model.fixture import Fixture
-from workhold.model.own_outlines import outline_diameter
+from workhold.model.own_outlines import measure_outline_diameter
 from workhold.model.pose import Flush
 from workhold.model.workpiece import Workpiece
 from workhold.rowwise import largest
 
-__all__ = ["ContactMatrices", "Touched", "outward_normals", "wrench_length", "wrenches"]
+__all__ = ["ContactMatrices", "Touched", "compute_outward_normals", "wrench_length", "wrenches"]
 
 Array = NDArray[np.float64]
 
 
-def outward_normals(rows: Array, points: Array) -> Array:
+def compute_outward_normals(rows: Array, points: Array) -> Array:
     """Outward unit normals of features at peg centres on them.
 
     Parameters
@@ -106,7 +106,7 @@ class ContactMatrices:
 
 def wrench_length(workpiece: Workpiece, toolkit: Toolkit) -> float:
     """L of the wrenches in mm, half the diameter of the peg-centre locus of a toolkit's widest pegs."""
-    return outline_diameter(workpiece) / 2 + max(carrier.peg_radius for carrier in toolkit.carriers)
+    return measure_outline_diameter(workpiece) / 2 + max(carrier.peg_radius for carrier in toolkit.carriers)
 
 
 @define(frozen=True, eq=False)
@@ -157,7 +157,7 @@ class Touched:
         carriers, segments = toolkit.carriers, len(workpiece.numbered.segments)
         if loci is None:
             placed = [one for one in carriers if one.contact.is_placed]
-            loci = [features_met(workpiece, one) for one in placed]
+            loci = [list_features_met(workpiece, one) for one in placed]
         lies_flush = np.array([not one.contact.is_placed for one in carriers])
         flush = workpiece.flush if lies_flush.any() else Flush.of((), ())
         before = iter(loci)
@@ -170,7 +170,9 @@ class Touched:
         # Each carrier's by themselves: where another's pegs may stand says nothing of a joint. Many touch the
         # same.
         different = {id(locus): list(locus) for locus in loci}
-        known = {key: np.hstack([feature_rows(locus), end_slacks(locus)]) for key, locus in different.items()}
+        known = {
+            key: np.hstack([make_feature_rows(locus), end_slacks(locus)]) for key, locus in different.items()
+        }
         rows[: len(features)] = np.concatenate([known[id(locus)] for locus in loci])
         rows[len(features) : -1, :SEGMENT_LENGTH] = segment_rows(walls)
         rows[:, [X, Y]] -= center
@@ -219,8 +221,8 @@ class Touched:
         if pegs.shape[1] == PEGS:
             return ContactMatrices(points, normals, ends, edges, inverses, inverses[:, 3, :, None])
         closing = pair_reactions(points, normals, self.pushes(pose, carriers), self.length)
-        inverses[:, :LOCATORS, :LOCATORS] += locators_inverse(wrenches(points, normals, self.length))
-        inverses[:, 3] += working_forces(closing)
+        inverses[:, :LOCATORS, :LOCATORS] += invert_locator_matrices(wrenches(points, normals, self.length))
+        inverses[:, 3] += compute_working_forces(closing)
         return ContactMatrices(points, normals, ends, edges, inverses, closing)
 
     def contacts(
@@ -268,13 +270,13 @@ class Touched:
         count, each = points.shape[:2]
         still = np.zeros((count, 3)), np.zeros((count, each)), np.zeros((count, 2))
         _, normals, ends, edges, inverses = self.contacts(points + self.center, *still, faces)
-        inverses[:, :LOCATORS] = locators_inverse(wrenches(points, normals, self.length))
+        inverses[:, :LOCATORS] = invert_locator_matrices(wrenches(points, normals, self.length))
         return ContactMatrices(points, normals, ends, edges, inverses, np.zeros((count, each, 0)))
 
     def pushes(self, pose: Array, carriers: NDArray[np.integer[Any]]) -> Array:
         """The unit vectors (N, 2, 2) along which the two clamps of fixtures push, in the part's frame."""
         along = self.directions[np.asarray(carriers)[:, -2:]]
-        return np.stack(rotated(along[..., 0], along[..., 1], -pose[:, :1]), axis=-1)
+        return np.stack(rotate_vectors(along[..., 0], along[..., 1], -pose[:, :1]), axis=-1)
 
     def of_fixture(self, fixture: Fixture, toolkit: Toolkit) -> ContactMatrices:
         pose = fixture.pose
@@ -286,7 +288,7 @@ class Touched:
         )
 
 
-def locators_inverse(all_wrenches: Array) -> Array:
+def invert_locator_matrices(all_wrenches: Array) -> Array:
     """Inverses (N, 3, 3) of the matrices whose rows are the locators' wrenches; NaN where there is none."""
     matrix = all_wrenches[:, :LOCATORS]
     usable = np.isfinite(matrix).all(axis=(1, 2)) & (np.abs(np.linalg.det(matrix)) > 0.0)
@@ -303,7 +305,7 @@ def pair_reactions(points: Array, normals: Array, pushes: Array, length: float) 
     """
     each = wrenches(points, normals, length)
     push = -(normals[:, LOCATORS:] * pushes).sum(axis=-1)
-    taken = -np.einsum("nij,nki->njk", locators_inverse(each), each[:, LOCATORS:])
+    taken = -np.einsum("nij,nki->njk", invert_locator_matrices(each), each[:, LOCATORS:])
     out = np.zeros((len(points), 5, 2))
     out[:, :LOCATORS] = taken / push[:, None]
     out[:, LOCATORS, 0], out[:, LOCATORS + 1, 1] = 1.0 / push[:, 0], 1.0 / push[:, 1]

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from workhold.conventions import AGREEMENT, FIGURE_DECIMALS, WRITTEN_ANGLE
 from workhold.fixels.contacts import CLAMP_TIP
-from workhold.geometry.hull import convex_hull
+from workhold.geometry.hull import compute_convex_hull
 from workhold.geometry.segment import Arc, Line
 from workhold.model.first_choice import FACTORS
 from workhold.model.fixture_table import FixtureTable, peg_places
@@ -30,7 +30,7 @@ from workhold.model.quality import LOCATION_ERROR
 from workhold.model.query import Query
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["EffectiveErrors", "angle_classes", "faces_unasked_for", "to_ends"]
+__all__ = ["EffectiveErrors", "classify_angles", "find_unasked_faces", "to_ends"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -40,7 +40,7 @@ KEYS = tuple(factor.key for factor in FACTORS)
 TIMES = np.array([factor.times for factor in FACTORS])
 
 
-def angle_classes(theta: Array, beside: float = WRITTEN_ANGLE) -> IntArray:
+def classify_angles(theta: Array, beside: float = WRITTEN_ANGLE) -> IntArray:
     """Classes (N,) of angles (N,) in radians; within so many degrees ``beside`` one it counts as that."""
     turns = np.degrees(theta) / 90.0
     whole = np.rint(turns)
@@ -48,7 +48,7 @@ def angle_classes(theta: Array, beside: float = WRITTEN_ANGLE) -> IntArray:
     return np.where(there, (whole % 4 != 0).astype(np.int64), 2)
 
 
-def faces_unasked_for(query: Query) -> BoolArray:
+def find_unasked_faces(query: Query) -> BoolArray:
     """Which faces (S,), by number, are those of holes that nobody asked for."""
     every = query.workpiece.numbered
     out = np.zeros(len(every.segments), np.bool_)
@@ -84,7 +84,7 @@ class EffectiveErrors:
         for face in every.faces:
             if isinstance(face.segment, Line):
                 lines[face.number] = (*face.segment.start, *face.segment.tangent, face.segment.length)
-        return cls(query, faces_unasked_for(query), lines, *outermost(query.workpiece))
+        return cls(query, find_unasked_faces(query), lines, *outermost(query.workpiece))
 
     def errors(self, table: FixtureTable) -> Array:
         """Effective location errors (N,) in mm of a table of fixtures."""
@@ -93,7 +93,7 @@ class EffectiveErrors:
 
     def holding(self, table: FixtureTable) -> BoolArray:
         """Which factors (N, F) hold of a table's fixtures, in the order of ``FACTORS``."""
-        toolkit, angle = self.query.toolkit, angle_classes(table.theta)
+        toolkit, angle = self.query.toolkit, classify_angles(table.theta)
         carriers = toolkit.peg_carriers(table.arrangement)
         is_clamp = np.array([one.contact is CLAMP_TIP for one in toolkit.carriers])[carriers]
         is_placed = np.array([one.contact.is_placed for one in toolkit.carriers])[carriers]
@@ -185,7 +185,7 @@ def outermost(workpiece: Workpiece) -> tuple[Array, Array]:
         for one in outer
         if isinstance(one, Arc) and one.sign > 0
     ]
-    return np.array(convex_hull(joints)).reshape(-1, 2), np.array(arcs).reshape(-1, 6)
+    return np.array(compute_convex_hull(joints)).reshape(-1, 2), np.array(arcs).reshape(-1, 6)
 
 
 def reach(along: Array, corners: Array, arcs: Array) -> Array:

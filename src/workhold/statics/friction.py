@@ -40,7 +40,7 @@ __all__ = [
     "corners_of_load",
     "directed",
     "is_pressed_all_over",
-    "least_largest_pressure",
+    "find_least_peak_pressure",
 ]
 
 Array = NDArray[np.float64]
@@ -337,7 +337,7 @@ def is_pressed_all_over(fixed: Patch, moving: Patch) -> bool:
     return hulls_meet(one.centres, other.centres, KERN_SLACK)
 
 
-def least_largest_pressure(fixed: Patch, moving: Patch, force: float) -> float | None:
+def find_least_peak_pressure(fixed: Patch, moving: Patch, force: float) -> float | None:
     """The least that the largest pressure in MPa can be at a jaw force in N without a load.
 
     It is None where a jaw touches along lines, whose pressure has no bound, and where the kerns do not meet.

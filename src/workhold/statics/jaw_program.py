@@ -27,7 +27,7 @@ from workhold.model.jaw_hold import ProgramNeed
 from workhold.model.program import Program
 from workhold.statics.friction import Grip, MotionProgram
 from workhold.statics.path_forces import EVERY, WITHIN
-from workhold.statics.program_forces import AskedForce, done_on, force_up
+from workhold.statics.program_forces import AskedForce, find_cut_of_move, round_force_up
 from workhold.units import Unit
 
 __all__ = ["CuttingPieces", "asked_words", "worst_of_program"]
@@ -160,10 +160,10 @@ def straightened(start: Array, end: Array, bulge: Array) -> tuple[IntArray, Arra
 
 def asked_words(need: ProgramNeed, program: Program, unit: Unit) -> str:
     """Say which jaw force a program asks for and where, in a sentence."""
-    asked = AskedForce(need.force or 0.0, need.line, need.tool, None, done_on(program, need.move))
+    asked = AskedForce(need.force or 0.0, need.line, need.tool, None, find_cut_of_move(program, need.move))
     if need.force is None:
         return f"No jaw force holds the part in {asked.place(unit)}."
-    return f"The program asks for a jaw force of {force_up(need.force, unit)}, in {asked.place(unit)}."
+    return f"The program asks for a jaw force of {round_force_up(need.force, unit)}, in {asked.place(unit)}."
 
 
 @frozen(eq=False)

@@ -46,7 +46,7 @@ from workhold.model.quality import (
     PIN_STRESS,
     SMALLEST_FACE,
     TILT,
-    figures_in,
+    list_figures_in_columns,
 )
 from workhold.model.requirements import Tolerance
 from workhold.statics.pins import limits_of
@@ -105,7 +105,7 @@ class Judging:
         )
         if self.jaw_force is not None:
             count = count + lets_go(quality[:, JAW_FORCE_NEEDED], self.jaw_force)
-            if len(figures_in(quality.shape[1])) > PIN_MOVEMENT:
+            if len(list_figures_in_columns(quality.shape[1])) > PIN_MOVEMENT:
                 stress, movement = self.bending
                 count = count + is_beyond(quality[:, PIN_STRESS], stress)
                 count = count + is_beyond(quality[:, PIN_MOVEMENT], movement)

@@ -54,13 +54,13 @@ from workhold.statics.contact_matrix import ContactMatrices, Touched
 __all__ = [
     "LoadCase",
     "Worst",
-    "cone_edges",
-    "contacts_on_part",
-    "jaw_forces_needed",
+    "make_cone_edges",
+    "find_contacts_on_part",
+    "compute_needed_jaw_forces",
     "jaw_stiffness",
-    "jaw_words",
+    "describe_jaw",
     "load_cases",
-    "shared_forces",
+    "compute_shared_forces",
 ]
 
 Array = NDArray[np.float64]
@@ -100,11 +100,11 @@ def jaw_stiffness(jaw: str | float) -> float:
     return value
 
 
-def jaw_words(stiffness: float, toolkit: Toolkit) -> str:
+def describe_jaw(stiffness: float, toolkit: Toolkit) -> str:
     """What a jaw, or a clamp, is, for people.
 
     >>> from workhold import Plate, Vise
-    >>> jaw_words(0.0, Plate(pitch=20, peg_radius=5)), jaw_words(5.0, Vise(pitch=10, columns=2, peg_radius=3))
+    >>> describe_jaw(0.0, Plate(pitch=20, peg_radius=5)), describe_jaw(5.0, Vise(pitch=10, columns=2, peg_radius=3))
     ('a clamp that keeps its force', 'a screw vise, its jaw 5 times as stiff as a contact')
     """
     if stiffness == 0:
@@ -113,7 +113,7 @@ def jaw_words(stiffness: float, toolkit: Toolkit) -> str:
     return f"{toolkit.locked} {state}"
 
 
-def shared_forces(free: Array, closing: Array, stiffness: float) -> Array:
+def compute_shared_forces(free: Array, closing: Array, stiffness: float) -> Array:
     """Peg forces (..., P, 3) per unit of g_x, g_y and moment behind jaws of a stiffness.
 
     ``free`` (..., P, 3) are the same for a jaw that keeps its force, ``closing`` (..., P, M) the peg forces
@@ -126,7 +126,7 @@ def shared_forces(free: Array, closing: Array, stiffness: float) -> Array:
     return np.asarray(free - closing @ np.linalg.solve(springs, back @ free))
 
 
-def jaw_forces_needed(inverses: Array, closing: Array, length: float, loads: Array) -> Array:
+def compute_needed_jaw_forces(inverses: Array, closing: Array, length: float, loads: Array) -> Array:
     """Jaw forces (N,) in N above which no peg of a screw vise lets go under any load; never negative.
 
     Peg i presses with f0_i - h_i (h . f0) / (h . h) + F h_i, where h_i > 0. Of two clamps F is the sum of
@@ -152,19 +152,19 @@ def jaw_forces_needed(inverses: Array, closing: Array, length: float, loads: Arr
     return most
 
 
-def touched_points(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> tuple[Array, Array]:
+def find_touched_points(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> tuple[Array, Array]:
     """Where pegs touch the part and its outward unit normals there, (P, 2) each, in the part's frame, in mm."""
     touched = Touched.of(workpiece, toolkit)
-    points, normals, *_ = contacts_on_part(
+    points, normals, *_ = find_contacts_on_part(
         fixture, workpiece, toolkit, touched, touched.of_fixture(fixture, toolkit)
     )
     return points + touched.center, normals
 
 
-def contacts_on_part(
+def find_contacts_on_part(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, touched: Touched, matrices: ContactMatrices
 ) -> tuple[Array, Array, Array, Array]:
-    """Contacts, normals, movers and clamping directions of a fixture, as :func:`cone_edges` takes them.
+    """Contacts, normals, movers and clamping directions of a fixture, as :func:`make_cone_edges` takes them.
 
     Parameters
     ----------
@@ -179,7 +179,7 @@ def contacts_on_part(
     return matrices.points[0] - radii[:, None] * normals, normals, touched.moving[carriers], against
 
 
-def cone_edges(
+def make_cone_edges(
     contacts: Array, normals: Array, moving: Array, against: Array, friction: float, length: float
 ) -> tuple[Array, Array]:
     """Wrenches (2 P, 3) of the edges of friction cones, and how much each pushes what moves back (2 P,).
@@ -202,16 +202,16 @@ def cone_edges(
     return np.column_stack([edges, moments]), share
 
 
-def possible_motions(
+def list_possible_motions(
     contacts: Array, normals: Array, moving: Array, against: Array, friction: float, length: float
 ) -> Array:
-    """Corners (M, 3) of the dual polytope: jaw force per unit of (g_x, g_y, moment); see :func:`cone_edges`.
+    """Corners (M, 3) of the dual polytope: jaw force per unit of (g_x, g_y, moment); see :func:`make_cone_edges`.
 
     The jaw force needed for a load is the largest product with it, or 0 if that is negative. There are no
     corners where friction alone could jam the part between pegs of one carrier: then no load needs any jaw
     force.
     """
-    wrenches, share = cone_edges(contacts, normals, moving, against, friction, length)
+    wrenches, share = make_cone_edges(contacts, normals, moving, against, friction, length)
     corners = []
     for chosen in combinations(range(len(wrenches)), 3):
         planes = wrenches[list(chosen)]
@@ -322,11 +322,11 @@ def load_cases(
     # Rows: force of each peg per unit of (g_x, g_y, moment, jaw force); see kernels.contact.contact_matrix.
     forces = contact_matrices.inverses[0].T / np.array([1.0, 1.0, touched.length, 1.0])
     # The jaw was closed before the load came, so its own column stays.
-    forces[:, :3] = shared_forces(forces[:, :3], contact_matrices.closing[0], stiffness)
+    forces[:, :3] = compute_shared_forces(forces[:, :3], contact_matrices.closing[0], stiffness)
     motions = None
     if friction is not None:
-        on_part = contacts_on_part(fixture, workpiece, toolkit, touched, contact_matrices)
-        motions = possible_motions(*on_part, friction, touched.length)
+        on_part = find_contacts_on_part(fixture, workpiece, toolkit, touched, contact_matrices)
+        motions = list_possible_motions(*on_part, friction, touched.length)
     center = (float(touched.center[0]), float(touched.center[1]))
     needs = [needed(forces, load, center) for load in loads]
     if jaw_force is None:
@@ -338,9 +338,11 @@ def load_cases(
             jaw_stiffness=stiffness,
             jaw_force=jaw_force,
             smallest=tuple(
-                float(-largest_of(-row, load, center).value + jaw_force * row[3]) for row in forces
+                float(-find_largest_push(-row, load, center).value + jaw_force * row[3]) for row in forces
             ),
-            largest=tuple(float(largest_of(row, load, center).value + jaw_force * row[3]) for row in forces),
+            largest=tuple(
+                float(find_largest_push(row, load, center).value + jaw_force * row[3]) for row in forces
+            ),
             reaction=reaction(forces, load, center),
             needed=need,
             needed_with_friction=with_friction(motions, load, center, need, stiffness),
@@ -358,7 +360,7 @@ def largest_value(x: float, y: float, directions: tuple[float, float]) -> tuple[
     return (hypot(x, y) if direction == peak else value), direction % 360.0
 
 
-def largest_of(coefficients: Array, load: Load, center: tuple[float, float], peg: int = 0) -> Worst:
+def find_largest_push(coefficients: Array, load: Load, center: tuple[float, float], peg: int = 0) -> Worst:
     """Where a load makes (g_x, g_y, moment) . coefficients, the push on a peg, largest, and that value."""
     a, b, c = (float(value) for value in coefficients[:3])
     worst: Worst | None = None
@@ -374,7 +376,7 @@ def largest_of(coefficients: Array, load: Load, center: tuple[float, float], peg
 
 def needed(forces: Array, load: Load, center: tuple[float, float]) -> Worst:
     """Jaw force so that no peg lets go: the largest -f0_i / h_i over pegs, points and directions."""
-    pushes = (largest_of(-row / row[3], load, center, peg) for peg, row in enumerate(forces))
+    pushes = (find_largest_push(-row / row[3], load, center, peg) for peg, row in enumerate(forces))
     worst = max(pushes, key=lambda push: push.value)
     return evolve(worst, value=max(worst.value, 0.0))
 
@@ -383,7 +385,10 @@ def reaction(forces: Array, load: Load, center: tuple[float, float]) -> Worst:
     """Largest peg force with the least clamping (Brost & Goldberg 1996, ``kernels.contact.quality``)."""
     pairs = permutations(range(len(forces)), 2)
     return max(
-        (largest_of(forces[j] - forces[i] * forces[j, 3] / forces[i, 3], load, center, j) for j, i in pairs),
+        (
+            find_largest_push(forces[j] - forces[i] * forces[j, 3] / forces[i, 3], load, center, j)
+            for j, i in pairs
+        ),
         key=lambda worst: worst.value,
     )
 
@@ -397,5 +402,5 @@ def with_friction(
     """
     if motions is None:
         return None
-    least = max([0.0, *(largest_of(motion, load, center).value for motion in motions)])
+    least = max([0.0, *(find_largest_push(motion, load, center).value for motion in motions)])
     return min(least, need.value) if stiffness else least

@@ -18,7 +18,7 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
-from workhold.geometry.hull import convex_hull
+from workhold.geometry.hull import compute_convex_hull
 from workhold.geometry.segment import Point
 from workhold.model.jaw_hold import Patch, Rectangle
 
@@ -86,7 +86,9 @@ class PressedPatch(PressedFace):
     @cached_property
     def corners(self) -> list[Point]:
         """The corners of the hull of the patch; two where it is one upright line."""
-        return convex_hull((x, z) for x0, x1, z0, z1 in self.rectangles for x in (x0, x1) for z in (z0, z1))
+        return compute_convex_hull(
+            (x, z) for x0, x1, z0, z1 in self.rectangles for x in (x0, x1) for z in (z0, z1)
+        )
 
     @cached_property
     def integrals(self) -> Array:
@@ -131,7 +133,7 @@ class PressedPolygon(PressedFace):
     @cached_property
     def corners(self) -> list[Point]:
         """The corners of its convex hull, counter-clockwise."""
-        return convex_hull((float(x), float(y)) for loop in self.loops for x, y in loop)
+        return compute_convex_hull((float(x), float(y)) for loop in self.loops for x, y in loop)
 
     @cached_property
     def integrals(self) -> Array:
@@ -227,7 +229,7 @@ def hulls_meet(one: Array, other: Array, slack: float) -> bool:
     >>> hulls_meet(np.array([[0, 0], [2, 0], [0, 2]]), np.array([[1.5, 1.5], [1.5, 3]]), 1e-9)
     False
     """
-    hulls = [np.array(convex_hull(map(tuple, points.tolist()))) for points in (one, other)]
+    hulls = [np.array(compute_convex_hull(map(tuple, points.tolist()))) for points in (one, other)]
     directions = [hulls[1][0] - hulls[0][0]]
     for corners in hulls:
         sides = np.roll(corners, -1, axis=0) - corners

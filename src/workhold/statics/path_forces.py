@@ -43,12 +43,12 @@ import numpy as np
 from attrs import evolve, field, frozen
 from numpy.typing import NDArray
 
-from workhold.geometry.hull import convex_hull, half_hull
+from workhold.geometry.hull import compute_convex_hull, compute_half_hull
 from workhold.model.cutting_tool import ANY
 from workhold.model.moves import Stretches
 from workhold.model.program import Program
 
-__all__ = ["COLUMNS", "EVERY", "WITHIN", "PathForces", "WorstPlace", "all_pieces", "path_forces"]
+__all__ = ["COLUMNS", "EVERY", "WITHIN", "PathForces", "WorstPlace", "list_all_pieces", "path_forces"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -282,11 +282,11 @@ FIRST, MOST_LEVELS = 256, 64
 @lru_cache(maxsize=8)
 def path_forces(program: Program, center: tuple[float, float]) -> PathForces:
     """The pieces of a program that can be worst, about a point in mm; none without forces."""
-    pieces = all_pieces(program, center)
-    return without_inner(without_torques(pieces))
+    pieces = list_all_pieces(program, center)
+    return drop_inner_pieces(drop_lesser_torques(pieces))
 
 
-def all_pieces(program: Program, center: tuple[float, float]) -> PathForces:
+def list_all_pieces(program: Program, center: tuple[float, float]) -> PathForces:
     """Both ends of every stretch with a force, and the insides of arcs."""
     forces = program.forces
     stretches = Stretches((), (), ()) if forces is None else forces.stretches
@@ -323,7 +323,7 @@ def all_pieces(program: Program, center: tuple[float, float]) -> PathForces:
     return pieces.take(np.argsort(every, kind="stable"))
 
 
-def without_torques(pieces: PathForces) -> PathForces:
+def drop_lesser_torques(pieces: PathForces) -> PathForces:
     """The pieces, of those that have a torque alone only the first with the largest."""
     alone = np.flatnonzero(pieces.force == 0.0)
     kept = pieces.force > 0.0
@@ -332,7 +332,7 @@ def without_torques(pieces: PathForces) -> PathForces:
     return pieces.take(kept)
 
 
-def without_inner(pieces: PathForces) -> PathForces:
+def drop_inner_pieces(pieces: PathForces) -> PathForces:
     """The pieces without those that lie inside the hull of others as strong, see the head of this module."""
     pushing = np.flatnonzero(pieces.force > 0.0)
     # Of one tool the torque is in proportion to the force.
@@ -355,7 +355,7 @@ def without_inner(pieces: PathForces) -> PathForces:
     order = several[np.lexsort((-pieces.force[pushing[several]], group[several]))]
     groups = np.split(pushing[order], np.flatnonzero(np.diff(group[order])) + 1)
     for members in groups if len(order) else ():
-        kept.append(outer_of(pieces, members))
+        kept.append(select_outer_pieces(pieces, members))
     chosen = np.concatenate(kept)
     # Neighbours stand in one block: on the hull by where they are, of others by when they come.
     x, y = pieces.x[chosen], pieces.y[chosen]
@@ -363,7 +363,7 @@ def without_inner(pieces: PathForces) -> PathForces:
     return pieces.take(chosen[np.lexsort((chosen, around))] if pieces.spread >= EVERY else np.sort(chosen))
 
 
-def outer_of(pieces: PathForces, order: IntArray) -> IntArray:
+def select_outer_pieces(pieces: PathForces, order: IntArray) -> IntArray:
     """Pieces of one tool, the largest force first, without those inside the hull of what is before them."""
     levels = np.flatnonzero(np.diff(pieces.force[order])) + 1
     # Many forces are taken in runs that double in length.
@@ -374,7 +374,7 @@ def outer_of(pieces: PathForces, order: IntArray) -> IntArray:
         points, arcs = run[is_point[run]], run[~is_point[run]]
         alike = pieces.force[run[0]] == pieces.force[run[-1]]
         points = points[~inside(hull, pieces.x[points], pieces.y[points])]
-        arcs = arcs[~inside(hull, *around_arcs(pieces, arcs)).all(axis=1)]
+        arcs = arcs[~inside(hull, *enclose_arcs(pieces, arcs)).all(axis=1)]
         points = corners_of(pieces, points) if alike else points
         places = np.stack([pieces.x[points], pieces.y[points]], axis=1)
         hull = hull_of(np.concatenate([hull, places, on_arcs(pieces, arcs)]))
@@ -383,7 +383,7 @@ def outer_of(pieces: PathForces, order: IntArray) -> IntArray:
             corners = {(x, y) for x, y in hull.tolist()}
             corner = np.array([place in corners for place in map(tuple, places.tolist())], np.bool_)
             points = points[corner | ~inside(hull, *places.T)]
-            arcs = arcs[~inside(hull, *around_arcs(pieces, arcs)).all(axis=1)]
+            arcs = arcs[~inside(hull, *enclose_arcs(pieces, arcs)).all(axis=1)]
         kept += [points, arcs]
     return np.concatenate([*kept, np.zeros(0, np.int64)])
 
@@ -397,7 +397,7 @@ def on_arcs(pieces: PathForces, arcs: IntArray) -> Array:
     return np.stack([x.ravel(), y.ravel()], axis=1)
 
 
-def around_arcs(pieces: PathForces, arcs: IntArray) -> tuple[Array, Array]:
+def enclose_arcs(pieces: PathForces, arcs: IntArray) -> tuple[Array, Array]:
     """Corners (Q, 6) of polygons around arcs of half a turn or less: their ends and where tangents meet."""
     start, sweep, radius = pieces.start[arcs], pieces.sweep[arcs], pieces.radius[arcs]
     share = np.array([0.0, 1 / 8, 3 / 8, 5 / 8, 7 / 8, 1.0])
@@ -427,7 +427,7 @@ def hull_of(points: Array) -> Array:
         ways = np.stack([np.cos(angle), np.sin(angle)], axis=1)
         around = hull_of(points[np.unique([int((points @ way).argmax()) for way in ways])])
         points = np.concatenate([around, points[~inside(around, *points.T)]])
-    return np.array(convex_hull(map(tuple, points.tolist()))).reshape(-1, 2)
+    return np.array(compute_convex_hull(map(tuple, points.tolist()))).reshape(-1, 2)
 
 
 def inside(hull: Array, x: Array, y: Array) -> Mask:
@@ -435,7 +435,7 @@ def inside(hull: Array, x: Array, y: Array) -> Mask:
     if len(hull) < 3:
         return np.zeros(x.shape, np.bool_)
     ordered = sorted(map(tuple, hull.tolist()))
-    low, high = np.array(half_hull(ordered)), np.array(half_hull(ordered[::-1]))[::-1]
+    low, high = np.array(compute_half_hull(ordered)), np.array(compute_half_hull(ordered[::-1]))[::-1]
     # Upright sides are ends of one of the two: the first of the upper one, the last of the lower one.
     low, high = low[: len(low) - (low[-1, 0] == low[-2, 0])], high[int(high[0, 0] == high[1, 0]) :]
     within = (x >= ordered[0][0]) & (x <= ordered[-1][0])

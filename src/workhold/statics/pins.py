@@ -37,14 +37,14 @@ from workhold.model.solid import run_at
 from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import ContactMatrices
 
-__all__ = ["BentPins", "PinRuns", "bent_pins", "deflections", "limits_of", "stresses"]
+__all__ = ["BentPins", "PinRuns", "compute_bent_pins", "compute_deflections", "limits_of", "stresses"]
 
 Array = NDArray[np.float64]
 # Numbers looked at together: fixtures times corners of the silhouette.
 AT_ONCE = 1 << 20
 
 
-def deflections(force: Any, height: Any, diameter: Any) -> Any:
+def compute_deflections(force: Any, height: Any, diameter: Any) -> Any:
     """How far cantilevers give way in mm where they are pressed, numbers or arrays of them.
 
     Parameters
@@ -62,7 +62,7 @@ def deflections(force: Any, height: Any, diameter: Any) -> Any:
 
 
 def stresses(force: Any, height: Any, diameter: Any) -> Any:
-    """Largest bending stresses of cantilevers in MPa, see :func:`deflections`.
+    """Largest bending stresses of cantilevers in MPa, see :func:`compute_deflections`.
 
     >>> round(stresses(500.0, 38.0, 6.0))
     896
@@ -121,7 +121,7 @@ class PinRuns:
             top = np.nan if pressed_up_to is None else float(pressed_up_to)
             low, high = np.zeros(diameter.shape), np.full(diameter.shape, top)
         else:
-            low, high = runs_on_solid(faces, points + np.array(workpiece.center), workpiece)
+            low, high = find_runs_on_solid(faces, points + np.array(workpiece.center), workpiece)
         is_none = np.isnan(diameter)
         low[is_none], high[is_none] = np.nan, np.nan
         return cls(low + lift, high + lift, diameter)
@@ -132,7 +132,7 @@ class PinRuns:
         return (self.low + self.high) / 2
 
 
-def runs_on_solid(faces: NDArray[Any], points: Array, workpiece: Workpiece) -> tuple[Array, Array]:
+def find_runs_on_solid(faces: NDArray[Any], points: Array, workpiece: Workpiece) -> tuple[Array, Array]:
     """The lower and the upper ends (N, P) of the runs that hold the bands of faces, where pegs touch them."""
     numbered = workpiece.numbered
     bands = [(np.nan, np.nan) if band is None else band for band in numbered.bands]
@@ -152,7 +152,7 @@ def runs_on_solid(faces: NDArray[Any], points: Array, workpiece: Workpiece) -> t
 def runs_along(segments: tuple[int, ...], points: Array, workpiece: Workpiece) -> tuple[Array, Array]:
     """The runs (N,) at points (N, 2) of a face that has some segments, over one of which runs slide."""
     numbered = workpiece.numbered
-    parameters = np.array([parameters_of(numbered.segments[k], points) for k in segments])
+    parameters = np.array([compute_parameters(numbered.segments[k], points) for k in segments])
     extents = np.array([numbered.segments[k].half_extent for k in segments])
     touched = np.argmin(np.abs(parameters) - extents[:, None], axis=0)
     low, high = np.empty(len(points)), np.empty(len(points))
@@ -171,7 +171,7 @@ def runs_along(segments: tuple[int, ...], points: Array, workpiece: Workpiece) -
     return low, high
 
 
-def parameters_of(segment: Segment, points: Array) -> Array:
+def compute_parameters(segment: Segment, points: Array) -> Array:
     """Parameters (N,) on a segment of points (N, 2)."""
     return np.array([segment.parameter((x, y)) for x, y in points.tolist()])
 
@@ -191,7 +191,7 @@ class BentPins:
     movement: Array
 
 
-def bent_pins(
+def compute_bent_pins(
     contacts: ContactMatrices,
     diameters: Array,
     heights: Array,
@@ -206,7 +206,7 @@ def bent_pins(
     silhouette see ``statics.quality.extremes``.
     """
     force = (STATED_FORCE if jaw_force is None else jaw_force) * np.abs(contacts.inverses[:, 3, :])
-    deflection = np.asarray(deflections(force, heights, diameters))
+    deflection = np.asarray(compute_deflections(force, heights, diameters))
     gives_way = np.where(np.isnan(diameters), 0.0, deflection)
     moves = np.einsum("nkp,np->nk", contacts.inverses[:, :3, :], gives_way)
     moves[:, 2] /= length

@@ -14,15 +14,15 @@ import numpy as np
 from attrs import evolve, frozen
 from numpy.typing import NDArray
 
-from workhold.contact.swept import Swept, path_of, swept_below, swept_beside
+from workhold.contact.swept import Swept, find_swept_below, find_swept_beside_carrier, path_of
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.symmetry import rotated
+from workhold.geometry.symmetry import rotate_vectors
 from workhold.model.fixture_table import FixtureTable, peg_places
 from workhold.model.program import PathVertex, Program
 from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["NearestMove", "Passing", "element_name", "nearest_moves", "passing_of", "renamed"]
+__all__ = ["NearestMove", "Passing", "element_name", "find_nearest_moves", "find_nearest_passing", "renamed"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -48,7 +48,7 @@ class NearestMove:
     low: NDArray[np.bool_]
 
 
-def nearest_moves(
+def find_nearest_moves(
     table: FixtureTable, workpiece: Workpiece, toolkit: Toolkit, program: Program, peg_height: float
 ) -> NearestMove:
     """Where the tools of a program come nearest to each fixture of a table; ``peg_height`` in mm."""
@@ -62,11 +62,14 @@ def nearest_moves(
     def seen(points: tuple[Array, Array], rows: IntArray, k: int) -> Array:
         """Places (R, 2) of a contact of some rows in the part's coordinates."""
         dx, dy = (values[rows, k] - table.position[rows, axis] for axis, values in enumerate(points))
-        return np.stack(rotated(dx, dy, -table.theta[rows]), axis=1)
+        return np.stack(rotate_vectors(dx, dy, -table.theta[rows]), axis=1)
 
     for k in range(toolkit.peg_count):
         for number, carrier in enumerate(toolkit.carriers):
-            rows, swept = np.flatnonzero(carriers[:, k] == number), swept_beside(program, peg_height, carrier)
+            rows, swept = (
+                np.flatnonzero(carriers[:, k] == number),
+                find_swept_beside_carrier(program, peg_height, carrier),
+            )
             if not carrier.contact.is_placed:
                 take(found, rows, k, swept, *beside_wall(table, rows, swept))
                 continue
@@ -75,7 +78,7 @@ def nearest_moves(
             reach, span = swept.nearest(centers, behind)
             take(found, rows, k, swept, reach - carrier.peg_radius, span)
             if carrier.body_radius > carrier.peg_radius:
-                below = swept_below(program, 0.0)
+                below = find_swept_below(program, 0.0)
                 reach, span = below.nearest(centers, centers)
                 take(found, rows, k, below, reach - carrier.body_radius, span, below=True)
     return found
@@ -119,7 +122,7 @@ def renamed(element: str, before: Sequence[str], after: Sequence[str]) -> str:
     return names[element] if element in names else f"{noun} {names[hole]}" if hole in names else element
 
 
-def passing_of(result: Result, index: int) -> Passing | None:
+def find_nearest_passing(result: Result, index: int) -> Passing | None:
     """Where the tools of a result's program come nearest to the fixture of an index.
 
     None without a program, and where no tool comes down to the height of pegs.
@@ -127,13 +130,17 @@ def passing_of(result: Result, index: int) -> Passing | None:
     if result.query.passed is None:
         return None
     table, toolkit = result.table.take(slice(index, index + 1)), result.toolkit
-    near = nearest_moves(table, result.workpiece, toolkit, *result.query.passed)
+    near = find_nearest_moves(table, result.workpiece, toolkit, *result.query.passed)
     if near.line[0] < 0:
         return None
     contact, span = int(near.contact[0]), int(near.span[0])
     program, height = result.query.passed
     standing = toolkit.carriers[toolkit.arrangements[int(table.arrangement[0])].carriers[contact]]
-    swept = swept_below(program, 0.0) if near.low[0] else swept_beside(program, height, standing)
+    swept = (
+        find_swept_below(program, 0.0)
+        if near.low[0]
+        else find_swept_beside_carrier(program, height, standing)
+    )
     return Passing(
         float(near.clearance[0]),
         int(near.line[0]),

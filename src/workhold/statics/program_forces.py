@@ -24,12 +24,12 @@ from workhold.model.program import Program
 from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import ContactMatrices, Touched
-from workhold.statics.loads import jaw_stiffness, shared_forces
+from workhold.statics.loads import compute_shared_forces, jaw_stiffness
 from workhold.statics.path_forces import path_forces
 from workhold.statics.program_clearance import element_name, renamed
 from workhold.units import Unit
 
-__all__ = ["AskedForce", "CuttingNeed", "cutting_figures", "cutting_need_of", "cutting_needs"]
+__all__ = ["AskedForce", "CuttingNeed", "compute_cutting_figures", "find_cutting_need", "find_cutting_needs"]
 
 Array = NDArray[np.float64]
 # Fixtures looked at together.
@@ -177,17 +177,19 @@ class CuttingNeed:
             return [f"The tools of the program push the part off nothing, at any {mover} force."]
         name = mover[:1].upper() + mover[1:] + " force" + " of both together" * (movers > 1)
         said = [
-            f"{name} at least {force_up(self.jaw.force, unit)}, asked for by {self.jaw.place(unit)}: "
+            f"{name} at least {round_force_up(self.jaw.force, unit)}, asked for by {self.jaw.place(unit)}: "
             f"with less the part leaves {self.jaw.element}."
         ]
         if self.room is not None:
             given = unit.force_words(self.jaw_force)
             if self.room >= 0.0:
-                said.append(f"The {given} given leave {unit.force_words(floor_to(self.room))} of room.")
+                said.append(
+                    f"The {given} given leave {unit.force_words(round_force_down(self.room))} of room."
+                )
             else:
                 lacking = f"{unit.force_above(-self.room)} {unit.force}"
                 said.append(f"The {given} given are {lacking} too little.")
-        most = force_up(self.contact.force, unit)
+        most = round_force_up(self.contact.force, unit)
         same = (self.contact.line, self.contact.tool) == (self.jaw.line, self.jaw.tool)
         # What is said of the first force is not said again.
         at = f"in {(evolve(self.contact, done=None) if same else self.contact).place(unit)}"
@@ -198,11 +200,11 @@ class CuttingNeed:
         return said
 
 
-def force_up(force: float, unit: Unit) -> str:
+def round_force_up(force: float, unit: Unit) -> str:
     """A force in N in words, rounded up to two figures to stay on the safe side.
 
     >>> from workhold.units import INCH, MILLIMETRE
-    >>> force_up(2050.2, MILLIMETRE), force_up(312.0, MILLIMETRE), force_up(2050.2, INCH)
+    >>> round_force_up(2050.2, MILLIMETRE), round_force_up(312.0, MILLIMETRE), round_force_up(2050.2, INCH)
     ('2.1 kN', '320 N', '470 lbf')
     """
     value = force / unit.newtons
@@ -213,12 +215,12 @@ def force_up(force: float, unit: Unit) -> str:
     return f"{up / 1000:.2g} kN" if unit.force == "N" and up >= 1000 else f"{up:.0f} {unit.force}"
 
 
-def floor_to(force: float) -> float:
+def round_force_down(force: float) -> float:
     """A force in N without its decimals, so that no more is promised than there is."""
     return float(floor(force)) if force >= 1.0 else force
 
 
-def cutting_figures(matrices: ContactMatrices, touched: Touched, program: Program) -> Array:
+def compute_cutting_figures(matrices: ContactMatrices, touched: Touched, program: Program) -> Array:
     """Load reactions and jaw forces needed (N, 2) of fixtures along a program, in N; never negative."""
     known = np.flatnonzero(np.isfinite(matrices.inverses).all(axis=(1, 2)))
     out = np.full((len(matrices.inverses), 2), np.nan)
@@ -229,7 +231,7 @@ def cutting_figures(matrices: ContactMatrices, touched: Touched, program: Progra
         rows = known[part]
         free = np.swapaxes(inverses[part, :3], 1, 2) / scale(touched)
         out[rows, 0] = path.worst(reactions(free, held[part])).value
-        locked = shared_forces(free, matrices.closing[rows], inf)
+        locked = compute_shared_forces(free, matrices.closing[rows], inf)
         out[rows, 1] = path.worst(-locked / held[part, :, None]).value
     return out
 
@@ -257,7 +259,7 @@ def reactions(free: Array, held: Array) -> Array:
     return found
 
 
-def cutting_needs(
+def find_cutting_needs(
     table: FixtureTable,
     workpiece: Workpiece,
     toolkit: Toolkit,
@@ -277,14 +279,14 @@ def cutting_needs(
     pose = np.column_stack([table.theta, table.position])
     matrices = touched.contact_matrices(pegs, pose, carriers, table.face.astype(np.int64))
     path = path_forces(program, center_of(touched))
-    named = partial(asked_force, table, toolkit, program)
+    named = partial(find_asked_force, table, toolkit, program)
     known = np.flatnonzero(np.isfinite(matrices.inverses).all(axis=(1, 2)))
     out: list[CuttingNeed | None] = [None] * len(table)
     for start in range(0, len(known), BLOCK):
         rows = known[start : start + BLOCK]
         held = matrices.inverses[rows, 3]
         free = np.swapaxes(matrices.inverses[rows, :3], 1, 2) / scale(touched)
-        own = shared_forces(free, matrices.closing[rows], jaw_stiffness(jaw))
+        own = compute_shared_forces(free, matrices.closing[rows], jaw_stiffness(jaw))
         need = path.worst(-own / held[..., None])
         force = need.value if jaw_force is None else np.full(len(rows), float(jaw_force))
         # Each contact by itself, because each has its own share of the jaw force.
@@ -303,7 +305,7 @@ def cutting_needs(
     return out
 
 
-def asked_force(
+def find_asked_force(
     table: FixtureTable, toolkit: Toolkit, program: Program, row: int, value: float, move: int, contact: int
 ) -> AskedForce:
     """A force that a move asks for of a contact of a fixture of a table; of none where the move is -1."""
@@ -311,10 +313,12 @@ def asked_force(
     if move < 0:
         return AskedForce(value, None, None, name)
     moves = program.moves
-    return AskedForce(value, int(moves.line[move]), int(moves.tool[move]), name, done_on(program, move))
+    return AskedForce(
+        value, int(moves.line[move]), int(moves.tool[move]), name, find_cut_of_move(program, move)
+    )
 
 
-def done_on(program: Program, move: int) -> CutDone | None:
+def find_cut_of_move(program: Program, move: int) -> CutDone | None:
     """What of a move cuts; None without forces."""
     forces, moves = program.forces, program.moves
     if forces is None:
@@ -338,7 +342,7 @@ def done_on(program: Program, move: int) -> CutDone | None:
     )
 
 
-def cutting_need_of(
+def find_cutting_need(
     result: Result, index: int, jaw_force: float | None = None, jaw: str | float = "screw"
 ) -> CuttingNeed | None:
     """What the tools of a result's program ask of the fixture of an index; None without forces, and of flat jaws.
@@ -353,4 +357,4 @@ def cutting_need_of(
         return None
     force = result.query.jaw_force if jaw_force is None else jaw_force
     row = result.table.take(slice(index, index + 1))
-    return cutting_needs(row, result.workpiece, result.toolkit, program, force, jaw)[0]
+    return find_cutting_needs(row, result.workpiece, result.toolkit, program, force, jaw)[0]

@@ -20,12 +20,12 @@ from numpy.typing import NDArray
 
 from workhold.conventions import FIGURE_DECIMALS, MAIN_DIRECTION, SQUARE_TILT
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.hull import convex_hull
+from workhold.geometry.hull import compute_convex_hull
 from workhold.geometry.segment import Arc, Line
 from workhold.kernels.contact.clamp_pairs import CLAMP_LENGTH, PUSH, closures_of
 from workhold.kernels.contact.quality import LOAD_LENGTH, figures
 from workhold.model.fixture import Fixture
-from workhold.model.fixture_table import FixtureTable, fixture_at, peg_places
+from workhold.model.fixture_table import FixtureTable, make_fixture_of_row, peg_places
 from workhold.model.program import Program
 from workhold.model.quality import (
     BEFORE_PINS,
@@ -49,12 +49,20 @@ from workhold.model.workpiece import Workpiece
 from workhold.rowwise import smallest
 from workhold.statics.contact_matrix import ContactMatrices, Touched
 from workhold.statics.judging import Judging
-from workhold.statics.loads import jaw_forces_needed
-from workhold.statics.pins import PinRuns, bent_pins
-from workhold.statics.program_clearance import nearest_moves
-from workhold.statics.program_forces import cutting_figures
+from workhold.statics.loads import compute_needed_jaw_forces
+from workhold.statics.pins import PinRuns, compute_bent_pins
+from workhold.statics.program_clearance import find_nearest_moves
+from workhold.statics.program_forces import compute_cutting_figures
 
-__all__ = ["extremes", "face_sizes", "load_rows", "main_direction", "measured_fixture", "quality_of", "tilts"]
+__all__ = [
+    "extremes",
+    "measure_faces",
+    "load_rows",
+    "main_direction",
+    "measure_fixture",
+    "measure_quality",
+    "tilts",
+]
 
 Array = NDArray[np.float64]
 
@@ -85,7 +93,7 @@ def tilts(theta: Array, direction: float) -> Array:
     return np.where(off < SQUARE_TILT, 0.0, off)
 
 
-def face_sizes(workpiece: Workpiece) -> Array:
+def measure_faces(workpiece: Workpiece) -> Array:
     """Sizes (S,) in mm of faces by number: a straight one's length, an arc's radius, NaN without a face."""
     every = workpiece.numbered
     sizes = np.full(len(every.segments), np.nan)
@@ -98,7 +106,7 @@ def face_sizes(workpiece: Workpiece) -> Array:
 BLOCK = 1 << 13
 
 
-def quality_of(
+def measure_quality(
     table: FixtureTable,
     workpiece: Workpiece,
     toolkit: Toolkit,
@@ -126,7 +134,7 @@ def quality_of(
 
     Returns
     -------
-    (N, F) array, columns as ``model.quality.figures_in`` has them; NaN for figures of loads without loads,
+    (N, F) array, columns as ``model.quality.list_figures_in_columns`` has them; NaN for figures of loads without loads,
     and for pegs whose contact equations have no single solution.
     """
     tolerance = tolerance or Tolerance()
@@ -134,7 +142,7 @@ def quality_of(
     corners, arcs = extremes(workpiece)
     rows = load_rows(loads, workpiece.center)
     tolerances = np.array([tolerance.peg, tolerance.face])
-    direction, sizes = main_direction(workpiece), face_sizes(workpiece)
+    direction, sizes = main_direction(workpiece), measure_faces(workpiece)
     judging = Judging.of(known.length, toolkit, tolerance, jaw_force)
     has_pins = workpiece.solid is not None or pressed_up_to is not None
     known_figures = len(FIGURES) if has_pins else BEFORE_PINS
@@ -163,31 +171,33 @@ def quality_of(
             np.empty((10, 3)),
         )
         filled[:, JAW_FORCE_NEEDED] = (
-            jaw_forces_needed(contact_matrices.inverses, contact_matrices.closing, known.length, rows)
+            compute_needed_jaw_forces(contact_matrices.inverses, contact_matrices.closing, known.length, rows)
             if loads
             else np.nan
         )
         if passed is not None and passed[0].forces is not None:
-            found = cutting_figures(contact_matrices, known, passed[0])
+            found = compute_cutting_figures(contact_matrices, known, passed[0])
             chosen = [LOAD_REACTION, JAW_FORCE_NEEDED]
             filled[:, chosen] = np.fmax(filled[:, chosen], found)
         filled[:, CLAMP_FREEDOM] = np.nan
         if toolkit.tips > 1:
-            filled[:, [CLOSURE_MARGIN, CLAMP_FREEDOM]] = closures(contact_matrices.closing)
+            filled[:, [CLOSURE_MARGIN, CLAMP_FREEDOM]] = compute_closures(contact_matrices.closing)
         filled[:, JAW_CONTACT] = np.nan
         if toolkit.reaching is not None:
             (ends,) = toolkit.ends_on_walls
             filled[:, JAW_CONTACT] = np.diff(x[:, ends], axis=1)[:, 0]
         filled[:, TILT] = tilts(block.theta, direction)
-        filled[:, SMALLEST_FACE] = smallest(touched_sizes(block, toolkit, workpiece, sizes))
+        filled[:, SMALLEST_FACE] = smallest(measure_touched(block, toolkit, workpiece, sizes))
         if has_pins:
             runs = PinRuns.of(faces, carriers, workpiece, toolkit, contact_matrices.points, pressed_up_to)
             silhouette = corners, arcs
-            filled[:, PIN_FIGURES] = most_bent(contact_matrices, runs, jaw_force, known.length, silhouette)
+            filled[:, PIN_FIGURES] = measure_most_bent(
+                contact_matrices, runs, jaw_force, known.length, silhouette
+            )
         filled[:, WARNINGS] = judging.warnings(filled, contact_matrices.edges)
         filled[:, PENALTY] = judging.penalty(filled)
         if passed is not None:
-            clearance = nearest_moves(block, workpiece, toolkit, *passed).clearance
+            clearance = find_nearest_moves(block, workpiece, toolkit, *passed).clearance
             filled[:, PROGRAM_CLEARANCE] = np.where(np.isfinite(clearance), clearance, np.nan)
 
     starts = range(0, len(table), BLOCK)
@@ -200,7 +210,7 @@ def quality_of(
     return out
 
 
-def most_bent(
+def measure_most_bent(
     contacts: ContactMatrices,
     runs: PinRuns,
     jaw_force: float | None,
@@ -208,7 +218,7 @@ def most_bent(
     silhouette: tuple[Array, Array],
 ) -> Array:
     """The largest deflection and stress of a peg, and what they move the part by, (N, 3); NaN where not known."""
-    bent = bent_pins(contacts, runs.diameter, runs.middle, jaw_force, length, silhouette)
+    bent = compute_bent_pins(contacts, runs.diameter, runs.middle, jaw_force, length, silhouette)
     is_peg = ~np.isnan(runs.diameter)
     each = (
         np.where(is_peg, values, 0.0).max(axis=1, initial=0.0) for values in (bent.deflection, bent.stress)
@@ -218,7 +228,7 @@ def most_bent(
     return np.asarray(out)
 
 
-def closures(reactions: Array) -> Array:
+def compute_closures(reactions: Array) -> Array:
     """Closure margins and clamp freedoms (N, 2) of fixtures with two clamps, from forces (N, 5, 2)."""
     clamps = np.zeros((len(reactions), 2, CLAMP_LENGTH))
     for k in range(2):
@@ -238,7 +248,7 @@ def shared_faces(block: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) ->
     return faces
 
 
-def touched_sizes(block: FixtureTable, toolkit: Toolkit, workpiece: Workpiece, sizes: Array) -> Array:
+def measure_touched(block: FixtureTable, toolkit: Toolkit, workpiece: Workpiece, sizes: Array) -> Array:
     """Sizes (N, 4) in mm of what is touched, from the faces' (S,); on a wall the length that lies on it."""
     out = sizes.take(block.face)
     for ends in toolkit.ends_on_walls:
@@ -246,14 +256,14 @@ def touched_sizes(block: FixtureTable, toolkit: Toolkit, workpiece: Workpiece, s
     return np.asarray(out)
 
 
-def measured_fixture(
+def measure_fixture(
     result: Result, index: int, loads: Sequence[Load] | None = None, jaw_force: float | None = None
 ) -> Fixture:
     """A fixture of a result with all figures of quality, for the result's loads and jaw force or others."""
     row = result.table.take(slice(index, index + 1))
     asked = result.query.loads if loads is None else loads
     force = result.query.jaw_force if jaw_force is None else jaw_force
-    quality = quality_of(
+    quality = measure_quality(
         row,
         result.workpiece,
         result.toolkit,
@@ -263,7 +273,7 @@ def measured_fixture(
         passed=result.query.passed,
         pressed_up_to=result.query.pressed_up_to,
     )
-    return fixture_at(evolve(row, quality=quality), result.toolkit, 0, result.workpiece)
+    return make_fixture_of_row(evolve(row, quality=quality), result.toolkit, 0, result.workpiece)
 
 
 def extremes(workpiece: Workpiece) -> tuple[Array, Array]:
@@ -277,7 +287,7 @@ def extremes(workpiece: Workpiece) -> tuple[Array, Array]:
     outer = [face.segment for face in workpiece.outer_faces]
     cx, cy = workpiece.center
     joints = [segment.start for segment in outer if not (isinstance(segment, Arc) and segment.is_full)]
-    corners = np.array([(x - cx, y - cy) for x, y in convex_hull(joints)]).reshape(-1, 2)
+    corners = np.array([(x - cx, y - cy) for x, y in compute_convex_hull(joints)]).reshape(-1, 2)
     arcs = [
         (*segment.row()[1:3], segment.radius, *segment.row()[3:5], cos(min(segment.half_sweep, pi)))
         for segment in outer
@@ -296,6 +306,6 @@ def load_rows(loads: Sequence[Load], center: tuple[float, float]) -> Array:
         low, high = np.radians(load.directions)
         middle, half = (low + high) / 2, min((high - low) / 2, pi)
         ends = [f(angle) for angle in (low, high, middle) for f in (np.cos, np.sin)]
-        for x, y in convex_hull(load.points) or [center]:
+        for x, y in compute_convex_hull(load.points) or [center]:
             rows.append([load.force, x - center[0], y - center[1], load.moment, *ends, cos(half)])
     return np.array(rows, np.float64).reshape(-1, LOAD_LENGTH)

@@ -9,7 +9,7 @@ import numpy as np
 from workhold.model.first_choice import FACTORS
 from workhold.model.quality import LOCATION_ERROR, WARNINGS
 from workhold.model.result import Result
-from workhold.statics.effective_error import EffectiveErrors, angle_classes
+from workhold.statics.effective_error import EffectiveErrors, classify_angles
 from workhold.statics.judging import unfit
 from workhold.units import MILLIMETRE, Unit
 
@@ -40,7 +40,7 @@ def why_first(result: Result, unit: Unit = MILLIMETRE) -> str:
     error, counted = float(row.quality[0, LOCATION_ERROR]), float(effective.errors(row)[0])
     if not isfinite(error):
         return ""
-    warned, angle = bool(row.quality[0, WARNINGS] > 0), int(angle_classes(row.theta)[0])
+    warned, angle = bool(row.quality[0, WARNINGS] > 0), int(classify_angles(row.theta)[0])
     if unfit(row.quality, query.tolerance)[0]:
         said = "none is fit for a workshop"
     else:
@@ -61,10 +61,10 @@ def why_first(result: Result, unit: Unit = MILLIMETRE) -> str:
         near = "the least of all"
     else:
         near = "within a tenth of the least"
-    return f"First: {said}; {size}, {near}; {lies_so(result, angle)}."
+    return f"First: {said}; {size}, {near}; {describe_first_position(result, angle)}."
 
 
-def lies_so(result: Result, angle: int) -> str:
+def describe_first_position(result: Result, angle: int) -> str:
     """Says how the first fixture of a result lies, and of one that is turned what stands less so.
 
     ``angle`` is the class of its angle, see :mod:`workhold.statics.effective_error`.
@@ -73,7 +73,7 @@ def lies_so(result: Result, angle: int) -> str:
         return "as drawn"
     straight = "as drawn" if angle == 1 else "square to the drawing"
     table, best = result.table, result.query.best
-    less = table.take(np.flatnonzero(angle_classes(table.theta) < angle))
+    less = table.take(np.flatnonzero(classify_angles(table.theta) < angle))
     if not len(less):
         whole = result.complete and len(table) == sum(result.found.values()) and (best or inf) > len(table)
         near = f"no fixture that lies {straight} comes within a tenth"

@@ -20,18 +20,18 @@ from workhold.model.query import Query
 from workhold.model.requirements import Load
 from workhold.model.result import Result
 from workhold.model.solid import BESIDE_TOP
-from workhold.model.support_request import OUTLINE, SpatialLoad, SupportRequest, usual_head
+from workhold.model.support_request import OUTLINE, SpatialLoad, SupportRequest, compute_usual_head
 from workhold.model.support_triples import Supports
 from workhold.supports.choosing import Stop
-from workhold.supports.listing import supports_of, supports_one_by_one
+from workhold.supports.listing import supports_of, yield_supports
 
 __all__ = [
     "SMALLER",
-    "asked_request",
+    "make_request",
     "fixture_supports",
-    "requests_by_size",
+    "try_smaller_requests",
     "result_supports",
-    "supported_by_size",
+    "support_with_smaller_sizes",
 ]
 
 Loads = Sequence[Load | SpatialLoad] | None
@@ -44,7 +44,7 @@ SIZES = {"pad_radius", "tip_radius", "pad_margin", "inside", "tip_margin", "head
 SMALLER = ((3.0, 4.0), (2.0, 3.0))
 
 
-def asked_request(query: Query, thickness: float | None, asked: Mapping[str, Any]) -> SupportRequest:
+def make_request(query: Query, thickness: float | None, asked: Mapping[str, Any]) -> SupportRequest:
     """What is usual for a part, with what else is asked by name.
 
     Parameters
@@ -73,16 +73,16 @@ def asked_request(query: Query, thickness: float | None, asked: Mapping[str, Any
     return evolve(usual, **further)
 
 
-def requests_by_size(
+def try_smaller_requests(
     query: Query, thickness: float | None, asked: Mapping[str, Any] | None = None
 ) -> Iterator[SupportRequest]:
     """What is asked, and where no size is, the same with smaller pads and tips, but not than the toolkit has.
 
     Parameters
     ----------
-    thickness, asked : as of :func:`asked_request`.
+    thickness, asked : as of :func:`make_request`.
     """
-    usual = last = asked_request(query, thickness, asked or {})
+    usual = last = make_request(query, thickness, asked or {})
     yield usual
     if asked and not SIZES.isdisjoint(asked):
         return
@@ -94,14 +94,14 @@ def requests_by_size(
             pad_radius=min(pad, usual.pad_radius) if pads.pad_radius is None else usual.pad_radius,
             tip_radius=tip,
             inside=tip if clamp.inside is None else clamp.inside,
-            head_radius=usual_head(tip) if clamp.head_radius is None else clamp.head_radius,
+            head_radius=compute_usual_head(tip) if clamp.head_radius is None else clamp.head_radius,
         )
         if (smaller.pad_radius, smaller.tip_radius) != (last.pad_radius, last.tip_radius):
             yield smaller
         last = smaller
 
 
-def supported_by_size(
+def support_with_smaller_sizes(
     fixtures: Sequence[Fixture],
     query: Query,
     requests: Iterable[SupportRequest],
@@ -118,8 +118,8 @@ def supported_by_size(
 
     Parameters
     ----------
-    requests : to be tried in turn, see :func:`requests_by_size`.
-    each, drops_weak_force, cancel, progress : see :func:`workhold.supports.listing.supports_one_by_one`;
+    requests : to be tried in turn, see :func:`try_smaller_requests`.
+    each, drops_weak_force, cancel, progress : see :func:`workhold.supports.listing.yield_supports`;
         once ``cancel`` is set no further request is tried.
     first_only : whether fixtures behind the first that has some are passed over.
 
@@ -129,7 +129,7 @@ def supported_by_size(
     """
     usual = found = tuple[Supports, ...]()
     for request in requests:
-        every = supports_one_by_one(
+        every = yield_supports(
             fixtures,
             query,
             request,
@@ -140,14 +140,14 @@ def supported_by_size(
             cancel=cancel,
             progress=progress,
         )
-        found = tuple(up_to_first(every) if first_only else every)
+        found = tuple(list_up_to_first_supported(every) if first_only else every)
         usual = usual or found
         if any(one.triples or one.stopped for one in found):
             break
     return found, usual
 
 
-def up_to_first(every: Iterable[Supports]) -> Iterator[Supports]:
+def list_up_to_first_supported(every: Iterable[Supports]) -> Iterator[Supports]:
     """The supports of fixtures up to the first that has some."""
     for one in every:
         yield one
@@ -174,7 +174,7 @@ def fixture_supports(
 ) -> Supports:
     """The supports of a fixture, see :meth:`workhold.Fixture.supports`."""
     query = fixture.listing.result.query
-    request = asked_request(query, thickness, given(asked))
+    request = make_request(query, thickness, given(asked))
     return supports_of(fixture, query, request, loads, jaw_force, counting_number("best", best))
 
 
@@ -196,7 +196,5 @@ def result_supports(
     each : how many sets of three for each of them; the rest as in :meth:`workhold.Fixture.supports`.
     """
     count, sets = counting_number("best", best), counting_number("each", each)
-    request, sets = asked_request(result.query, thickness, given(asked)), 3 if sets is None else sets
-    return tuple(
-        supports_one_by_one(list(islice(result, count)), result.query, request, loads, jaw_force, sets)
-    )
+    request, sets = make_request(result.query, thickness, given(asked)), 3 if sets is None else sets
+    return tuple(yield_supports(list(islice(result, count)), result.query, request, loads, jaw_force, sets))

@@ -49,7 +49,7 @@ def coarse(value: float) -> float:
     return float(f"{value:.{COARSE - 1}e}") if abs(value) > 10.0**-FIGURE_DECIMALS else 0.0
 
 
-def digits_of(value: float) -> tuple[float, float]:
+def bound_coarse_figure(value: float) -> tuple[float, float]:
     """Between which figures all that count as a coarse one lie: all below the first count as less."""
     if value <= 0.0:
         return 0.0, 10.0**-FIGURE_DECIMALS
@@ -83,7 +83,7 @@ Stop: TypeAlias = Event | WorkLimit
 
 
 @lru_cache(maxsize=4)
-def all_triples(count: int) -> IntArray:
+def list_triples(count: int) -> IntArray:
     """All three numbers (N, 3) below a count, in order."""
     out = np.array(list(combinations(range(count), 3)), np.int64).reshape(-1, 3)
     out.setflags(write=False)
@@ -265,7 +265,7 @@ class TripleChoice:
         pairs = self.room.pairs()
         count = len(pairs)
         if count <= FEW_HOLES:
-            triples = all_triples(count)
+            triples = list_triples(count)
             i, j, k = triples.T
             yield 1.0, triples[pairs[i, j] & pairs[i, k] & pairs[j, k]]
             return
@@ -333,7 +333,7 @@ class TripleChoice:
         if self.sides.loads:
             # Forces of loads, then minus the arm and minus the standing.
             keys += [
-                (value, *digits_of(one))
+                (value, *bound_coarse_figure(one))
                 for value, one in zip((bounds.need, bounds.force), figures[:2], strict=True)
             ]
             keys += [
@@ -341,7 +341,7 @@ class TripleChoice:
                 for value, one in zip((bounds.arm, bounds.standing), figures[2:], strict=True)
             ]
         else:
-            low, high = digits_of(-figures[0])
+            low, high = bound_coarse_figure(-figures[0])
             keys += [(-bounds.arm, -high, -low), (-bounds.standing, figures[1], figures[1])]
         open_, out = np.ones(len(bounds.need), np.bool_), np.zeros(len(bounds.need), np.bool_)
         for value, low, high in keys:

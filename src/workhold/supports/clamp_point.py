@@ -96,7 +96,7 @@ class ClampPlaces:
             if round_:
                 places = np.append(places, places[:1] + 2 * np.pi) if len(places) else TURN
             for low, high in pairwise(places.tolist()):
-                middles.append(point_on(curve, (low + high) / 2, round_))
+                middles.append(find_point_on_curve(curve, (low + high) / 2, round_))
                 owners.append((number, low, high))
         free = self.allows(np.array(middles).reshape(-1, 2))
         for (number, low, high), may in zip(owners, free.tolist(), strict=True):
@@ -149,9 +149,9 @@ class ClampPlaces:
 
     def border_corners(self, lines: Array, circles: Array) -> Array:
         """Points (K, 2) where two curves of a border cross and the tip may stand."""
-        points = [line_points(lines[None], lines, circles).reshape(-1, 2)]
+        points = [find_crossings_with_lines(lines[None], lines, circles).reshape(-1, 2)]
         first, second = np.triu_indices(len(circles), 1)
-        points.append(circle_points(circles[first], circles[second]))
+        points.append(find_circle_pair_crossings(circles[first], circles[second]))
         every = np.concatenate(points)
         every = every[np.isfinite(every).all(axis=1)]
         every = every[self.allows(every)] if len(every) else every
@@ -232,14 +232,14 @@ class ClampPlaces:
         normals = triangles.slopes / triangles.steepness[..., None]
         straight, circles = self.straight.curves, self.bent.curves
         centers, radii = circles[:, :2], circles[:, 2, None]
-        met = line_points(every, straight, circles)
+        met = find_crossings_with_lines(every, straight, circles)
         first_circle, second_circle = len(straight), len(straight) + len(circles)
         on_circles = [met[:, :, first_circle:second_circle], met[:, :, second_circle:]]
         on_circles += [centers + sign * radii * normals[:, :, None] for sign in (1.0, -1.0)]
         out = [
             self.straight.on_pieces(met[:, :, :first_circle], False),
             *(self.bent.on_pieces(one, True) for one in on_circles),
-            cross_lines(every[:, first], every[:, second]),
+            find_line_crossings(every[:, first], every[:, second]),
             np.broadcast_to(self.corners, (count, len(self.corners), 2)),
         ]
         return np.concatenate([one.reshape(count, -1, 2) for one in out], axis=1)
@@ -350,7 +350,7 @@ def places_on(curves: Array, points: Array, round_: bool) -> Array:
     return np.asarray(curves[..., 0] * y - curves[..., 1] * x)
 
 
-def point_on(curve: Array, place: float, round_: bool) -> Array:
+def find_point_on_curve(curve: Array, place: float, round_: bool) -> Array:
     """The point (2,) of a line or circle (3,) at a place."""
     if round_:
         return np.asarray(curve[:2] + curve[2] * np.array([np.cos(place), np.sin(place)]))
@@ -364,7 +364,7 @@ def normalised(slope: Array, distance: Array) -> Array:
     return np.column_stack([slope / size[:, None], distance / size])
 
 
-def cross_lines(a: Array, b: Array) -> Array:
+def find_line_crossings(a: Array, b: Array) -> Array:
     """Crossings (..., 2) of lines (..., 3), NaN of parallel ones."""
     with np.errstate(invalid="ignore", divide="ignore"):
         det = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
@@ -374,9 +374,9 @@ def cross_lines(a: Array, b: Array) -> Array:
     return np.stack([x, y], axis=-1)
 
 
-def line_points(lines: Array, others: Array, circles: Array) -> Array:
+def find_crossings_with_lines(lines: Array, others: Array, circles: Array) -> Array:
     """Where lines (N, L, 3) cross other lines (M, 3) and circles (K, 3), as (N, L, M + 2 K, 2)."""
-    straight = cross_lines(lines[:, :, None], others[None, None])
+    straight = find_line_crossings(lines[:, :, None], others[None, None])
     normal, distance = lines[:, :, None, :2], lines[:, :, None, 2]
     off = (normal * circles[:, :2]).sum(axis=-1) - distance
     inner = circles[:, 2] ** 2 - off**2
@@ -388,7 +388,7 @@ def line_points(lines: Array, others: Array, circles: Array) -> Array:
     return np.concatenate([straight, foot + along, foot - along], axis=2)
 
 
-def circle_points(a: Array, b: Array) -> Array:
+def find_circle_pair_crossings(a: Array, b: Array) -> Array:
     """Where circles (N, 3) cross others, pair by pair, as (2 N, 2); NaN where they do not."""
     apart = b[:, :2] - a[:, :2]
     distance = np.hypot(apart[:, 0], apart[:, 1])

@@ -17,7 +17,7 @@ import numpy as np
 from attrs import define, field
 from numpy.typing import NDArray
 
-from workhold.geometry.loop import loop_segments, signed_area
+from workhold.geometry.loop import compute_signed_area, loop_segments
 from workhold.geometry.segment import Arc, Segment
 
 __all__ = ["Curve", "FaceBorders", "LevelRegions", "TouchableFace", "area_center", "offset_curves"]
@@ -141,7 +141,7 @@ def grouped(loops: Sequence[Loop]) -> list[list[int]]:
     Of the others those that run clockwise are openings. So are those on a face, however they run; all that
     remain are borders, such as that of the top of a boss within the opening that it leaves.
     """
-    areas = [signed_area(loop) for loop in loops]
+    areas = [compute_signed_area(loop) for loop in loops]
     within = FaceBorders(tuple(map(tuple, loops))).contains(
         np.array([beside(loop) for loop in loops]).reshape(-1, 2)
     )
@@ -252,7 +252,7 @@ class TouchableFace:
 
     def is_on_left(self, border: int) -> bool:
         """Whether a disc that keeps to the faces and off the zones is on the left of a border."""
-        return (signed_area(self.borders.loops[border]) > 0) == (border in self.faces)
+        return (compute_signed_area(self.borders.loops[border]) > 0) == (border in self.faces)
 
 
 def offset_curves(loop: Loop, radius: float, left: bool) -> tuple[list[Curve], list[Curve]]:
@@ -262,7 +262,7 @@ def offset_curves(loop: Loop, radius: float, left: bool) -> tuple[list[Curve], l
     """
     lines: list[Curve] = []
     circles: list[Curve] = []
-    grown = [grown_radius(one, radius, left) for one in loop]
+    grown = [grow_radius(one, radius, left) for one in loop]
     for number, one in enumerate(loop):
         # Where a border goes on smoothly, a disc that touches the joint touches both pieces of it.
         if grown[number] <= 0.0 or grown[number - 1] <= 0.0 or not is_smooth(loop[number - 1], one):
@@ -278,7 +278,7 @@ def offset_curves(loop: Loop, radius: float, left: bool) -> tuple[list[Curve], l
     return lines, circles
 
 
-def grown_radius(one: Segment, radius: float, left: bool) -> float:
+def grow_radius(one: Segment, radius: float, left: bool) -> float:
     """Radius of the circle on which the middle of a disc is that touches an arc, infinite of a line."""
     if not isinstance(one, Arc):
         return np.inf
@@ -287,11 +287,11 @@ def grown_radius(one: Segment, radius: float, left: bool) -> float:
 
 def is_smooth(one: Segment, after: Segment) -> bool:
     """Whether a border has no corner between two of its segments."""
-    (x, y), (to_x, to_y) = one.normal(last_parameter(one)), after.normal(-last_parameter(after))
+    (x, y), (to_x, to_y) = one.normal(find_last_parameter(one)), after.normal(-find_last_parameter(after))
     return abs(x * to_y - y * to_x) < SMOOTH and x * to_x + y * to_y > 0.0
 
 
-def last_parameter(one: Segment) -> float:
+def find_last_parameter(one: Segment) -> float:
     """The parameter of a segment's end; that of its start is the opposite."""
     return one.half_extent * (one.sign if isinstance(one, Arc) else 1.0)
 
@@ -338,7 +338,7 @@ class LevelRegions:
                 if z == height
             ]
             borders[height] = FaceBorders(tuple(own))
-            turns[height] = np.array([1.0 if signed_area(loop) > 0.0 else -1.0 for loop in own])
+            turns[height] = np.array([1.0 if compute_signed_area(loop) > 0.0 else -1.0 for loop in own])
         return cls(borders, turns)
 
     def apart(self, height: float | None, points: Array) -> Array:

@@ -43,9 +43,9 @@ __all__ = [
     "Sides",
     "Triangles",
     "WeakJawError",
-    "lifted_by_jaws",
-    "needed_jaw_force",
-    "worst_cases",
+    "compute_jaw_lift",
+    "find_needed_jaw_force",
+    "count_worst_cases",
 ]
 
 Array = NDArray[np.float64]
@@ -158,7 +158,7 @@ class Triangles:
         return np.asarray(shares / self.steepness.reshape(len(self.slopes), *[1] * extra, 3))
 
 
-def largest_over(x: Array, y: Array, directions: tuple[float, float]) -> Array:
+def find_largest_over_directions(x: Array, y: Array, directions: tuple[float, float]) -> Array:
     """Largest x cos + y sin over a range of directions in degrees."""
     if directions[1] - directions[0] >= 360.0:
         return np.hypot(x, y)
@@ -168,7 +168,7 @@ def largest_over(x: Array, y: Array, directions: tuple[float, float]) -> Array:
     return np.where(peak <= high - low, np.hypot(x, y), ends)
 
 
-def support_forces(
+def compute_support_forces(
     lines: Lines, pegs: PegForces, bands: Array, loads: tuple[SpatialLoad, ...], jaw_force: float
 ) -> tuple[Array, Array]:
     """Least and largest forces (N,) of supports without the clamp, over all loads and heights.
@@ -194,7 +194,7 @@ def support_forces(
                 for height, axial in product(set(load.heights), set(load.axial)):
                     value = sign * (still + axial * shares)
                     if load.force:
-                        value -= load.force * largest_over(
+                        value -= load.force * find_largest_over_directions(
                             -sign * (moved[..., 0] + height * x),
                             -sign * (moved[..., 1] + height * y),
                             load.directions,
@@ -204,12 +204,12 @@ def support_forces(
     return out[0], out[1]
 
 
-def worst_cases(load: SpatialLoad) -> int:
+def count_worst_cases(load: SpatialLoad) -> int:
     """The number of ways in which a load may act worst: points, heights and axial forces together."""
     return max(len(load.points), 1) * len(set(load.heights or (0.0,))) * len(set(load.axial))
 
 
-def lifted_by_jaws(lines: Lines, pegs: PegForces, bands: Array) -> Array:
+def compute_jaw_lift(lines: Lines, pegs: PegForces, bands: Array) -> Array:
     """Lifts (...) of supports per N of jaw force at the worst heights, as the forces above."""
     return np.asarray(-(lines.leverage(pegs, bands, highest=False) @ pegs.answers[:, 3]))
 
@@ -218,12 +218,12 @@ class WeakJawError(InputError):
     """A jaw force that is too small for a load."""
 
 
-def needed_jaw_force(pegs: PegForces, loads: Sequence[SpatialLoad], jaw_force: float | None) -> float:
+def find_needed_jaw_force(pegs: PegForces, loads: Sequence[SpatialLoad], jaw_force: float | None) -> float:
     """The jaw force asked for, or the one that keeps all pegs in contact under every load.
 
     Raises WeakJawError, naming the load, when the one asked for is too small.
     """
-    needs = [needed_for(pegs, load) for load in loads]
+    needs = [find_jaw_force_for_load(pegs, load) for load in loads]
     if jaw_force is None:
         return max(needs, default=0.0)
     for load, need in zip(loads, needs, strict=True):
@@ -236,7 +236,7 @@ def needed_jaw_force(pegs: PegForces, loads: Sequence[SpatialLoad], jaw_force: f
     return float(jaw_force)
 
 
-def needed_for(pegs: PegForces, load: SpatialLoad) -> float:
+def find_jaw_force_for_load(pegs: PegForces, load: SpatialLoad) -> float:
     """The jaw force in N above which no peg lets go under a load, as ``statics.loads`` has it.
 
     Peg i presses with a_i + F h_i, where a_i balances the load and h_i > 0.
@@ -247,7 +247,7 @@ def needed_for(pegs: PegForces, load: SpatialLoad) -> float:
     worst = 0.0
     for point in (load.points if load.force else ()) or (tuple(pegs.center),):
         x, y = pegs.at(np.array(point)).T
-        asked = load.force * largest_over(-x, -y, load.directions) - load.moment * moment
+        asked = load.force * find_largest_over_directions(-x, -y, load.directions) - load.moment * moment
         worst = max(worst, float((asked / closing).max()))
     return worst
 
@@ -299,7 +299,7 @@ class Sides:
         least, most = np.zeros((2, count * count if self.loads else 0))
         for first in range(0, len(least), AT_ONCE):
             numbers = np.arange(first, min(first + AT_ONCE, len(least)))
-            least[numbers], most[numbers] = support_forces(
+            least[numbers], most[numbers] = compute_support_forces(
                 self.lines(numbers), self.pegs, self.bands, self.loads, self.jaw_force
             )
         object.__setattr__(self, "least", least)

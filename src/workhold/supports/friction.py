@@ -34,9 +34,9 @@ from workhold.limits import MOST_FRICTION, real
 from workhold.model.support_request import SpatialLoad
 from workhold.model.support_triples import Supports, Triple
 from workhold.statics.contact_matrix import Touched
-from workhold.statics.loads import contacts_on_part
+from workhold.statics.loads import find_contacts_on_part
 
-__all__ = ["balance", "clamp_with_friction", "least_costs", "load_wrenches"]
+__all__ = ["balance", "clamp_with_friction", "find_least_costs", "load_wrenches"]
 
 Array = NDArray[np.float64]
 # Edges of each pyramid; and the widest step in degrees between corners around a range of directions, which
@@ -75,7 +75,7 @@ def clamp_with_friction(supports: Supports, triple: Triple, friction: float) -> 
         matrix, costs, length = balance(supports, triple, coefficient, heights)
         sides = np.column_stack([-wrenches, np.full(len(wrenches), supports.jaw_force)])
         sides[:, 3:6] /= length
-        worst = max(worst, float(least_costs(matrix, costs, sides).max()))
+        worst = max(worst, float(find_least_costs(matrix, costs, sides).max()))
     return min(worst, triple.clamp.clamp_needed)
 
 
@@ -91,7 +91,7 @@ def balance(
     query, fixture = supports.query, supports.fixture
     touched = Touched.of(query.workpiece, query.toolkit)
     matrices = touched.of_fixture(fixture, query.toolkit)
-    points, normals, moving, against = contacts_on_part(
+    points, normals, moving, against = find_contacts_on_part(
         fixture, query.workpiece, query.toolkit, touched, matrices
     )
     against = np.broadcast_to(against, normals.shape)
@@ -156,7 +156,7 @@ def around(directions: tuple[float, float]) -> Iterator[tuple[float, float]]:
             yield cos(turn) / cos(half), sin(turn) / cos(half)
 
 
-def least_costs(matrix: Array, costs: Array, sides: Array) -> Array:
+def find_least_costs(matrix: Array, costs: Array, sides: Array) -> Array:
     """Least costs (N,) of programs, infinite where nothing solves one.
 
     The matrix A (R, V) has rows of like size, no cost c (V,) is negative, and right sides b are (N, R).
@@ -165,7 +165,7 @@ def least_costs(matrix: Array, costs: Array, sides: Array) -> Array:
     while open_.any():
         first = int(np.flatnonzero(open_)[0])
         open_[first] = False
-        basis = optimal_basis(matrix, costs, sides[first])
+        basis = find_optimal_basis(matrix, costs, sides[first])
         if basis is None:
             continue
         values = np.linalg.solve(matrix[:, basis], sides.T).T
@@ -177,7 +177,7 @@ def least_costs(matrix: Array, costs: Array, sides: Array) -> Array:
     return out
 
 
-def optimal_basis(matrix: Array, costs: Array, side: Array) -> IntArray | None:
+def find_optimal_basis(matrix: Array, costs: Array, side: Array) -> IntArray | None:
     """The columns (R,) that are not 0 in a solution of the least cost; None where nothing solves it."""
     rows, columns = matrix.shape
     size = max(float(np.abs(side).max()), 1.0)

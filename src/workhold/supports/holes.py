@@ -20,7 +20,7 @@ from workhold.model.fixture import Fixture
 from workhold.model.support_request import SupportRequest
 from workhold.supports.faces import TouchableFace
 
-__all__ = ["CarrierRoom", "HolesUnderPart", "Standing", "holes_under"]
+__all__ = ["CarrierRoom", "HolesUnderPart", "Standing", "find_holes_under_face"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -47,7 +47,7 @@ class HolesUnderPart:
     spare: Array
 
 
-def holes_under(
+def find_holes_under_face(
     fixture: Fixture, toolkit: Toolkit, face: TouchableFace, request: SupportRequest
 ) -> HolesUnderPart:
     """The holes under a face in which a pad keeps off its border, its zones and the pegs."""
@@ -240,14 +240,17 @@ class CarrierRoom:
                 (numbers.index(int(holes.carrier[h])), int(holes.column[h]), int(holes.row[h]))
                 for h in sets[index]
             ]
-            widths = (at_rest[index] - moved * plates[0].pitch[0] for moved in first_free(standing, plates))
+            widths = (
+                at_rest[index] - moved * plates[0].pitch[0]
+                for moved in find_first_free_columns(standing, plates)
+            )
             width = next((one for one in widths if one <= most), -np.inf)
             fits[index] = width >= travel.least - GAP_SLACK
             opened[index] = width if fits[index] else opened[index]
         return Standing(fits, opened, found.spare)
 
 
-def first_free(standing: list[tuple[int, int, int]], plates: list[Carrier]) -> list[int]:
+def find_first_free_columns(standing: list[tuple[int, int, int]], plates: list[Carrier]) -> list[int]:
     """How many columns outward in all pegs and supports may stand clear of blocked holes, fewest first."""
     columns = [[c for k, c, _ in standing if k == number] for number in range(len(plates))]
     lowest = min(row for _, _, row in standing)

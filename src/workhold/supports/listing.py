@@ -27,14 +27,14 @@ from workhold.supports.forces import (
     PegForces,
     Sides,
     WeakJawError,
-    lifted_by_jaws,
-    needed_jaw_force,
-    worst_cases,
+    compute_jaw_lift,
+    count_worst_cases,
+    find_needed_jaw_force,
 )
-from workhold.supports.holes import CarrierRoom, holes_under
-from workhold.supports.program import acting_on, with_program
+from workhold.supports.holes import CarrierRoom, find_holes_under_face
+from workhold.supports.program import add_program_zones, list_acting_loads
 
-__all__ = ["SupportSearch", "supports_one_by_one", "supports_of"]
+__all__ = ["SupportSearch", "yield_supports", "supports_of"]
 
 Array = NDArray[np.float64]
 Heights = Sequence[float] | None
@@ -130,17 +130,17 @@ class SupportSearch:
         """
         toolkit, workpiece = self.query.toolkit, self.query.workpiece
         pegs = PegForces.of(fixture, toolkit, self.touched)
-        force = needed_jaw_force(pegs, self.loads, jaw_force)
+        force = find_needed_jaw_force(pegs, self.loads, jaw_force)
         solid = numbered_solid(workpiece)
         request = self.request.for_fixture(fixture, solid, self.query.peg_height, workpiece.numbered)
-        holes = holes_under(fixture, toolkit, self.bottom, self.request)
+        holes = find_holes_under_face(fixture, toolkit, self.bottom, self.request)
         if len(holes.row) > MOST_POSITIONS:
             raise InputError(
                 f"{len(holes.row):,} holes could hold a support, more than {MOST_POSITIONS:,}: give a larger "
                 "pad margin, or places that no pad may stand under."
             )
         if isinstance(cancel, WorkLimit):
-            cancel.done += len(holes.row) ** 2 * sum(map(worst_cases, self.loads)) // SIDES_A_PLACE
+            cancel.done += len(holes.row) ** 2 * sum(map(count_worst_cases, self.loads)) // SIDES_A_PLACE
         choice = TripleChoice(
             Sides(holes.points, pegs, request.peg_bands(len(fixture.pegs)), self.loads, force),
             CarrierRoom.of(fixture, toolkit, holes),
@@ -150,7 +150,7 @@ class SupportSearch:
             None if request.point is None else np.array(request.point),
         )
         chosen = choice.chosen(best, cancel, progress)
-        triples = triples_of(choice, chosen.corners)
+        triples = make_triples(choice, chosen.corners)
         return Supports(
             self.query,
             fixture,
@@ -164,7 +164,7 @@ class SupportSearch:
         )
 
 
-def triples_of(choice: TripleChoice, corners: Corners) -> tuple[Triple, ...]:
+def make_triples(choice: TripleChoice, corners: Corners) -> tuple[Triple, ...]:
     """The triples of a fixture that were chosen, with their figures, in their order."""
     sides, room = choice.sides, choice.room
     if not len(corners.numbers):
@@ -182,11 +182,11 @@ def triples_of(choice: TripleChoice, corners: Corners) -> tuple[Triple, ...]:
     stand = room.standing(corners.numbers)
     spare = np.minimum(room.holes.spare[corners.numbers].min(axis=1), arm - choice.inside)
     spare = np.minimum(spare, stand.spare)
-    best = clamp_figures(choice, corners, best_at)
-    at_point = clamp_figures(choice, corners, choice.given_points(corners))
+    best = measure_clamp_places(choice, corners, best_at)
+    at_point = measure_clamp_places(choice, corners, choice.given_points(corners))
     return tuple(
         Triple(
-            supports=tuple(support_in(room, hole) for hole in numbers),
+            supports=tuple(make_support_pad(room, hole) for hole in numbers),
             travel=float(stand.travel[k]) if isfinite(stand.travel[k]) else None,
             marginal=bool(spare[k] < AGREEMENT),
             standing=float(standing[k]),
@@ -200,12 +200,12 @@ def triples_of(choice: TripleChoice, corners: Corners) -> tuple[Triple, ...]:
     )
 
 
-def clamp_figures(choice: TripleChoice, corners: Corners, points: Array) -> list[ClampFigures]:
+def measure_clamp_places(choice: TripleChoice, corners: Corners, points: Array) -> list[ClampFigures]:
     """The figures of triples with the clamp at points (N, 2)."""
     sides = choice.sides
     need, force, arm = choice.figures_at(corners, points)
     shares = sides.distances(corners, points) / corners.heights
-    lifted = lifted_by_jaws(sides.lines(corners.sides), sides.pegs, sides.bands) / corners.heights
+    lifted = compute_jaw_lift(sides.lines(corners.sides), sides.pegs, sides.bands) / corners.heights
     with np.errstate(divide="ignore", invalid="ignore"):
         lift = np.maximum((lifted / shares).max(axis=1), 0.0)
     loaded = bool(sides.loads)
@@ -224,7 +224,7 @@ def clamp_figures(choice: TripleChoice, corners: Corners, points: Array) -> list
     ]
 
 
-def support_in(room: CarrierRoom, hole: int) -> SupportPad:
+def make_support_pad(room: CarrierRoom, hole: int) -> SupportPad:
     holes = room.holes
     x, y = holes.points[hole].tolist()
     name = room.toolkit.carriers[holes.carrier[hole]].name
@@ -237,7 +237,7 @@ def spatial(loads: Iterable[Load | SpatialLoad], thickness: float) -> tuple[Spat
     return tuple(load.at_height(thickness) for load in every)
 
 
-def checked_force(jaw_force: float | None) -> float | None:
+def check_jaw_force(jaw_force: float | None) -> float | None:
     """A jaw force in N, or None; refuses one that is negative or no number."""
     if jaw_force is None:
         return None
@@ -277,10 +277,10 @@ def supports_of(
         looked at, and for all triples where there are too many.
     """
     asked = (query, request, loads, jaw_force, best)
-    return next(supports_one_by_one((fixture,), *asked, cancel=cancel, progress=progress))
+    return next(yield_supports((fixture,), *asked, cancel=cancel, progress=progress))
 
 
-def supports_one_by_one(
+def yield_supports(
     fixtures: Sequence[Fixture],
     query: Query,
     request: SupportRequest,
@@ -297,10 +297,10 @@ def supports_one_by_one(
     ``each`` is how many triples of each fixture, None for all; others are as of :func:`supports_of`.
     ``drops_weak_force`` says whether a jaw force that is too small for a load is left out, not refused.
     """
-    acting = acting_on(query, request.thickness) if loads is None else loads
+    acting = list_acting_loads(query, request.thickness) if loads is None else loads
     asked = spatial(acting, request.thickness)
-    search = SupportSearch(query, with_program(request, query.workpiece, query.program), asked)
-    force = checked_force(jaw_force)
+    search = SupportSearch(query, add_program_zones(request, query.workpiece, query.program), asked)
+    force = check_jaw_force(jaw_force)
     for number, fixture in enumerate(fixtures):
 
         def share(fraction: float, before: int = number) -> None:

@@ -34,14 +34,14 @@ from workhold.model.cutting_tool import ANY
 from workhold.model.moves import Stretches
 from workhold.model.program import PathVertex, Program, SweptPiece
 from workhold.model.query import Query
-from workhold.model.requirements import Load, Zone, zone_of
-from workhold.model.support_bodies import clamp_pieces
+from workhold.model.requirements import Load, Zone, make_zone
+from workhold.model.support_bodies import size_clamp_pieces
 from workhold.model.support_request import SpatialLoad, SupportRequest
 from workhold.model.workpiece import Workpiece
-from workhold.statics.path_forces import all_pieces, around_arcs, hull_of
+from workhold.statics.path_forces import enclose_arcs, hull_of, list_all_pieces
 from workhold.supports.faces import TouchableFace
 
-__all__ = ["acting_on", "capsule", "cutting_loads", "with_program"]
+__all__ = ["list_acting_loads", "capsule", "make_cutting_loads", "add_program_zones"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -55,12 +55,12 @@ MOST_ABOVE, MOST_BELOW = 40, 400
 FIRST = 16
 
 
-def acting_on(query: Query, thickness: float) -> tuple[Load | SpatialLoad, ...]:
+def list_acting_loads(query: Query, thickness: float) -> tuple[Load | SpatialLoad, ...]:
     """The loads of a query and those that its program makes on a part of a thickness in mm."""
-    return (*query.loads, *(() if query.program is None else cutting_loads(query.program, thickness)))
+    return (*query.loads, *(() if query.program is None else make_cutting_loads(query.program, thickness)))
 
 
-def cutting_loads(program: Program, thickness: float) -> tuple[SpatialLoad, ...]:
+def make_cutting_loads(program: Program, thickness: float) -> tuple[SpatialLoad, ...]:
     """The loads of a program on a part of a thickness in mm; none without forces."""
     forces = program.forces
     if forces is None:
@@ -94,9 +94,9 @@ def loads_of(
     cut = forces.stretches
     cut = Stretches(cut.move[own], cut.first[own], cut.last[own])
     any_way = CuttingForces(only, none, np.zeros((count, 2)), none, ANY, stretches=cut)
-    pieces = all_pieces(evolve(program, forces=any_way), (0.0, 0.0))
+    pieces = list_all_pieces(evolve(program, forces=any_way), (0.0, 0.0))
     is_arc = pieces.radius > 0.0
-    x, y = around_arcs(pieces, np.flatnonzero(is_arc))
+    x, y = enclose_arcs(pieces, np.flatnonzero(is_arc))
     points = np.concatenate(
         [np.stack([pieces.x[~is_arc], pieces.y[~is_arc]], axis=1), np.stack([x.ravel(), y.ravel()], axis=1)]
     )
@@ -116,7 +116,9 @@ def loads_of(
     yield evolve(load, moment=-load.moment)
 
 
-def with_program(request: SupportRequest, workpiece: Workpiece, program: Program | None) -> SupportRequest:
+def add_program_zones(
+    request: SupportRequest, workpiece: Workpiece, program: Program | None
+) -> SupportRequest:
     """A request with the zones of a program among its own; the request itself without one."""
     if program is None:
         return request
@@ -124,8 +126,8 @@ def with_program(request: SupportRequest, workpiece: Workpiece, program: Program
     def face(loops: tuple[Array, ...] | None) -> TouchableFace:
         return TouchableFace.of(workpiece.loops if loops is None else loops)
 
-    below = zones_below(program, request.pad_radius, request.pad_margin, KeyedFace(face(request.bottom)))
-    above = zones_above(program, levels_of(request), request.tip_radius, KeyedFace(face(request.top)))
+    below = list_zones_below(program, request.pad_radius, request.pad_margin, KeyedFace(face(request.bottom)))
+    above = list_zones_above(program, levels_of(request), request.tip_radius, KeyedFace(face(request.top)))
 
     def further(own: tuple[Zone, ...], more: tuple[Zone, ...]) -> tuple[Zone, ...]:
         return (*own, *(zone for zone in more if zone not in own))
@@ -156,19 +158,21 @@ class KeyedFace:
 
 
 @lru_cache(maxsize=8)
-def zones_below(program: Program, pad_radius: float, pad_margin: float, keyed: KeyedFace) -> tuple[Zone, ...]:
+def list_zones_below(
+    program: Program, pad_radius: float, pad_margin: float, keyed: KeyedFace
+) -> tuple[Zone, ...]:
     """Where no pad may stand: where tools come down to the plane on which the part lies, or below it."""
     swept = Swept.below(program, 0.0)
     return zones_of(swept, program.clearance, pad_radius + pad_margin, pad_radius, keyed.face, MOST_BELOW)
 
 
 @lru_cache(maxsize=8)
-def zones_above(
+def list_zones_above(
     program: Program, levels: tuple[float, ...], tip_radius: float, keyed: KeyedFace
 ) -> tuple[Zone, ...]:
     """Where the tip may not stand: where tools come too near to the clamp as it is drawn."""
     return zones_of(
-        Swept.of(beside_clamp(program, levels, tip_radius)),
+        Swept.of(list_swept_beside_clamp(program, levels, tip_radius)),
         program.clearance,
         tip_radius,
         tip_radius,
@@ -183,10 +187,12 @@ def levels_of(request: SupportRequest) -> tuple[float, ...]:
     return *sorted(lower), request.thickness
 
 
-def beside_clamp(program: Program, levels: tuple[float, ...], tip_radius: float) -> Iterator[SweptPiece]:
+def list_swept_beside_clamp(
+    program: Program, levels: tuple[float, ...], tip_radius: float
+) -> Iterator[SweptPiece]:
     """What is swept at the heights of the clamp on top, wider where the clamp is wider than its tip."""
     for low in levels:
-        for height, share in clamp_pieces(low, levels[-1]):
+        for height, share in size_clamp_pieces(low, levels[-1]):
             wider = max(share - 1.0, 0.0) * tip_radius
             for one in program.iter_swept(low, low + height):
                 yield SweptPiece(
@@ -214,11 +220,11 @@ def zones_of(
     wide = clearance + 2 * finest
     return (
         *(
-            zone_of(capsule(path_of(swept.tree.rows[k]), float(swept.tree.radius[k]) + wide))
+            make_zone(capsule(path_of(swept.tree.rows[k]), float(swept.tree.radius[k]) + wide))
             for k in chosen.tolist()
         ),
         *(
-            zone_of([[x0, y0, 0.0], [x1, y0, 0.0], [x1, y1, 0.0], [x0, y1, 0.0]])
+            make_zone([[x0, y0, 0.0], [x1, y0, 0.0], [x1, y1, 0.0], [x0, y1, 0.0]])
             for x0, y0, x1, y1 in swept.filled[boxes].tolist()
         ),
     )
@@ -241,7 +247,7 @@ def needed(
         half = side / 2**0.5
         points = points[face.room(points) >= on_face - half]
         reach, nearest = swept.nearest(points, points)
-        inside, which = in_filled(swept, points, half)
+        inside, which = find_filled_boxes(swept, points, half)
         boxes.update(which[inside].tolist())
         slack = reach - keep
         hidden = slack < -half
@@ -260,7 +266,7 @@ def needed(
     return covering(swept, first, squares, own, keep), np.array(sorted(boxes), np.int64)
 
 
-def in_filled(swept: Swept, points: Array, half: float) -> tuple[NDArray[np.bool_], IntArray]:
+def find_filled_boxes(swept: Swept, points: Array, half: float) -> tuple[NDArray[np.bool_], IntArray]:
     """Whether squares about points (N, 2) lie in a filled box, and in which (N,)."""
     inside, which = np.zeros(len(points), np.bool_), np.full(len(points), -1)
     for number, (x0, y0, x1, y1) in enumerate(swept.filled.tolist()):
@@ -328,12 +334,15 @@ def capsule(path: tuple[PathVertex, ...], radius: float) -> list[list[float]]:
     # The inner border is gone; the circles about both ends meet behind the centre.
     middle, half_chord = (start + end) / 2, float(np.hypot(*chord)) / 2
     apex = middle + np.array([-along[1], along[0]]) * np.sqrt(max(radius**2 - half_chord**2, 0.0))
-    turns = [sweep_between(end, end + radius * back, apex), sweep_between(start, apex, start + radius * out)]
+    turns = [
+        measure_sweep_between(end, end + radius * back, apex),
+        measure_sweep_between(start, apex, start + radius * out),
+    ]
     corners = [*outer, (end + radius * back, np.tan(turns[0] / 4)), (apex, np.tan(turns[1] / 4))]
     return [[*place.tolist(), float(bent)] for place, bent in corners]
 
 
-def sweep_between(center: Array, one: Array, other: Array) -> float:
+def measure_sweep_between(center: Array, one: Array, other: Array) -> float:
     """The angle from one point about a centre to another, counter-clockwise, in radians from 0 to 2 pi."""
     a, b = one - center, other - center
     return float(np.arctan2(a[0] * b[1] - a[1] * b[0], a @ b)) % (2 * pi)

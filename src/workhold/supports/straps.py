@@ -24,11 +24,11 @@ from numpy.typing import NDArray
 from workhold.errors import InputError
 from workhold.fixels.carrier import Carrier
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.hull import convex_hull
+from workhold.geometry.hull import compute_convex_hull
 from workhold.geometry.loop import loop_segments
 from workhold.geometry.segment import Arc, Segment
 from workhold.model.fixture import Fixture, Peg
-from workhold.model.friction import SAFETY, Coefficients, coefficients_of, friction_of
+from workhold.model.friction import SAFETY, Coefficients, coefficients_of, find_friction_coefficient
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Zone
 from workhold.model.straps import Strap, StrapHardware, StrappedHold
@@ -178,7 +178,9 @@ class StrapSearch:
         workpiece = self.query.workpiece
         bands = request.for_fixture(fixture, workpiece.solid, numbered=workpiece.numbered)
         heights = bands.peg_bands(len(fixture.pegs))[self.locators]
-        return StrappedPart(touched, inward, heights, self.foot, friction_of(self.asked.friction, "plate"))
+        return StrappedPart(
+            touched, inward, heights, self.foot, find_friction_coefficient(self.asked.friction, "plate")
+        )
 
     @cached_property
     def foot(self) -> PressedPolygon:
@@ -213,7 +215,7 @@ class StrapSearch:
 
     @property
     def coefficient(self) -> float:
-        return friction_of(self.asked.friction, "tip")
+        return find_friction_coefficient(self.asked.friction, "tip")
 
     @cached_property
     def loads(self) -> list[Array]:
@@ -281,7 +283,7 @@ class StrapSearch:
     @cached_property
     def kern(self) -> Array:
         """The sides (R, 3) of the kern of the foot, a x + b y <= c within, of unit normals."""
-        corners = np.array(convex_hull((float(x), float(y)) for x, y in self.foot.centres))
+        corners = np.array(compute_convex_hull((float(x), float(y)) for x, y in self.foot.centres))
         along = np.roll(corners, -1, axis=0) - corners
         normals = np.column_stack([along[:, 1], -along[:, 0]]) / np.hypot(*along.T)[:, None]
         return np.column_stack([normals, (normals * corners).sum(axis=1)])

@@ -19,11 +19,18 @@ from workhold.model.support_request import SupportRequest
 from workhold.model.support_triples import Supports, Triple
 from workhold.model.workpiece import Workpiece
 from workhold.supports.asking import SMALLER
-from workhold.supports.holes import CarrierRoom, HolesUnderPart, holes_under
+from workhold.supports.holes import CarrierRoom, HolesUnderPart, find_holes_under_face
 from workhold.supports.listing import SupportSearch
 from workhold.units import MILLIMETRE, Unit
 
-__all__ = ["flat_faces_notes", "listing_notes", "place_notes", "set_headings", "set_row", "why_no_set"]
+__all__ = [
+    "write_flat_faces_notes",
+    "write_listing_notes",
+    "place_notes",
+    "set_headings",
+    "set_row",
+    "explain_no_set",
+]
 
 # Triples that are looked at; where there are more, one of these fits.
 MOST_LOOKED_AT = 200_000
@@ -31,7 +38,7 @@ MOST_LOOKED_AT = 200_000
 SAME_OPENING = 1e-6
 
 
-def why_no_set(found: Supports, unit: Unit) -> str:
+def explain_no_set(found: Supports, unit: Unit) -> str:
     """The sentence for supports of which there is no set; lengths in a unit."""
     return f"No three supports hold the part with the clamp between them: {reason(found, unit)}"
 
@@ -45,7 +52,7 @@ def reason(found: Supports, unit: Unit) -> str:
     if request.top is not None and not request.top:
         solid = found.query.workpiece.solid
         if solid is not None and solid.unclear_heights:
-            return f"no clamp can press from above: {unclear_words(solid.unclear_heights, unit)}{turned}."
+            return f"no clamp can press from above: {describe_unclear_faces(solid.unclear_heights, unit)}{turned}."
         return (
             "no clamp can press from above, because no level face of the part is open upward; "
             f"crowns, fillets and slopes do not count as flat{turned}."
@@ -53,17 +60,19 @@ def reason(found: Supports, unit: Unit) -> str:
     search = SupportSearch(found.query, request, ())
     plain = SupportSearch(found.query, evolve(request, top_zones=(), reach=None), ())
     if plain.places(found.fixture).is_empty:
-        return no_place_for_a_tip(request, turned, unit)
+        return explain_no_place_for_tip(request, turned, unit)
     if found.query.program is not None and search.places(found.fixture).is_empty:
         return (
             "the tools of the program and the keep-outs leave no place on the upper face where a tip "
             f"of radius {unit.text(request.tip_radius)} could stay; a smaller tip would help, or "
             "another set-up for the cuts under it, or another way to hold the part down."
         )
-    holes = holes_under(found.fixture, toolkit, search.bottom, request)
+    holes = find_holes_under_face(found.fixture, toolkit, search.bottom, request)
     if found.positions < 3:
         bare = evolve(request, pad_radius=0.0, pad_margin=0.0)
-        return few_holes(found, holes_under(found.fixture, toolkit, search.bottom, bare), unit)
+        return explain_few_holes(
+            found, find_holes_under_face(found.fixture, toolkit, search.bottom, bare), unit
+        )
     sets = np.array(list(islice(combinations(range(len(holes.row)), 3), MOST_LOOKED_AT)), np.int64)
     sets = sets[CarrierRoom.of(found.fixture, toolkit, holes).standing(sets).fits]
     if not len(sets):
@@ -72,7 +81,7 @@ def reason(found: Supports, unit: Unit) -> str:
             "and the gap together with the pegs; more columns or a smaller gap would help, or "
             "another fixture."
         )
-    widest = max(largest_circle(holes.points[one]) for one in sets)
+    widest = max(compute_incircle_radius(holes.points[one]) for one in sets)
     if widest < request.inside:
         return (
             f"in the largest triangle of them a clamp is {unit.text(widest)} from every side, "
@@ -92,7 +101,7 @@ def reason(found: Supports, unit: Unit) -> str:
     )
 
 
-def unclear_words(heights: Sequence[float], unit: Unit) -> str:
+def describe_unclear_faces(heights: Sequence[float], unit: Unit) -> str:
     """The words that of upper faces it is not known what is free, with what would help."""
     faces = "face" if len(heights) == 1 else "faces"
     at = listed_words([unit.text(height) for height in heights])
@@ -103,7 +112,7 @@ def unclear_words(heights: Sequence[float], unit: Unit) -> str:
     )
 
 
-def no_place_for_a_tip(request: SupportRequest, turned: str, unit: Unit) -> str:
+def explain_no_place_for_tip(request: SupportRequest, turned: str, unit: Unit) -> str:
     """That the tip fits on none of the upper faces, and what would help."""
     margin = f", {unit.text(request.tip_margin)} from its border" if request.tip_margin else ""
     head = f" and a head of radius {unit.text(request.head_radius)} above it" if request.rising else ""
@@ -115,7 +124,7 @@ def no_place_for_a_tip(request: SupportRequest, turned: str, unit: Unit) -> str:
     )
 
 
-def few_holes(found: Supports, bare: HolesUnderPart, unit: Unit) -> str:
+def explain_few_holes(found: Supports, bare: HolesUnderPart, unit: Unit) -> str:
     """What is in the way where fewer than three holes have room for a pad."""
     request, few = found.request, ("no hole has", "only one hole has", "only two holes have")[found.positions]
     spare = np.sort(bare.spare)[::-1] - request.pad_margin
@@ -137,7 +146,7 @@ def few_holes(found: Supports, bare: HolesUnderPart, unit: Unit) -> str:
     return f"{pad}; three have it for pads of radius {unit.text(enough)}."
 
 
-def largest_circle(corners: np.ndarray) -> float:
+def compute_incircle_radius(corners: np.ndarray) -> float:
     """The radius of the largest circle in a triangle (3, 2)."""
     a, b, c = corners
     twice = abs((b - a)[0] * (c - a)[1] - (b - a)[1] * (c - a)[0])
@@ -164,7 +173,7 @@ def set_row(triple: Triple, unit: Unit, loaded: bool) -> list[str]:
     ]
 
 
-def listing_notes(
+def write_listing_notes(
     found: Supports, listed: Sequence[Triple], unit: Unit, keep_off: Sequence[str]
 ) -> list[str]:
     """What has to be known about some sets of three that no figure of them says.
@@ -185,7 +194,7 @@ def listing_notes(
             f"{', '.join(unit.text(one) for one in sorted(moved))}; columns are counted as for the fixture."
         )
     notes += place_notes(dict(enumerate(listed, 1)))
-    return notes + flat_faces_notes(found.query.workpiece, keep_off)
+    return notes + write_flat_faces_notes(found.query.workpiece, keep_off)
 
 
 def place_notes(listed: Mapping[int, Triple]) -> list[str]:
@@ -215,12 +224,14 @@ def those(some: Sequence[int], every: Mapping[int, Triple]) -> str:
     return "each" if len(some) == len(every) else listed_words([str(number) for number in some])
 
 
-def flat_faces_notes(workpiece: Workpiece, keep_off: Sequence[str], unit: Unit = MILLIMETRE) -> list[str]:
+def write_flat_faces_notes(
+    workpiece: Workpiece, keep_off: Sequence[str], unit: Unit = MILLIMETRE
+) -> list[str]:
     """Says that a solid has no level face below or on top, or is taken to be flat where none is known.
 
     Parameters
     ----------
-    keep_off : as of :func:`listing_notes`.
+    keep_off : as of :func:`write_listing_notes`.
     """
     solid = workpiece.solid
     if solid is None:
@@ -231,7 +242,7 @@ def flat_faces_notes(workpiece: Workpiece, keep_off: Sequence[str], unit: Unit =
             "The part lies on no level face, so no support can stand under it: turn another side up."
         )
     if solid.unclear_heights:
-        words = unclear_words(solid.unclear_heights, unit)
+        words = describe_unclear_faces(solid.unclear_heights, unit)
         notes.append(f"{words[:1].upper()}{words[1:]}.")
     elif solid.has_no_top:
         notes.append(

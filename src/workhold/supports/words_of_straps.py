@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from workhold.model.fixture import Fixture
-from workhold.model.friction import COEFFICIENTS, COUNTED_BY_STRAPS, friction_of
+from workhold.model.friction import COEFFICIENTS, COUNTED_BY_STRAPS, find_friction_coefficient
 from workhold.model.straps import StrappedHold
 from workhold.supports.straps import StrapQuestion
 from workhold.units import Unit
@@ -45,7 +45,7 @@ def reckoned_with(asked: StrapQuestion) -> str:
     """The coefficients of friction and the safety factor, in a sentence."""
     given = dict(asked.friction or ())
     named = (
-        f"{friction_of(asked.friction, name):g} between {COEFFICIENTS[name].between}"
+        f"{find_friction_coefficient(asked.friction, name):g} between {COEFFICIENTS[name].between}"
         f" ({'as given' if name in given else 'usual'})"
         for name in COUNTED_BY_STRAPS
     )

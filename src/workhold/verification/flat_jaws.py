@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from workhold.fixels.jaw_pair import JawPair
 from workhold.geometry.segment import Arc, Line, Segment
 from workhold.model.fixture import Fixture
-from workhold.model.friction import friction_of
+from workhold.model.friction import find_friction_coefficient
 from workhold.model.jaw_hold import JawHold, Patch, Rectangle
 from workhold.model.query import Query
 from workhold.model.requirements import Load
@@ -284,7 +284,7 @@ class JawJudge:
                 yield "loads are held by jaws that cannot press all over"
             return
         points, way = self.stop_points(hold, segments)
-        friction = friction_of(self.query.friction, "jaw")
+        friction = find_friction_coefficient(self.query.friction, "jaw")
         held = HeldBetweenJaws.of(fixed, moving, hold.opening, friction, points, way)
         for number, (load, need) in enumerate(zip(loads, hold.clamp_needed_each, strict=True), 1):
             yield from self.force_faults(number, load, need, fixture, held)

@@ -23,7 +23,7 @@ from math import atan2, ceil, degrees, isinf, pi, radians, tau
 from attrs import frozen
 from flint import arb
 
-from workhold.model.first_choice import figures_ranked_by
+from workhold.model.first_choice import list_ranking_figures
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.quality import RANKED
 from workhold.model.query import Query
@@ -230,7 +230,7 @@ def order_faults(
     found is listed, and ``is_chosen`` whether the best may be among what is not.
     """
     usual = query.without_seating
-    if any(key not in fixture.quality for fixture in fixtures for key in figures_ranked_by(usual.rank_by)):
+    if any(key not in fixture.quality for fixture in fixtures for key in list_ranking_figures(usual.rank_by)):
         return
     if query.has_house_order and not all(map(hardware.has_carriers, fixtures)):
         # What stands on something else is refuted, and no effective error of it is known.
@@ -244,7 +244,7 @@ def order_faults(
     def row_of(fixture: Fixture, figures: Mapping[str, float], asked: Query) -> list[Range]:
         """What a fixture is ordered by, with some figures."""
         first = judge.first(fixture, figures) if judge is not None and asked.has_house_order else []
-        return [unfit(fixture, off), *first, *ranges(figures, figures_ranked_by(asked.rank_by))]
+        return [unfit(fixture, off), *first, *ranges(figures, list_ranking_figures(asked.rank_by))]
 
     rows = [row_of(fixture, fixture.quality, usual) for fixture in fixtures]
     stated = [figures_stated(fixture) for fixture in fixtures]

@@ -36,7 +36,7 @@ from workhold.model.clamps import ratios
 from workhold.model.fixture import Fixture, Pair, Peg
 from workhold.model.notes import ChosenOnly, Note
 from workhold.model.pose import Pose
-from workhold.model.quality import figures_in
+from workhold.model.quality import list_figures_in_columns
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.model.search_report import Proof
@@ -168,7 +168,7 @@ class FixturesInColumns(Sequence[Fixture]):
                 Peg(one.name, column, row, x, y, face, 0.0 if pairs else force, called, flat_deg=looks)
             )
         pose = Pose(round(degrees(numbers["theta"]), DECIMALS), *numbers["position"])
-        figures = zip(figures_in(len(numbers["quality"])), numbers["quality"], strict=True)
+        figures = zip(list_figures_in_columns(len(numbers["quality"])), numbers["quality"], strict=True)
         known = {figure.key: value for figure, value in figures if value == value}
         if not pairs:
             return Fixture(arrangement.name, tuple(pegs), pose, travelled, known, arrangement.direction)

@@ -25,8 +25,8 @@ from attrs import define, field, frozen
 from numpy.typing import NDArray
 
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.loop import loop_segments, signed_area
-from workhold.geometry.segment import Arc, Segment, bounding_box, distance_to_segment
+from workhold.geometry.loop import compute_signed_area, loop_segments
+from workhold.geometry.segment import Arc, Segment, bounding_box, measure_distance_to_segment
 from workhold.model.fixture import Fixture
 from workhold.model.query import Query
 from workhold.model.support_request import SupportRequest
@@ -207,7 +207,7 @@ def borders_of(loop: Array) -> Loop:
 
 def gap_of(loops: Sequence[Loop], point: tuple[float, float]) -> float:
     """How far a point is from a region that loops have on their left, in mm; negative in it."""
-    near = min((distance_to_segment(point, one) for loop in loops for one in loop), default=inf)
+    near = min((measure_distance_to_segment(point, one) for loop in loops for one in loop), default=inf)
     return -near if sum(turns_about(loop, point) for loop in loops) > 0 else near
 
 
@@ -404,7 +404,7 @@ def room_on(loops: Sequence[Array], zones: Sequence[Array], point: tuple[float, 
 
 def reach(loop: Loop, point: tuple[float, float]) -> float:
     """Distance of a point from a loop in mm, negative outside it."""
-    near = min(distance_to_segment(point, one) for one in loop)
+    near = min(measure_distance_to_segment(point, one) for one in loop)
     return near if turns_about(loop, point) else -near
 
 
@@ -415,7 +415,7 @@ def faces_by_size(loops: Sequence[Loop]) -> list[list[tuple[Loop, int]]]:
     within a loop that runs counter-clockwise; one that runs the other way is never a border.
     """
     faces: list[list[tuple[Loop, int]]] = []
-    sizes = [signed_area(loop) for loop in loops]
+    sizes = [compute_signed_area(loop) for loop in loops]
     for number in sorted(range(len(loops)), key=lambda k: (-abs(sizes[k]), sizes[k])):
         loop = loops[number]
         (x, y), (nx, ny) = loop[0].middle, loop[0].normal()

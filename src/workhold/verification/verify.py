@@ -13,7 +13,7 @@ from flint import arb, ctx
 
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
-from workhold.model.own_outlines import outline_diameter
+from workhold.model.own_outlines import measure_outline_diameter
 from workhold.model.quality import PIN_KEYS
 from workhold.model.query import Query
 from workhold.model.result import Result
@@ -104,7 +104,7 @@ class Judge:
     @cached_property
     def diameter(self) -> float:
         """The diameter of the part, in mm."""
-        return outline_diameter(self.query.workpiece)
+        return measure_outline_diameter(self.query.workpiece)
 
     @cached_property
     def wrench_length(self) -> float:

@@ -17,12 +17,12 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Segment
 from workhold.model.clamps import order_words
 from workhold.model.fixture import Fixture
-from workhold.model.fixture_table import FixtureTable, fixture_at
+from workhold.model.fixture_table import FixtureTable, make_fixture_of_row
 from workhold.model.jaw_hold import JawHold
-from workhold.model.moved_setup import middle_move, moved_on, overhangs
+from workhold.model.moved_setup import find_move_to_middle, move_fixture_by_holes, overhangs
 from workhold.model.quality import FIGURES
 from workhold.model.search_report import Explanation, Proof
-from workhold.model.setup import settings_of
+from workhold.model.setup import list_length_settings
 from workhold.model.shown import Shown
 from workhold.model.workpiece import Workpiece
 from workhold.presenting.data import finite, helps_data, solid_data
@@ -136,7 +136,7 @@ def rows_answer(
 ) -> list[dict[str, Any]]:
     """Describe fixtures as rows; ``ranks`` are those of the table's fixtures, and ``holds`` how flat jaws hold them."""
     longest = no_edge(workpiece, toolkit)
-    fixtures = [fixture_at(table, toolkit, number, workpiece) for number in range(len(table))]
+    fixtures = [make_fixture_of_row(table, toolkit, number, workpiece) for number in range(len(table))]
     for number, hold in enumerate(holds):
         fixtures[number] = evolve(
             fixtures[number], hold=hold, quality={**fixtures[number].quality, **hold.figures}
@@ -155,12 +155,13 @@ def row_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, longest
 
     Where ``edgeless``, its edge distance stands for none, which it does when it is ``longest``.
     """
-    stands = moved_on(fixture, toolkit, middle_move(fixture, toolkit, workpiece))
+    stands = move_fixture_by_holes(fixture, toolkit, find_move_to_middle(fixture, toolkit, workpiece))
     return {
         "type": fixture.type,
         "title": row_title(fixture, toolkit),
         "settings": [
-            {"sign": one.sign, "name": one.name, "length": one.length} for one in settings_of(stands, toolkit)
+            {"sign": one.sign, "name": one.name, "length": one.length}
+            for one in list_length_settings(stands, toolkit)
         ],
         "holes": [peg.hole for peg in stands.pegs],
         "faces": [peg.face for peg in fixture.pegs],
@@ -202,8 +203,8 @@ def fixture_answer(
     All places are in the frame of the fixture as it is listed; it stands on by ``placed``. A carrier, which may
     be a wall or a clamp, has the numbers of its pegs, their radius, and the direction in which it clamps.
     """
-    move = middle_move(fixture, toolkit, workpiece)
-    stands = moved_on(fixture, toolkit, move)
+    move = find_move_to_middle(fixture, toolkit, workpiece)
+    stands = move_fixture_by_holes(fixture, toolkit, move)
     pitch = toolkit.plates[0].pitch if toolkit.plates else (0.0, 0.0)
     placed = [steps * apart for steps, apart in zip(move, pitch, strict=True)]
     bench = evolve(bench_of(stands, workpiece, toolkit), is_exact=True)

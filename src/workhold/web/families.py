@@ -13,7 +13,7 @@ from workhold.asking.declaring import declarations_of
 from workhold.asking.search import RULING_OUT, SearchQuestion
 from workhold.errors import InputError
 from workhold.files.declared_forms import given_in, with_fields
-from workhold.model.quality import asked_ranking
+from workhold.model.quality import read_asked_ranking
 from workhold.model.query import Query
 from workhold.presenting.data import finite
 from workhold.web.forms import HeldIn, ToleranceForm
@@ -59,7 +59,7 @@ class FamilyForm(Form):
         load_solver()
         toolkit = self.toolkit.toolkit()
         usual = RANKINGS[toolkit.travels]
-        ranking = asked_ranking(self.ranking, self.prefer, ()) or usual
+        ranking = read_asked_ranking(self.ranking, self.prefer, ()) or usual
         tolerance = None if self.tolerance is None else self.tolerance.tolerance()
         parts = [form.workpiece(most_segments) for form in self.workpieces]
         asked = given_in(self, OF_FAMILY) | {"rank_by": ranking, "tolerance": tolerance}

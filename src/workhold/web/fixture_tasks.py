@@ -172,15 +172,15 @@ def set_up(order: PaperOrder) -> tuple[bytes, str | None]:
 def picture(order: PaperOrder) -> tuple[bytes, str | None]:
     from workhold.drawing.fixture_pictures import draw_fixture
     from workhold.drawing.path_drawn import planned_path
-    from workhold.model.moved_setup import middle_move, moved_on
+    from workhold.model.moved_setup import find_move_to_middle, move_fixture_by_holes
 
     result = order.result
     title = f"Fixture {order.rank} of {order.count}"
     path, move = (
         planned_path(result, order.index),
-        middle_move(order.fixture, result.toolkit, result.workpiece),
+        find_move_to_middle(order.fixture, result.toolkit, result.workpiece),
     )
-    fixture = moved_on(order.fixture, result.toolkit, move)
+    fixture = move_fixture_by_holes(order.fixture, result.toolkit, move)
     path = None if path is None else evolve(path, fixture=fixture)
     svg = draw_fixture(fixture, result.workpiece, result.toolkit, title=title, path=path)
     return svg.encode("utf-8"), None

@@ -21,7 +21,7 @@ from workhold.fixels.support_hardware import HARDWARE
 from workhold.fixels.table import ToolkitField
 from workhold.fixels.toolkit import Toolkit
 from workhold.limits import MOST_LENGTHS
-from workhold.model.quality import asked_ranking
+from workhold.model.quality import read_asked_ranking
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Tolerance
 from workhold.web.program_forms import ProgramForm
@@ -207,7 +207,7 @@ class SearchForm(Form):
             toolkit,
             self.types,
             self.restrictions.restrictions(),
-            asked_ranking(self.ranking, self.prefer, is_loaded, program is not None),
+            read_asked_ranking(self.ranking, self.prefer, is_loaded, program is not None),
             None if self.tolerance is None else self.tolerance.tolerance(),
             loads,
             program,

@@ -172,7 +172,7 @@ def look_at_program(question: ReadProgramForm, order: Order) -> dict[str, Any]:
     the place of its tool in their order, its kind, and for cutting moves its level of height from 0.
     """
     from workhold.drawing.path_drawn import SHADES, heights_cut
-    from workhold.model.program_figures import tip_box, tool_figures
+    from workhold.model.program_figures import bound_tip, measure_tools
 
     form = question.program
     thick = form.thickness if question.height is None else question.height
@@ -180,8 +180,8 @@ def look_at_program(question: ReadProgramForm, order: Order) -> dict[str, Any]:
     if thick is None and form.z_zero == "top":
         raise InputError('The part\'s thickness is not known: fill in "Part thickness".')
     read = read_sent_program(form, thick)
-    program, figures = read.program, tool_figures(read.program)
-    low, top = tip_box(program.moves)
+    program, figures = read.program, measure_tools(read.program)
+    low, top = bound_tip(program.moves)
     last = dict(zip(program.moves.tool.tolist(), program.moves.line.tolist(), strict=True))
     levels = heights_cut(program)
     return {
@@ -230,22 +230,22 @@ def paths_answer(program: Program) -> Iterator[dict[str, Any]]:
 
 def passing_answer(result: Any, index: int) -> dict[str, Any] | None:
     """Return where the tools of a result's program come nearest to a fixture; None where none does."""
-    from workhold.statics.program_clearance import passing_of
+    from workhold.statics.program_clearance import find_nearest_passing
 
-    near = passing_of(result, index)
+    near = find_nearest_passing(result, index)
     return None if near is None or not isfinite(near.distance) else asdict(near)
 
 
 def forces_answer(result: Any, index: int) -> dict[str, Any] | None:
     """What the tools of a result's program ask of a fixture, in N and in sentences; None without forces."""
     from workhold.statics.jaw_program import asked_words
-    from workhold.statics.program_forces import cutting_need_of
+    from workhold.statics.program_forces import find_cutting_need
 
     hold, program = (result[index].hold, result.query.program) if result.holds else (None, None)
     if hold is not None and hold.program_need is not None and program is not None:
         asked = hold.program_need
         return {**need_entry(asked), "words": [asked_words(asked, program, MILLIMETRE)]}
-    need = cutting_need_of(result, index)
+    need = find_cutting_need(result, index)
     if need is None:
         return None
     return need.to_dict() | {

@@ -16,7 +16,7 @@ from workhold.errors import InputError
 from workhold.files.declared_forms import with_fields
 from workhold.files.input_forms import TAGS
 from workhold.fixels.support_hardware import CLAMP, PADS
-from workhold.model.own_outlines import with_own_outlines
+from workhold.model.own_outlines import add_own_outlines
 from workhold.model.solid import SolidOutline
 from workhold.model.support_request import SpatialLoad
 from workhold.model.workpiece import Workpiece
@@ -223,7 +223,7 @@ class WorkpieceForm(Form):
         entries = {role: one.model_dump() for role, one in self.outlines.items()}
         heights = {role: (one.heights[0], one.heights[1]) for role, one in self.outlines.items()}
         with numbers_too_large():
-            return with_own_outlines(workpiece, entries, heights)
+            return add_own_outlines(workpiece, entries, heights)
 
 
 def checked_part(

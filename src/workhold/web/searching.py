@@ -94,7 +94,7 @@ def search(payload: tuple[AskedQueries, int, bool], order: Order) -> Found:
     """
     from workhold.limits import thread_count
     from workhold.search.design import answer
-    from workhold.search.estimate import best_where_many
+    from workhold.search.estimate import ask_for_best_where_many
 
     asked, most, every = payload
     query = whole = asked.query
@@ -113,7 +113,7 @@ def search(payload: tuple[AskedQueries, int, bool], order: Order) -> Found:
     notes: tuple[Note, ...] = ()
     if first is not None and not every:
         with soon_enough(order) as enough:
-            query, about = best_where_many(query, thread_count(None), enough)
+            query, about = ask_for_best_where_many(query, thread_count(None), enough)
         if query.best is not None:
             notes = (Many(about or 0, query.best),)
     begun = 0.0 if first is None else SHARE

@@ -10,8 +10,8 @@ from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.listing.identity import Entries, first_of_each, near_duplicates
 from workhold.model.fixture_table import FixtureTable
-from workhold.model.quality import FIGURES, figure_column, figure_number
-from workhold.model.requirements import are_within
+from workhold.model.quality import FIGURES, find_figure_number, select_figure_column
+from workhold.model.requirements import lie_in_angle_ranges
 from workhold.model.result import Result
 from workhold.statics.judging import unfit
 
@@ -64,7 +64,7 @@ class Selection:
         InputError
             When there is nothing of that name to sort by, or no such arrangement.
         """
-        column = None if self.sort == "rank" else figure_number(self.sort)
+        column = None if self.sort == "rank" else find_figure_number(self.sort)
         if column is None and self.sort != "rank":
             known = ", ".join(figure.key for figure in FIGURES)
             raise InputError(f"{self.sort[:40]!r} is nothing to sort by: choose rank or one of {known}.")
@@ -80,11 +80,11 @@ class Selection:
         if self.face is not None:
             chosen &= (table.face == self.face).any(axis=1)
         if self.angle is not None:
-            chosen &= are_within(np.degrees(table.theta), (self.angle,))
+            chosen &= lie_in_angle_ranges(np.degrees(table.theta), (self.angle,))
         found = np.flatnonzero(chosen)
         if column is None:
             return found[::-1] if self.descending else found
-        values = figure_column(table.quality, FIGURES[column])[found]
+        values = select_figure_column(table.quality, FIGURES[column])[found]
         keys = np.where(np.isnan(values), np.inf, -values if self.descending else values)
         return np.asarray(found[np.argsort(keys, kind="stable")])
 

@@ -18,10 +18,10 @@ from workhold.errors import InputError
 from workhold.geometry.segment import bounding_box
 from workhold.model.bodies import BodySizes
 from workhold.model.fixture import Fixture
-from workhold.model.moved_setup import middle_move, moved_on
+from workhold.model.moved_setup import find_move_to_middle, move_fixture_by_holes
 from workhold.model.query import Query
-from workhold.model.requirements import zone_of
-from workhold.model.support_bodies import bodies_on_supports, supported_sizes
+from workhold.model.requirements import make_zone
+from workhold.model.support_bodies import list_bodies_on_supports, size_supported_bodies
 from workhold.model.support_triples import ChosenSupports, Supports, Triple, recounted
 from workhold.units import unit_named
 from workhold.web.request_forms import OF_HARDWARE, SupportsForm
@@ -57,13 +57,15 @@ def find_supports(payload: SupportsOrder, order: Order) -> dict[str, Any]:
 
 
 def found_supports(asked: SupportsOrder) -> Supports:
-    from workhold.supports.asking import asked_request
+    from workhold.supports.asking import make_request
     from workhold.supports.listing import supports_of
 
     form = asked.form
     own = {name: getattr(form, name) for name in OWN if getattr(form, name) is not None}
-    zones = {name: [zone_of(loop) for loop in getattr(form, name)] for name in ("bottom_zones", "top_zones")}
-    request = asked_request(asked.query, form.thickness, own | zones)
+    zones = {
+        name: [make_zone(loop) for loop in getattr(form, name)] for name in ("bottom_zones", "top_zones")
+    }
+    request = make_request(asked.query, form.thickness, own | zones)
     loads = None if form.loads is None else [load.load() for load in form.loads]
     return supports_of(asked.fixture, asked.query, request, loads, form.jaw_force, form.best)
 
@@ -85,7 +87,7 @@ def supports_answer(found: Supports, unit: str) -> dict[str, Any]:
     ``unit``.
     """
     request, listed = found.request, found.triples
-    sizes = supported_sizes(found)
+    sizes = size_supported_bodies(found)
     return {
         "thickness": request.thickness,
         "peg_height": sizes.top,
@@ -139,8 +141,8 @@ def set_answer(found: Supports, triple: Triple) -> dict[str, Any]:
 def standing_holes(found: Supports, triple: Triple) -> tuple[list[str], list[str]]:
     """Return the holes of pegs, and of supports, as the page names them: in the middle of the plate."""
     query = found.query
-    move = middle_move(found.fixture, query.toolkit, query.workpiece)
-    pegs = [peg.hole for peg in moved_on(found.fixture, query.toolkit, move).pegs]
+    move = find_move_to_middle(found.fixture, query.toolkit, query.workpiece)
+    pegs = [peg.hole for peg in move_fixture_by_holes(found.fixture, query.toolkit, move).pegs]
     pads = [evolve(pad, column=pad.column + move[0], row=pad.row + move[1]) for pad in triple.supports]
     return pegs, [pad.hole for pad in pads]
 
@@ -148,7 +150,7 @@ def standing_holes(found: Supports, triple: Triple) -> tuple[list[str], list[str
 def built_answer(found: Supports, triple: Triple) -> dict[str, list[str]] | None:
     """Names the holes in which a set is built where the page names others; None where it does not."""
     query = found.query
-    start = middle_move(found.fixture, query.toolkit, query.workpiece)
+    start = find_move_to_middle(found.fixture, query.toolkit, query.workpiece)
     try:
         anew = recounted(found.fixture, query.toolkit, triple, start)
     except InputError:
@@ -170,17 +172,17 @@ def nearest_of_border(corners: np.ndarray, point: np.ndarray) -> tuple[float, fl
 
 
 def notes_of(found: Supports, unit: str) -> list[str]:
-    from workhold.supports.words import listing_notes, why_no_set
+    from workhold.supports.words import explain_no_set, write_listing_notes
 
     given, listed = unit_named(unit), found.triples
-    reasons = [] if listed else [why_no_set(found, given)]
-    return reasons + listing_notes(found, listed, given, KEEP_OFF)
+    reasons = [] if listed else [explain_no_set(found, given)]
+    return reasons + write_listing_notes(found, listed, given, KEEP_OFF)
 
 
 def boxes_of(found: Supports, triple: Triple, sizes: BodySizes) -> Iterator[dict[str, Any]]:
     """List the boxes of all bodies of a fixture with a set of supports; none where pegs have no body."""
     try:
-        bodies = bodies_on_supports(found, triple, found.fixture, triple.supports, sizes)
+        bodies = list_bodies_on_supports(found, triple, found.fixture, triple.supports, sizes)
     except InputError:
         return
     for body in bodies:

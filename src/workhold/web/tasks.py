@@ -130,11 +130,11 @@ def resist(payload: tuple[Result, LoadsForm], order: Order) -> list[tuple[int, f
     import numpy as np
 
     from workhold.model.quality import LOAD_REACTION
-    from workhold.statics.quality import quality_of
+    from workhold.statics.quality import measure_quality
 
     result, form = payload
     asked = [load.load() for load in form.loads]
-    reaction = quality_of(result.table, result.workpiece, result.toolkit, result.query.tolerance, asked)[
+    reaction = measure_quality(result.table, result.workpiece, result.toolkit, result.query.tolerance, asked)[
         :, LOAD_REACTION
     ]
     order_of = np.argsort(reaction, kind="stable")[:MOST_RESISTING]

@@ -17,7 +17,7 @@ from workhold.files.dxf.walk import BlockNesting, DxfWalk
 from workhold.files.part.load import read_workpiece
 from workhold.files.part.survey import drawn_layers, survey
 from workhold.geometry import loop as loop_module
-from workhold.geometry.loop import Comparisons, LoopShape, loop_segments, near_segments
+from workhold.geometry.loop import Comparisons, LoopShape, find_near_segments, loop_segments
 
 PLATE = [((0, 0), (60, 0)), ((60, 0), (60, 40)), ((60, 40), (0, 35)), ((0, 35), (0, 0))]
 
@@ -186,7 +186,7 @@ def test_slanted_teeth_are_compared_with_their_neighbours() -> None:
     shape = LoopShape.of(loop_segments(part.loops[0]))
     comparisons = Comparisons("the part")
     for k in range(len(shape.segments)):
-        near_segments(shape, k, shape, comparisons)
+        find_near_segments(shape, k, shape, comparisons)
     assert comparisons.most - comparisons.left < 8 * len(shape.segments)
 
 

@@ -12,7 +12,7 @@ from reading_helpers import area
 from workhold import load
 from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece
-from workhold.geometry.loop import signed_area as loop_area
+from workhold.geometry.loop import compute_signed_area as loop_area
 from workhold.geometry.segment import Arc
 
 ROOT = Path(__file__).parents[3]

@@ -16,8 +16,8 @@ PLATES = """
 import sys
 from workhold import Vise
 from workhold.files.dxf.writer import plates_dxf
-from workhold.model.dowels import jaw_plates
-sys.stdout.buffer.write(plates_dxf(jaw_plates(Vise(pitch=20, columns=2, peg_radius=3, rows=3))))
+from workhold.model.dowels import list_jaw_plates
+sys.stdout.buffer.write(plates_dxf(list_jaw_plates(Vise(pitch=20, columns=2, peg_radius=3, rows=3))))
 """
 
 

@@ -19,7 +19,7 @@ from plate_examples import WAYS, on_plate
 
 from workhold import Fixture, Vise, Workpiece
 from workhold.files.dxf.writer import layers_of, plates_dxf, setup_dxf
-from workhold.model.dowels import Bolts, jaw_plates, plate_places
+from workhold.model.dowels import Bolts, list_jaw_plates, place_plates_in_drawing
 
 Held = tuple[Fixture, Workpiece, Vise]
 
@@ -218,7 +218,7 @@ def test_bytes_do_not_depend_on_the_process() -> None:
 
 
 # Drawings of jaw plates read back: every hole once, on its layer, at its place.
-PLATES = jaw_plates(
+PLATES = list_jaw_plates(
     Vise(pitch=(10, 12), columns=3, peg_radius=3, rows=4),
     hole_diameter=6.01,
     bolts=Bolts(4.0, ((5.0, 6.0), (15.0, 30.0))),
@@ -238,7 +238,9 @@ def test_every_hole_is_drawn_at_its_place() -> None:
         assert {circle.dxf.radius for circle in circles} == {diameter / 2}
         found = sorted((round(c.dxf.center.x, 9), round(c.dxf.center.y, 9)) for c in circles)
         moved = [
-            (x + right, y) for right, each in zip(plate_places(PLATES), places, strict=True) for x, y in each
+            (x + right, y)
+            for right, each in zip(place_plates_in_drawing(PLATES), places, strict=True)
+            for x, y in each
         ]
         assert sum(found, ()) == pytest.approx(sum(sorted(moved), ()))
     outlines = list(space.query('LWPOLYLINE[layer=="PLATE"]'))

@@ -16,7 +16,7 @@ from workhold import Vise
 from workhold.errors import InputError
 from workhold.files.glb import SAGITTA, bodies_glb
 from workhold.geometry.segment import Arc, Line
-from workhold.model.bodies import COLOURS, BodyKind, BodySizes, FixtureBody, Slab, fixture_bodies
+from workhold.model.bodies import COLOURS, BodyKind, BodySizes, FixtureBody, Slab, list_fixture_bodies
 from workhold.model.solid import SolidOutline
 
 SIZES = BodySizes.of(BLOCK, thickness=12, plate_thickness=8)
@@ -31,7 +31,7 @@ def bodies_of(name: str) -> list[ReadBody]:
 @pytest.mark.parametrize("name", TOOLKITS)
 def test_bodies_are_closed_and_enclose_area_times_height(name: str) -> None:
     """Volumes are those of the prisms with their arcs, which chords shorten by no more than the sagitta all along them."""
-    described = fixture_bodies(*held(name), SIZES)
+    described = list_fixture_bodies(*held(name), SIZES)
     read = bodies_of(name)
     assert [body.name for body in read] == [body.name for body in described]
     for body, meant in zip(read, described, strict=True):
@@ -142,7 +142,7 @@ def test_a_part_of_a_solid_has_its_heights() -> None:
     read = {body.kind: body for body in read_glb(fixture_glb(fixture, high, toolkit))[1][:2]}
     assert read["part"].heights == pytest.approx((0, 25), abs=1e-5)
     assert read["peg"].heights == pytest.approx((-10, 6), abs=1e-5)
-    heights = {body.kind: body.slabs[-1].high for body in fixture_bodies(fixture, high, toolkit)}
+    heights = {body.kind: body.slabs[-1].high for body in list_fixture_bodies(fixture, high, toolkit)}
     assert heights["wall"] == 6.0
     assert not BodySizes.of(high).is_assumed and BodySizes.of(part).is_assumed
     assert BodySizes.of(high, thickness=5.0).top == 5.0
@@ -154,7 +154,7 @@ def test_plates_that_nearly_meet_have_notches() -> None:
     fixture, part, _ = held("vise")
     vise = Vise((10, 9), 3, 2.5)
     near = evolve(fixture, travel=4.0)
-    plates = [body for body in fixture_bodies(near, part, vise, SIZES) if body.kind == "plate"]
+    plates = [body for body in list_fixture_bodies(near, part, vise, SIZES) if body.kind == "plate"]
     away = 0.48 * 4.0
     lost = 2.5**2 * (pi - acos(away / 2.5)) + away * sqrt(2.5**2 - away**2)
     for body in plates:
@@ -173,7 +173,7 @@ def test_holes_that_would_touch_are_a_little_smaller(separation: float | None) -
     """Holes half a pitch in radius, and holes that reach just to the side of their plate, leave a film all around."""
     fixture, part, toolkit = held("touching holes" if separation is None else "vise")
     fixture = fixture if separation is None else evolve(fixture, travel=separation)
-    for body in fixture_bodies(fixture, part, toolkit, SIZES):
+    for body in list_fixture_bodies(fixture, part, toolkit, SIZES):
         if body.kind != "plate":
             continue
         (slab,) = body.slabs

@@ -16,8 +16,8 @@ from reading_helpers import area, read_dxf, rectangle
 from workhold.errors import InputError
 from workhold.files.outline.chain import Chain, rebulged
 from workhold.files.outline.joining import close_pairs, groups, join
-from workhold.geometry.loop import loop_segments, signed_area
-from workhold.geometry.segment import Arc, segment_from_bulge
+from workhold.geometry.loop import compute_signed_area, loop_segments
+from workhold.geometry.segment import Arc, make_segment_from_bulge
 
 
 def exploded(rows: np.ndarray[Any, Any]) -> list[Chain]:
@@ -68,8 +68,8 @@ def test_exploding_shuffling_and_joining_gives_the_loop_back(
     assert len(joined.loops) == 1
     assert not joined.strays
     assert len(joined.loops[0].labels) == len(rows)
-    expected = abs(signed_area(loop_segments(rows)))
-    assert abs(signed_area(loop_segments(joined.loops[0].vertices))) == pytest.approx(
+    expected = abs(compute_signed_area(loop_segments(rows)))
+    assert abs(compute_signed_area(loop_segments(joined.loops[0].vertices))) == pytest.approx(
         expected, abs=1e-6 + 1500 * gap
     )
     assert bool(joined.remarks) == (gap > 1e-9)
@@ -91,8 +91,8 @@ def test_moving_an_arcs_ends_moves_centre_and_radius_no_more(bulge: float, moves
     """Centre and radius change by the order of the movement (times centre distance over chord)."""
     start, end = (3.0, 4.0), (13.0, 9.0)
     new_start, new_end = (3.0 + moves[0], 4.0 + moves[1]), (13.0 + moves[2], 9.0 + moves[3])
-    before = segment_from_bulge(start, end, bulge)
-    after = segment_from_bulge(new_start, new_end, rebulged(start, end, bulge, new_start, new_end))
+    before = make_segment_from_bulge(start, end, bulge)
+    after = make_segment_from_bulge(new_start, new_end, rebulged(start, end, bulge, new_start, new_end))
     assert isinstance(before, Arc)
     assert isinstance(after, Arc)
     movement = hypot(*moves)

@@ -16,7 +16,7 @@ from workhold.files.budget import UNLIMITED, Budget
 from workhold.files.outline.chain import Chain, Drawing
 from workhold.files.outline.shared_lines import lie_on_each_other, outlines_of
 from workhold.files.part.load import read_workpiece
-from workhold.geometry.segment import Line, segment_from_bulge
+from workhold.geometry.segment import Line, make_segment_from_bulge
 
 
 def sizes(loaded: Any) -> list[tuple[float, float, int]]:
@@ -147,9 +147,11 @@ def test_what_overlaps_is_found_by_its_line_or_circle() -> None:
     )
     assert not lie_on_each_other([one, row], 1e-3) and lie_on_each_other([one, row, other], 1e-3)
     assert not lie_on_each_other([one, Line((0.0, 1.0), (10.0, 1.0))], 1e-3)
-    arc = segment_from_bulge((0.0, 0.0), (10.0, 0.0), 1.0)
-    assert lie_on_each_other([arc, segment_from_bulge((0.0, 0.0), (5.0, -5.0), 0.41421356237309503)], 1e-3)
-    assert not lie_on_each_other([arc, segment_from_bulge((10.0, 0.0), (0.0, 0.0), 1.0)], 1e-3)
+    arc = make_segment_from_bulge((0.0, 0.0), (10.0, 0.0), 1.0)
+    assert lie_on_each_other(
+        [arc, make_segment_from_bulge((0.0, 0.0), (5.0, -5.0), 0.41421356237309503)], 1e-3
+    )
+    assert not lie_on_each_other([arc, make_segment_from_bulge((10.0, 0.0), (0.0, 0.0), 1.0)], 1e-3)
 
 
 def add_bad_spot(space: Any, x: float, y: float, layer: str = "0") -> None:

@@ -10,7 +10,7 @@ from program_examples import PROGRAMS
 
 from workhold import Program
 from workhold.errors import InputError
-from workhold.model.program_figures import tool_figures
+from workhold.model.program_figures import measure_tools
 
 # Moves, lines left out, and the cutting length of each tool in mm.
 QUARTER = np.pi / 2 * 6
@@ -43,7 +43,7 @@ def test_a_program_is_read(name: str) -> None:
     program = Program.read(PROGRAMS / name, given, z_zero=0)
     moves, skipped, cutting = READ[name]
     assert program.skipped == skipped
-    assert {one.tool: one.cutting for one in tool_figures(program)} == pytest.approx(cutting)
+    assert {one.tool: one.cutting for one in measure_tools(program)} == pytest.approx(cutting)
     assert len(program.moves) == moves
 
 

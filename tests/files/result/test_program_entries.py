@@ -16,7 +16,7 @@ from workhold.files.result.parts import head_value
 from workhold.files.result.reader import read_result
 from workhold.files.result.writer import head_texts, program_text
 from workhold.model.cutting_tool import Tool
-from workhold.model.moves import SweptPiece, moves_of, packed_piece
+from workhold.model.moves import SweptPiece, moves_of, pack_piece
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
@@ -79,14 +79,14 @@ def test_pieces_that_are_none_are_refused(change: Any, sentence: str) -> None:
 def test_packed_pieces_make_the_moves_of_their_objects() -> None:
     """One move for each tool's stack of cylinders, its ends and bulge those of the path."""
     one = program()
-    moves = moves_of([packed_piece(piece.to_dict()) for piece in one.pieces], one.tools)
+    moves = moves_of([pack_piece(piece.to_dict()) for piece in one.pieces], one.tools)
     assert moves.start.tolist() == one.moves.start.tolist() and moves.line.tolist() == one.moves.line.tolist()
     assert moves.cutting.tolist() == one.moves.cutting.tolist() and not moves.feed.any()
     assert len(moves_of([], one.tools)) == 0
     (first, *_) = one.tools[1].cylinders
     corners = ((0, 0, 0), (4, 0, 0), (4, 5, 0), (0, 5, 0), (0, 0, 0))
     box = SweptPiece(3, 1, "rapid", corners, (9, 8), first.radius, (first.low, first.high))
-    (line,) = moves_of([packed_piece(box.to_dict())], {1: Tool(1, [first], 10)}).line
+    (line,) = moves_of([pack_piece(box.to_dict())], {1: Tool(1, [first], 10)}).line
     assert line == 3
 
 

@@ -35,7 +35,7 @@ from workhold.files.step.heights import HeightOutline, height_table, longest, me
 from workhold.files.step.library import along, occ, sub_shapes
 from workhold.files.step.projected import OtherCurveError, ProjectedCurves
 from workhold.geometry.loop import loop_segments
-from workhold.geometry.segment import Arc, Line, line_circle, segment_from_bulge
+from workhold.geometry.segment import Arc, Line, cross_carrying_line_and_circle, make_segment_from_bulge
 from workhold.geometry.subdivision import BorderPiece, CutCarrier
 from workhold.model.solid import HeightRow, run_at
 
@@ -207,7 +207,7 @@ def test_a_wall_over_a_sloping_underside_is_touched_as_far_as_pegs_reach_up_to_i
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_a_wall_that_is_just_long_enough_between_the_points_of_its_edge(sign: float) -> None:
     """Between a rising line and an arc over it, farthest or nearest at no point of the arc that is looked at."""
-    arc = segment_from_bulge((40.0, 12.0), (10.0, 12.0), 0.15 * sign)
+    arc = make_segment_from_bulge((40.0, 12.0), (10.0, 12.0), 0.15 * sign)
     assert isinstance(arc, Arc)
     body = fused(box(40, 60, 30), pad([(10, 5), (40, 5.3), (40, 12), (10, 12)], arc))
     # The arc runs along the line where it has its slope.
@@ -227,7 +227,7 @@ def test_a_wall_that_is_just_long_enough_between_the_points_of_its_edge(sign: fl
     if sign < 0:
         # What is long enough up to there is halved at its middle.
         line = Line((10.0, 5.0 + least), (40.0, 5.3 + least))
-        end = min(y for y, _ in line_circle(line, arc.center, arc.radius))
+        end = min(y for y, _ in cross_carrying_line_and_circle(line, arc.center, arc.radius))
         middles = [strip.start[1] for strip in outline.loops[0] if strip.start[0] == 42.0]
         assert min(y for y in middles if y > 10.0) == pytest.approx((10.0 + end) / 2, abs=1e-6)
 

@@ -34,7 +34,7 @@ from workhold.files.step.heights import StandingSolid, standing
 from workhold.files.step.library import along, bounding_box, sub_shapes
 from workhold.files.step.regions import area_of, section
 from workhold.files.toolkit_file import load_toolkit
-from workhold.geometry.loop import loop_segments, signed_area
+from workhold.geometry.loop import compute_signed_area, loop_segments
 from workhold.geometry.segment import Line, segment_rows
 from workhold.kernels.base.distance import is_inside
 from workhold.model.solid import Band, SolidOutline
@@ -68,7 +68,7 @@ def bands(shape: Any, *heights: float, **more: float) -> list[Band | None]:
 def area(solid: StandingSolid, low: float, high: float) -> float:
     """Area of U(low, high)."""
     loops = [[(*piece.start, piece.bulge) for piece in loop] for loop in solid.border(low, high)]
-    return sum(signed_area(loop_segments(np.array(loop))) for loop in loops)
+    return sum(compute_signed_area(loop_segments(np.array(loop))) for loop in loops)
 
 
 PLATE = box(60, 40, 20)
@@ -594,7 +594,7 @@ def test_faces_split_by_an_imprinted_line_are_one() -> None:
     lying = split(lying, 0.0, (0, -20), (0, -5))
     assert len([f for f in standing(lying).faces if f.lie == "level" and not f.upward]) == 2
     found = standing_as_read(lying).bottom
-    areas = sorted(signed_area(loop_segments(np.array(loop))) for loop in found)
+    areas = sorted(compute_signed_area(loop_segments(np.array(loop))) for loop in found)
     assert areas == pytest.approx([-25 * pi, 400 * pi])
     # A step beside a face of another height stays a face of its own.
     stepped = standing_as_read(fused(PLATE, box(20, 40, 4, (0, 0, 20))))

@@ -34,11 +34,11 @@ from workhold.files.step.heights import standing
 from workhold.files.step.level_faces import bottom_loops, level_tops, region
 from workhold.files.step.library import along, sub_shapes
 from workhold.files.supports_file import read_supports, write_supports
-from workhold.geometry.loop import loop_segments, signed_area
+from workhold.geometry.loop import compute_signed_area, loop_segments
 from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.distance import is_inside
 from workhold.supports.faces import TouchableFace
-from workhold.supports.words import flat_faces_notes
+from workhold.supports.words import write_flat_faces_notes
 from workhold.verification.supports import verify_supports_file
 from workhold.web.request_forms import WorkpieceForm
 
@@ -47,7 +47,7 @@ BELOW = 0.02
 
 def area(loops: Sequence[Any]) -> float:
     """The area within loops, openings taken off."""
-    return sum(signed_area(loop_segments(np.asarray(loop))) for loop in loops)
+    return sum(compute_signed_area(loop_segments(np.asarray(loop))) for loop in loops)
 
 
 def bored_aslant(x: float, degrees: float, radius: float = 6.0) -> Any:
@@ -158,7 +158,7 @@ def test_no_level_face_on_top_is_no_top_clamp(tmp_path: Path) -> None:
     assert found.request.top == () and found.triples == () and found.positions > 2
     why = last_paragraph(found)
     assert "no clamp can press from above" in why and "another side up would help" in why
-    (note,) = flat_faces_notes(part, ("a", "b"))
+    (note,) = write_flat_faces_notes(part, ("a", "b"))
     assert "no clamp can press on it from above" in note
     write_supports(found, tmp_path / "s.json")
     again = read_supports(tmp_path / "s.json")
@@ -195,7 +195,7 @@ def test_a_tangent_polygon_holds_its_ellipse() -> None:
     lean = 35 * pi / 180
     solid = standing(bored_aslant(40, 35))
     (top,) = level_tops(solid)
-    (opening,) = [loop for loop in top.open if signed_area(loop_segments(loop)) < 0]
+    (opening,) = [loop for loop in top.open if compute_signed_area(loop_segments(loop)) < 0]
     middle = 40 + 8 * sin(lean) / cos(lean)
     for x, y, bulge in opening.tolist():
         size = sqrt(((x - middle) * cos(lean) / 6) ** 2 + ((y - 25) / 6) ** 2)

@@ -32,15 +32,15 @@ from workhold import (
     verify,
 )
 from workhold import open as workhold_open
-from workhold.algebra import answer_by_algebra
+from workhold.algebra import find_fixtures_by_algebra
 from workhold.cli.tables import face_table
 from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece
 from workhold.files.step.heights import standing
 from workhold.files.step.writer import setup_step
-from workhold.model.bodies import fixture_bodies
-from workhold.model.own_outlines import outline_diameter
-from workhold.model.setup import hole_centers
+from workhold.model.bodies import list_fixture_bodies
+from workhold.model.own_outlines import measure_outline_diameter
+from workhold.model.setup import find_hole_centers
 from workhold.model.solid import SolidOutline
 
 
@@ -69,8 +69,8 @@ def test_outer_loops_come_first(feet: Workpiece, eyes: Workpiece) -> None:
     """The larger foot first, then the other one, then the hole; extent and hull are those of both together."""
     assert (feet.pieces, [len(loop) for loop in feet.loops]) == (2, [4, 4, 2])
     assert feet.bounds == pytest.approx((0, 0, 80, 46))
-    assert outline_diameter(feet) == pytest.approx(np.hypot(80, 46))
-    assert hole_centers(feet) == [pytest.approx((10, 23))]
+    assert measure_outline_diameter(feet) == pytest.approx(np.hypot(80, 46))
+    assert find_hole_centers(feet) == [pytest.approx((10, 23))]
     assert (eyes.pieces, len(eyes.loops), eyes.outer_count) == (3, 6, 6)
     # The long sides of the hull run from foot to foot.
     lengths = sorted(round(edge.length, 6) for edge in feet.hull_edges)
@@ -104,7 +104,7 @@ def test_other_searches_find_the_same(feet: Workpiece, eyes: Workpiece) -> None:
     """The algebra, and slow searches of a plate and a fence, list the same fixtures of pieces."""
     for part in (feet, eyes):
         query = Query(part, Vise(pitch=20, columns=1, peg_radius=4))
-        assert names(answer(query)) == names(answer_by_algebra(query))
+        assert names(answer(query)) == names(find_fixtures_by_algebra(query))
     plate = Plate(pitch=30, columns=2, rows=3, peg_radius=4, clamp_radius=5, directions=["-x"])
     found = seen(design(feet, plate))
     assert found == slow_plate(feet, plate) and len(found) > 10
@@ -142,7 +142,7 @@ def test_bodies_of_pieces(feet: Workpiece) -> None:
     """The part is a body of two prisms, the hole in its foot; a set-up for CAM has a body for each."""
     toolkit = Vise(pitch=10, columns=2, peg_radius=3)
     fixture = design(feet, toolkit, best=1)[0]
-    slabs = fixture_bodies(fixture, feet, toolkit)[0].slabs
+    slabs = list_fixture_bodies(fixture, feet, toolkit)[0].slabs
     assert sorted(len(slab.holes) for slab in slabs) == [0, 1]
     written = setup_step(fixture, feet, toolkit)
     assert written.count(b"MANIFOLD_SOLID_BREP(") == 2 + 4 + 2

@@ -12,9 +12,9 @@ from workhold import Vise
 from workhold.errors import InputError
 from workhold.files.step.solids import read_solids
 from workhold.files.step.writer import plates_step
-from workhold.model.dowels import Bolts, jaw_plates
+from workhold.model.dowels import Bolts, list_jaw_plates
 
-PLATES = jaw_plates(
+PLATES = list_jaw_plates(
     Vise(pitch=(10, 12), columns=3, peg_radius=3, rows=4),
     hole_diameter=6.01,
     bolts=Bolts(4.0, ((5.0, 6.0), (15.0, 30.0))),

@@ -14,7 +14,7 @@ from files.step_shapes import box, fused
 from workhold import Result, Vise, design, load
 from workhold.errors import InputError
 from workhold.files.supports_file import read_supports, write_supports
-from workhold.model.support_bodies import bodies_with_supports
+from workhold.model.support_bodies import list_bodies_with_supports
 from workhold.model.support_triples import ChosenSupports, Supports
 from workhold.presenting.assembly import Assembly
 from workhold.verification.supports import verify_supports_file
@@ -89,7 +89,7 @@ def test_the_clamp_stands_on_the_face_at_its_place(
     write_supports(chosen.supports, tmp_path / "supports.json")
     again = ChosenSupports.of(read_supports(tmp_path / "supports.json"))
     for one in (chosen, again):
-        clamp = bodies_with_supports(one)[-1]
+        clamp = list_bodies_with_supports(one)[-1]
         assert clamp.name == "clamp on top"
         assert clamp.slabs[0].low == pytest.approx(height)
         assert clamp.slabs[-1].low > HIGH

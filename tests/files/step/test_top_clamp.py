@@ -49,7 +49,7 @@ from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.distance import is_inside, outline_distances
 from workhold.model.support_request import pressed_by
 from workhold.model.support_triples import ChosenSupports, Supports
-from workhold.supports.words import listing_notes
+from workhold.supports.words import write_listing_notes
 from workhold.units import MILLIMETRE
 from workhold.verification.supports import verify_supports_file
 
@@ -148,9 +148,9 @@ def test_half_of_a_foot_under_a_round_arm_is_half_open() -> None:
 
 def abs_area(loop: Any) -> float:
     """The area within a loop of lines and arcs."""
-    from workhold.geometry.loop import loop_segments, signed_area
+    from workhold.geometry.loop import compute_signed_area, loop_segments
 
-    return abs(signed_area(loop_segments(np.asarray(loop))))
+    return abs(compute_signed_area(loop_segments(np.asarray(loop))))
 
 
 def test_what_a_pipe_aslant_covers_is_off_within_a_hair() -> None:
@@ -246,7 +246,7 @@ def test_a_web_over_air_comes_after_what_reaches_down() -> None:
     assert not any(over_web(triple.clamp.at) for triple in found.triples)
     wide = supported(webbed_cover, 14.0, tip_radius=8.0)
     assert all(triple.clamp.hangs and over_web(triple.clamp.at) for triple in wide.triples)
-    notes = " ".join(listing_notes(wide, wide.triples, MILLIMETRE, ("a", "b")))
+    notes = " ".join(write_listing_notes(wide, wide.triples, MILLIMETRE, ("a", "b")))
     assert "Over each the clamp presses where there is air below the part" in notes
 
 

@@ -22,7 +22,7 @@ import workhold
 from workhold import Plate, load
 from workhold.files.budget import LIMITS
 from workhold.presenting.data import solid_data
-from workhold.supports.words import flat_faces_notes
+from workhold.supports.words import write_flat_faces_notes
 from workhold.units import INCH
 from workhold.web.request_forms import WorkpieceForm
 
@@ -57,7 +57,7 @@ def test_what_could_not_be_told_is_not_said_to_be_closed_to_the_sky(
         and "it is not known where a clamp has room" in why
     )
     assert "open upward" not in why and "crowns" not in why
-    (note,) = flat_faces_notes(part, ("a", "b"), INCH)
+    (note,) = write_flat_faces_notes(part, ("a", "b"), INCH)
     assert "beside the level face at a height of 0.7874 in" in note and note.startswith("So much of the part")
     workhold.save(result, tmp_path / "r.json")
     assert workhold.open(tmp_path / "r.json").workpiece.solid == part.solid
@@ -71,7 +71,7 @@ def test_other_faces_of_such_a_part_stay_known() -> None:
     """What lies beside them is told as before, and nothing is unclear where all is told."""
     plain = load(box(100, 60, 20), name="plain", peg_height=11)
     assert plain.solid is not None and plain.solid.unclear_heights == () and plain.solid.top
-    assert flat_faces_notes(plain, ("a", "b")) == []
+    assert write_flat_faces_notes(plain, ("a", "b")) == []
 
 
 def test_where_rings_reach_into_one_another_it_is_told_what_is_free() -> None:

@@ -34,7 +34,7 @@ from workhold.files.part.load import read_workpiece
 from workhold.files.step.heights import measures, standing
 from workhold.files.step.level_faces import bottom_loops, level_tops
 from workhold.files.step.library import sub_shapes
-from workhold.geometry.loop import loop_segments, signed_area
+from workhold.geometry.loop import compute_signed_area, loop_segments
 
 PLATE = cut(filleted(box(60, 40, 20), 5, upright), cylinder(6, 40, (30, 20, -5)))
 
@@ -73,7 +73,7 @@ def figures(shape: Any, high: float, scale: float = 1.0) -> list[float]:
     outline = solid.outline(scale * high, 0.5 * scale, scale)
     area, border, touchable, band = measures(outline)
     level = [
-        sum(signed_area(loop_segments(loop)) for loop in loops)
+        sum(compute_signed_area(loop_segments(loop)) for loop in loops)
         for loops in (bottom_loops(solid), [loop for top in level_tops(solid) for loop in top.open])
     ]
     lengths = [border / scale, touchable / scale, band / scale, len(outline.loops)]

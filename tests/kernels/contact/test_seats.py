@@ -17,7 +17,7 @@ from workhold.kernels.contact.seats import (
     OFF,
     bounds_of_pairs,
 )
-from workhold.model.clamps import working_forces
+from workhold.model.clamps import compute_working_forces
 
 Array = NDArray[np.float64]
 
@@ -52,7 +52,7 @@ def figures(forces: Array) -> tuple[float, float, float] | None:
         return None
     reactions = np.zeros((1, 5, 2))
     reactions[0, :3], reactions[0, 3, 0], reactions[0, 4, 1] = forces[:, :3].T, *forces[:, FACE]
-    return freedom, margin, float(working_forces(reactions).max())
+    return freedom, margin, float(compute_working_forces(reactions).max())
 
 
 @pytest.mark.thorough

@@ -31,7 +31,7 @@ from workhold.kernels.seating.columns import (
 )
 from workhold.kernels.seating.gathering import GATHERED_LENGTH, SUBSET, gathered
 from workhold.seating.closing import filled
-from workhold.seating.pattern import Pattern, subsets_of
+from workhold.seating.pattern import Pattern, list_subsets
 
 STOP, WIDEST = -20.0, 60.0
 
@@ -41,7 +41,7 @@ def given():
     """What kernels are given of a pattern, and its groups."""
     solver, fixture, _ = solved(0)
     pattern = Pattern.of(fixture, solver.toolkit)
-    return two_contacts_of(solver.closing(pattern, False)).given, subsets_of(pattern)
+    return two_contacts_of(solver.closing(pattern, False)).given, list_subsets(pattern)
 
 
 def rows_of(random, count, pegs):

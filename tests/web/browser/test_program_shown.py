@@ -13,7 +13,7 @@ PROGRAM, TOOLS = EXAMPLES / "bracket.nc", EXAMPLES / "tools.toml"
 PATHS = "paths => paths.map(path => path.getAttribute('d').length)"
 
 
-def with_program(walk: Walk, *files: Path, thickness: str = "12", pegs: str = "6") -> None:
+def add_program_zones(walk: Walk, *files: Path, thickness: str = "12", pegs: str = "6") -> None:
     """Open the bracket with its program, and say how high part and pegs are."""
     walk.page.set_input_files("#file", str(EXAMPLES / "bracket.dxf"))
     walk.seen("#faces button")
@@ -31,7 +31,7 @@ def shown(walk: Walk) -> dict[str, Any]:
 def test_what_was_understood_is_told_and_drawn(walk: Walk) -> None:
     """Tools with their lines, the box of their tips, notes; over the part bands, dashed rapids, dark and light cuts."""
     page = walk.page
-    with_program(walk)
+    add_program_zones(walk)
     walk.seen("#program-read")
     rows = page.locator("#program-tools tbody tr").all_inner_texts()
     assert [row.split()[:2] for row in rows] == [["T1", "10.00"], ["T3", "9.00"], ["T2", "8.00"]]
@@ -53,7 +53,7 @@ def test_what_was_understood_is_told_and_drawn(walk: Walk) -> None:
 def test_the_search_lets_every_tool_pass_and_lights_up_the_nearest_move(walk: Walk) -> None:
     """Fewer fixtures than without; line, tool and distance stand in the panel and beside the move, also in inches."""
     page = walk.page
-    with_program(walk)
+    add_program_zones(walk)
     walk.seen("#program-read")
     walk.search()
     count = walk.count()
@@ -102,7 +102,7 @@ def test_what_cannot_be_read_is_refused_by_its_line(
     """One sentence with the file's own name, no path and no option of the command; the search says it as well."""
     wrong = tmp_path / "Wrong.nc"
     wrong.write_text(text)
-    with_program(walk, wrong)
+    add_program_zones(walk, wrong)
     walk.page.locator("#program-trouble:not([hidden])", has_text=sentence).wait_for()
     said = walk.page.inner_text("#program-trouble")
     assert sentence in said and "/" not in said.replace("N/A", "") and "--" not in said
@@ -133,7 +133,7 @@ def test_a_table_of_tools_may_come_first_and_heights_are_asked_for(walk: Walk) -
 def test_a_program_may_be_dropped_and_stays_over_a_reload(walk: Walk) -> None:
     """Dropped beside the part it is taken as a program, not as a part; a reload has it again, as it was found."""
     page = walk.page
-    with_program(walk)
+    add_program_zones(walk)
     walk.seen("#program-read")
     page.click("#program-none")
     assert not page.is_visible("#program-fields")
@@ -161,7 +161,7 @@ def test_a_program_may_be_dropped_and_stays_over_a_reload(walk: Walk) -> None:
 def test_the_panel_can_be_read_by_all(walk: Walk, scheme: str) -> None:
     """Neither contrast nor names fail."""
     walk.page.emulate_media(color_scheme=scheme)
-    with_program(walk)
+    add_program_zones(walk)
     walk.seen("#program-read")
     walk.search()
     walk.seen("#passing:has-text('comes nearest')")

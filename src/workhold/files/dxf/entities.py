@@ -21,7 +21,7 @@ from ezdxf.math import fit_points_to_cad_cv
 from workhold.conventions import SAME_POINT, TILT
 from workhold.errors import InputError
 from workhold.files.outline.chain import arc_bulges
-from workhold.geometry.rational import Pieces, ellipse_pieces, point_at, spline_pieces
+from workhold.geometry.rational import Pieces, point_at, split_ellipse, split_spline
 from workhold.limits import MOST_LENGTH
 
 __all__ = ["REFUSED", "SHAPES", "RawChain"]
@@ -159,7 +159,7 @@ def spline(entity: Any) -> RawChain:
     if not control:
         return through_fit_points(entity)
     weights = list(entity.weights) or None
-    pieces = spline_pieces(
+    pieces = split_spline(
         [point[:2] for point in control], weights, list(entity.knots), int(entity.dxf.degree)
     )
     return curve(pieces, [z for _, _, z in control])
@@ -193,7 +193,7 @@ def through_fit_points(entity: Any) -> RawChain:
     fitted = fit_points_to_cad_cv(2 * points[:-1] + points if closed else points, tangents)
     # Its ends are those drawn, without the rounding of the equations.
     control = [every[0], *((p.x, p.y) for p in fitted.control_points[1:-1]), points[-1]]
-    pieces = spline_pieces([point[:2] for point in control], None, list(fitted.knots()), 3)
+    pieces = split_spline([point[:2] for point in control], None, list(fitted.knots()), 3)
     return curve(pieces[count : 2 * count] if closed else pieces, [z for _, _, z in points])
 
 
@@ -211,7 +211,7 @@ def ellipse(entity: Any) -> RawChain:
     sweep = (float(entity.dxf.end_param) - start) % tau
     if min(sweep, tau - sweep) < 1e-9:
         sweep = 2 * pi
-    pieces = ellipse_pieces((center.x, center.y), (major.x, major.y), (minor.x, minor.y), start, sweep)
+    pieces = split_ellipse((center.x, center.y), (major.x, major.y), (minor.x, minor.y), start, sweep)
     return curve(pieces, [center.z, center.z + major.z, center.z + minor.z])
 
 

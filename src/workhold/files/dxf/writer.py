@@ -24,7 +24,7 @@ from workhold.fixels.carrier import Carrier, column_letters
 from workhold.fixels.pegs import peg_outline
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Point, Segment
-from workhold.model.dowels import JawPlate, plate_places
+from workhold.model.dowels import JawPlate, place_plates_in_drawing
 from workhold.model.fixture import Fixture
 from workhold.model.pose import Pose
 from workhold.model.setup import PartZero, part_zero
@@ -279,7 +279,7 @@ def plates_dxf(plates: Sequence[JawPlate]) -> bytes:
         def write(words: str, height: float, at: Point, align: TextEntityAlignment) -> None:
             space.add_text(words, height=height, dxfattribs={"layer": "TEXT"}).set_placement(at, align=align)
 
-        for plate, right in zip(plates, plate_places(plates), strict=True):
+        for plate, right in zip(plates, place_plates_in_drawing(plates), strict=True):
             corners = [(x + right, y) for x, y in plate.outline.corners]
             space.add_lwpolyline(corners, close=True, dxfattribs={"layer": "PLATE"})
             for name, (x, y) in plate.holes:

@@ -22,7 +22,7 @@ from attrs import field, frozen
 from workhold.conventions import CIRCULAR, SAME_POINT, SHORTEST
 from workhold.errors import InputError
 from workhold.geometry.rational import Pieces
-from workhold.geometry.segment import Point, Segment, segment_from_bulge
+from workhold.geometry.segment import Point, Segment, make_segment_from_bulge
 from workhold.limits import MOST_LENGTH
 from workhold.model.solid import FileSolid
 
@@ -118,7 +118,7 @@ class Chain:
     def segments(self) -> list[Segment]:
         """The lines and arcs of the chain, without those from a point to itself."""
         steps = zip(pairwise(self.points), self.bulges, strict=True)
-        return [segment_from_bulge(start, end, bulge) for (start, end), bulge in steps if start != end]
+        return [make_segment_from_bulge(start, end, bulge) for (start, end), bulge in steps if start != end]
 
     def reversed(self) -> Chain:
         return Chain(

@@ -22,9 +22,9 @@ from workhold.files.budget import UNLIMITED, Budget
 from workhold.files.outline.chain import Chain, CurveReading, Placement, at, counted, listed, refuse_numbers
 from workhold.files.outline.joining import Loop
 from workhold.files.questions import FIT, LAYERS
-from workhold.geometry.curve_fit import FittedCurve, fitted_curve
-from workhold.geometry.merged_runs import ChordedArcs, chorded_arcs, chords_remark, merged_chords
-from workhold.geometry.rational import Pieces, arc_pieces, joined_pieces, mapped
+from workhold.geometry.curve_fit import FittedCurve, fit_curve
+from workhold.geometry.merged_runs import ChordedArcs, describe_chords, find_chorded_arcs, merge_chords
+from workhold.geometry.rational import Pieces, join_pieces, mapped, split_arc
 
 __all__ = [
     "CurveReader",
@@ -84,7 +84,7 @@ class CurveReader:
             for label, bulge in zip(labels, bulges, strict=True):
                 refuse_numbers(label, bulge=bulge)
             bent |= {
-                k: arc_pieces(ends[k], ends[k + 1], b) for k, b in enumerate(bulges) if b and k not in bent
+                k: split_arc(ends[k], ends[k + 1], b) for k, b in enumerate(bulges) if b and k not in bent
             }
         turned = placement.bulges(bulges)
         matrix = ((placement.a, placement.c, placement.e), (placement.b, placement.d, placement.f))
@@ -100,7 +100,7 @@ class CurveReader:
                 out_labels.append(labels[k])
                 k += 1
                 continue
-            run = mapped(joined_pieces([bent[j] for j in range(k, last)]), matrix)
+            run = mapped(join_pieces([bent[j] for j in range(k, last)]), matrix)
             read = self.read(run, labels[k])
             if read is not None:
                 if not out_bulges:
@@ -129,7 +129,7 @@ class CurveReader:
             )
         for x, y in (pieces[..., :2] / pieces[..., 2:]).reshape(-1, 2).tolist():
             refuse_numbers(label, x, y)
-        fitted = fitted_curve(pieces, self.fit, self.budget.check_time)
+        fitted = fit_curve(pieces, self.fit, self.budget.check_time)
         if fitted is not None:
             self.found[label] = CurveReading(
                 fitted.points[0], fitted.departure, fitted.is_disguise, pieces, len(fitted.bulges)
@@ -180,7 +180,7 @@ def refuse_true_curves(
 
 def refitted(one: CurveReading, fit: float, budget: Budget | None) -> tuple[int, float]:
     """How many lines and arcs stand for a curve with another fit, and their departure."""
-    fitted = fitted_curve(one.pieces, fit, (budget or Budget(UNLIMITED)).check_time)
+    fitted = fit_curve(one.pieces, fit, (budget or Budget(UNLIMITED)).check_time)
     return (0, 0.0) if fitted is None else (len(fitted.bulges), fitted.departure)
 
 
@@ -200,9 +200,9 @@ def with_chords_merged(
     chorded = list[ChordedArcs]()
     for loop in loops:
         kept = [label in found and not found[label].is_disguise for label in loop.labels]
-        one = merged_chords(loop.vertices, fit, kept, interrupt)
+        one = merge_chords(loop.vertices, fit, kept, interrupt)
         out.append(evolve(loop, vertices=one.vertices, labels=tuple(loop.labels[k] for k in one.firsts)))
-        left = chorded_arcs(one.vertices, [kept[k] for k in one.firsts], interrupt)
+        left = find_chorded_arcs(one.vertices, [kept[k] for k in one.firsts], interrupt)
         chorded += [left] if left is not None and (fit is None or left.fit > fit) else []
         away = max(away, one.departure)
         merged += (one.merged + len(one.firsts)) * (one.departure > SAME_POINT)
@@ -214,7 +214,7 @@ def with_chords_merged(
         away,
         [
             *([f"{remark}{off}: the outline has {counted(total, 'segment', 'segments')}."] if merged else []),
-            *chords_remark(chorded, FIT),
+            *describe_chords(chorded, FIT),
         ],
     )
 

@@ -21,10 +21,10 @@ from workhold.files.outline.joining import Loop
 from workhold.geometry.loop import (
     Comparisons,
     LoopShape,
+    compute_signed_area,
     loop_segments,
     refuse_meeting_loops,
-    reversed_vertices,
-    signed_area,
+    reverse_vertices,
 )
 from workhold.geometry.segment import Segment, box_around, segment_rows
 from workhold.geometry.subdivision import subdivide
@@ -79,9 +79,9 @@ class MeasuredLoop:
     @classmethod
     def of(cls, loop: Loop) -> MeasuredLoop:
         segments = loop_segments(loop.vertices)
-        area = signed_area(segments)
+        area = compute_signed_area(segments)
         if area < 0:
-            segments = loop_segments(reversed_vertices(loop.vertices))
+            segments = loop_segments(reverse_vertices(loop.vertices))
         return cls(loop, segments, segment_rows(segments), abs(area), box_around(segments))
 
 

@@ -26,8 +26,8 @@ from numpy.typing import NDArray
 
 from workhold.files.outline.chain import Chain, rebulged
 from workhold.files.outline.joining import Loop, close_pairs, groups
-from workhold.geometry.loop import Comparisons, loop_segments, signed_area
-from workhold.geometry.segment import Arc, Point, Segment, bounding_box, segment_from_bulge
+from workhold.geometry.loop import Comparisons, compute_signed_area, loop_segments
+from workhold.geometry.segment import Arc, Point, Segment, bounding_box, make_segment_from_bulge
 from workhold.geometry.subdivision import CutCarrier, subdivide
 
 __all__ = ["Cluster", "clusters_of"]
@@ -316,7 +316,7 @@ def direction(points: NDArray[np.float64], edges: Sequence[Edge], half: int, nea
     along = points[end] - points[start]
     heading = atan2(along[1], along[0])
     if abs(bulge) > 0:
-        segment = segment_from_bulge(tuple(points[start].tolist()), tuple(points[end].tolist()), bulge)
+        segment = make_segment_from_bulge(tuple(points[start].tolist()), tuple(points[end].tolist()), bulge)
         if isinstance(segment, Arc):
             # The tangent leads half the sweep away from the chord, and the arc bends back by the angle of
             # the chord to the circle.
@@ -342,7 +342,7 @@ def cluster(
             continue
         used.update(half // 2 for half in walk)
         loop = loop_of(place, edges, walk, labels)
-        if signed_area(loop_segments(loop.vertices)) > 0:
+        if compute_signed_area(loop_segments(loop.vertices)) > 0:
             faces.append(loop)
             for half in walk:
                 inner[half // 2] += 1

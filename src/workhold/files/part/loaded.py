@@ -33,7 +33,7 @@ from workhold.files.outline.nesting import DrawnPart, as_one, refuse_loops_acros
 from workhold.files.outline.shared_lines import chosen_outline, outlines_of, spot_remarks
 from workhold.files.part.finding import found, kind_of, read_bytes
 from workhold.files.questions import PART_NUMBER
-from workhold.model.own_outlines import own_name
+from workhold.model.own_outlines import name_outline
 from workhold.model.solid import FileSolid, HeightRow, SolidOutline
 from workhold.model.workpiece import Workpiece
 
@@ -81,7 +81,7 @@ def from_heights(name: str, drawing: HeightDrawing) -> Loaded:
     for one in drawing.own:
         refuse_large(sum(len(loop) for loop in one.loops))
         rows = [Loop(loop, ("",) * len(loop)) for loop in one.loops]
-        between = own_name((one.solid.low, one.solid.peg_height))
+        between = name_outline((one.solid.low, one.solid.peg_height))
         own.append((one.role, built(between, rows, with_labels=False, solid=one.solid)))
     if own:
         workpiece = evolve(workpiece, outlines=tuple(own))

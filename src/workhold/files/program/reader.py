@@ -25,7 +25,7 @@ from workhold.model.cutting_forces import forces_on
 from workhold.model.cutting_tool import CuttingData, Tool
 from workhold.model.moves import Moves
 from workhold.model.program import Program
-from workhold.model.stock import Stock, stretches_in
+from workhold.model.stock import Stock, find_stretches_in_stock
 from workhold.units import Unit
 
 __all__ = ["ReadProgram", "read_program", "read_program_with_calls"]
@@ -140,7 +140,7 @@ def read_program_with_calls(
     moves = moves_of(control, found, np.array([*program.zero, height]))
     try:
         # Beside the part no tool is known to be before the part is.
-        within = stretches_in(moves, found, cut_from, None, moves.cutting)
+        within = find_stretches_in_stock(moves, found, cut_from, None, moves.cutting)
         forces = forces_on(moves, found, CuttingData.of(cutting), within)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error

@@ -31,8 +31,8 @@ from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, Arrangement
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.clamps import ratios
 from workhold.model.fixture import Fixture
-from workhold.model.fixture_table import FixtureTable, flat_angles, peg_places
-from workhold.model.quality import SEATING_FIGURES, Figure, figures_in
+from workhold.model.fixture_table import FixtureTable, list_flat_angles, peg_places
+from workhold.model.quality import SEATING_FIGURES, Figure, list_figures_in_columns
 from workhold.model.result import Result
 from workhold.model.seating import DECIMALS
 from workhold.model.workpiece import Workpiece
@@ -64,7 +64,7 @@ DIGITS, DOUBTFUL = 12, 1e-3
 
 def known_figures(table: FixtureTable) -> list[Figure]:
     """The figures of quality that all fixtures of a table have."""
-    figures = figures_in(table.quality.shape[1])
+    figures = list_figures_in_columns(table.quality.shape[1])
     return [figure for number, figure in enumerate(figures) if np.isfinite(table.quality[:, number]).all()]
 
 
@@ -183,7 +183,7 @@ def fixture_rows(
 
 def blocks(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> Iterator[WrittenBlock]:
     """The fixtures of a table, rounded as they are written, block by block."""
-    figures = figures_in(table.quality.shape[1])
+    figures = list_figures_in_columns(table.quality.shape[1])
     known = [figures.index(figure) for figure in known_figures(table)]
     for start in range(0, len(table), BLOCK):
         block = table.take(slice(start, start + BLOCK))
@@ -231,7 +231,7 @@ class WrittenBlock:
         """A column of the flats' angles in degrees, of all pegs in places of their own."""
         if FLAT_PIN not in self.toolkit.contacts:
             return []
-        angles, placed = flat_angles(self.table, self.toolkit, self.workpiece), self.placed
+        angles, placed = list_flat_angles(self.table, self.toolkit, self.workpiece), self.placed
         return [[[row[k] for k in placed] for row in angles]]
 
     def row_columns(self) -> list[list[Any]]:

@@ -16,10 +16,10 @@ from workhold.fixels.kinds import USUAL, table_of, toolkit_of
 from workhold.fixels.table import Form, ToolkitField
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.dowels import Fit
-from workhold.model.own_outlines import with_own_outlines
+from workhold.model.own_outlines import add_own_outlines
 from workhold.model.program import Program
 from workhold.model.query import Query
-from workhold.model.requirements import ANY_DIRECTION, Load, Restrictions, Tolerance, zone_of
+from workhold.model.requirements import ANY_DIRECTION, Load, Restrictions, Tolerance, make_zone
 from workhold.model.search_report import Proof, Undecided
 from workhold.model.solid import SolidOutline
 from workhold.model.workpiece import Workpiece
@@ -164,7 +164,7 @@ class RestrictionsPart(FormPart):
     touch: list[int] = []
 
     def restrictions(self) -> Restrictions:
-        return Restrictions(self.avoid, [*map(zone_of, self.zones)], self.angles, self.touch)
+        return Restrictions(self.avoid, [*map(make_zone, self.zones)], self.angles, self.touch)
 
 
 class FitPart(FormPart):
@@ -306,7 +306,7 @@ class Head(FormPart):
         )
         if self.outlines is not None:
             entries = {role: one.model_dump() for role, one in self.outlines.items()}
-            workpiece = with_own_outlines(workpiece, entries, toolkit.heights)
+            workpiece = add_own_outlines(workpiece, entries, toolkit.heights)
         return Query(
             workpiece,
             toolkit,

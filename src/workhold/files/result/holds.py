@@ -16,7 +16,7 @@ from workhold.errors import InputError
 from workhold.files.result.forms import FormPart, first_fault
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
-from workhold.model.fixture_table import FixtureTable, table_of_flat_jaws
+from workhold.model.fixture_table import FixtureTable, make_flat_jaw_table
 from workhold.model.jaw_hold import JawHold, Patch, ProgramNeed
 from workhold.model.pose import Pose
 from workhold.model.query import Query
@@ -152,7 +152,7 @@ def holds_of(parts: Sequence[HoldPart], query: Query, path: Path) -> tuple[JawHo
 
 def table_of_holds(parts: Sequence[HoldPart]) -> FixtureTable:
     """The table of the fixtures of a file."""
-    return table_of_flat_jaws(
+    return make_flat_jaw_table(
         [radians(part.pose.theta_deg) for part in parts],
         [(part.pose.x, part.pose.y) for part in parts],
         [part.jaw_separation for part in parts],

@@ -38,7 +38,7 @@ from workhold.files.text import json_value, read_limited
 from workhold.fixels.fields import CLAMPS
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture_table import FixtureTable
-from workhold.model.moves import PIECE_KEYS, packed_piece
+from workhold.model.moves import PIECE_KEYS, pack_piece
 from workhold.model.quality import BEFORE_PINS, FIGURES
 from workhold.model.query import Query
 from workhold.model.result import Result
@@ -125,7 +125,7 @@ def piece_or_entries(entries: dict[str, Any]) -> Any:
     if entries.keys() != PIECE_KEYS:
         return entries
     try:
-        return packed_piece(entries)
+        return pack_piece(entries)
     except (InputError, LookupError, TypeError, ValueError, struct.error):
         # Whoever makes the program says what is wrong.
         return entries

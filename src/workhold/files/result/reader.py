@@ -326,7 +326,7 @@ def clamp_travel(
 
 
 def figures_asked(query: Query) -> list[int]:
-    """The places of the figures of a query among all, see ``model.quality.figures_in``."""
+    """The places of the figures of a query among all, see ``model.quality.list_figures_in_columns``."""
     known = len(FIGURES) if query.knows_heights else BEFORE_PINS
     return [*range(known), *([len(FIGURES)] if query.program is not None else [])]
 
@@ -338,10 +338,10 @@ def measured(table: FixtureTable, query: Query) -> FixtureTable:
         wanted[:, [LOAD_REACTION, JAW_FORCE_NEEDED]] = False
     if not wanted.any():
         return table
-    from workhold.statics.quality import quality_of
+    from workhold.statics.quality import measure_quality
 
     asked = query.tolerance, query.loads
-    figures = quality_of(
+    figures = measure_quality(
         table,
         query.workpiece,
         query.toolkit,

@@ -100,12 +100,12 @@ def with_clearances(lines: list[str], result: Result, rows: slice) -> list[str]:
     Nothing is said where no tool comes down to the pegs.
     """
     # Other files are written without what measures.
-    from workhold.statics.program_clearance import element_name, nearest_moves
+    from workhold.statics.program_clearance import element_name, find_nearest_moves
 
     assert result.query.passed is not None
     program = result.query.passed[0]
     toolkit, (_, table) = result.toolkit, as_written(result.table.take(rows))
-    near = nearest_moves(table, result.workpiece, toolkit, *result.query.passed)
+    near = find_nearest_moves(table, result.workpiece, toolkit, *result.query.passed)
     out = []
     for number, line in enumerate(lines):
         if near.line[number] >= 0:
@@ -121,10 +121,10 @@ def with_clearances(lines: list[str], result: Result, rows: slice) -> list[str]:
 
 
 def with_forces(lines: list[str], table: FixtureTable, result: Result, program: Program) -> list[str]:
-    from workhold.statics.program_forces import cutting_needs
+    from workhold.statics.program_forces import find_cutting_needs
 
     jaw_force = result.query.jaw_force
-    needs = cutting_needs(table, result.workpiece, result.toolkit, program, jaw_force)
+    needs = find_cutting_needs(table, result.workpiece, result.toolkit, program, jaw_force)
     return [
         line if need is None else with_entry(line, "program_forces", need.to_dict())
         for line, need in zip(lines, needs, strict=True)

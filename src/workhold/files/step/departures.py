@@ -25,7 +25,7 @@ from workhold.files.questions import AXIS, SECTION
 from workhold.files.step.faces import Layer, SolidFace, lie_of, surface_points
 from workhold.files.step.library import AXES, occ, sub_shapes
 from workhold.files.step.regions import Borders, area_of, section
-from workhold.geometry.loop import loop_segments, reversed_vertices, signed_area
+from workhold.geometry.loop import compute_signed_area, loop_segments, reverse_vertices
 from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.distance import is_inside, outline_distances
 
@@ -92,8 +92,8 @@ def oriented_rows(part: DrawnPart) -> NDArray[np.float64]:
     rows = []
     for k, loop in enumerate(part.loops):
         segments = loop_segments(loop.vertices)
-        if (signed_area(segments) > 0) != (k == 0):
-            segments = loop_segments(reversed_vertices(loop.vertices))
+        if (compute_signed_area(segments) > 0) != (k == 0):
+            segments = loop_segments(reverse_vertices(loop.vertices))
         rows.append(segment_rows(segments))
     return np.concatenate(rows)
 

@@ -28,7 +28,7 @@ from workhold.files.step.projected import (
     normal_height,
 )
 from workhold.files.step.regions import edge_curve
-from workhold.geometry.hull import convex_hull
+from workhold.geometry.hull import compute_convex_hull
 from workhold.geometry.rational import Pieces, cut
 from workhold.geometry.segment import Line, Point, Segment
 
@@ -73,7 +73,7 @@ class Enclosure:
     def add_points(self, points: Iterable[Point], safe: float = SAFE) -> None:
         """Adds the hull of some points, see :func:`few_corners`; a line where it is as thin as one."""
         every = list(points)
-        corners = few_corners(np.array(convex_hull(every)).reshape(-1, 2), every[0], every[-1], safe)
+        corners = few_corners(np.array(compute_convex_hull(every)).reshape(-1, 2), every[0], every[-1], safe)
         if len(corners) < 2 or float(np.hypot(*np.ptp(corners, axis=0))) <= SHORTEST:
             return
         start, end = np.array(every[0]), np.array(every[-1])

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from workhold.conventions import ALIGNED, SAME_HEIGHT
 from workhold.files.step.library import bounding_box, occ, sub_shapes
-from workhold.geometry.subdivision import distinct_sorted
+from workhold.geometry.subdivision import sort_distinct
 
 __all__ = [
     "SLOPING",
@@ -267,7 +267,7 @@ def layers_of(faces: Sequence[SolidFace]) -> list[Layer]:
     """The layers between the heights where level and leaning faces begin or end, from the lowest up."""
     leaning = np.array([(face.low, face.high) for face in faces if face.lie == "leaning"]).reshape(-1, 2)
     ends = [z for face in faces if face.lie != "upright" for z in (face.low, face.high)]
-    levels = distinct_sorted(np.array(ends), SAME_HEIGHT)
+    levels = sort_distinct(np.array(ends), SAME_HEIGHT)
     layers = []
     for low, high in pairwise(levels):
         inside = (leaning[:, 0] < high - SAME_HEIGHT) & (leaning[:, 1] > low + SAME_HEIGHT)

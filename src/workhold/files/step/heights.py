@@ -42,10 +42,16 @@ from workhold.files.step.projected import (
     refuse_others,
 )
 from workhold.files.step.strips import Strip, run_rows, strips_of_loop
-from workhold.geometry.loop import loop_segments, signed_area
+from workhold.geometry.loop import compute_signed_area, loop_segments
 from workhold.geometry.segment import Arc, Line, Segment, are_parallel_lines
-from workhold.geometry.subdivision import BorderPiece, Inside, border_loops, border_pieces, subdivide
-from workhold.model.solid import NO_LEVELS, Band, HeightRow, RunRows, SolidOutline, slides_at_any
+from workhold.geometry.subdivision import (
+    BorderPiece,
+    Inside,
+    find_border_pieces,
+    join_border_loops,
+    subdivide,
+)
+from workhold.model.solid import NO_LEVELS, Band, HeightRow, RunRows, SolidOutline, slides_at_every_height
 
 __all__ = [
     "HEAD_ROOM",
@@ -83,7 +89,7 @@ class HeightOutline:
     @cached_property
     def ordered(self) -> list[tuple[Strip, ...]]:
         """Outer loops first, the largest of them before all."""
-        return sorted(self.loops, key=lambda loop: -signed_area(loop_segments(vertices_of(loop))))
+        return sorted(self.loops, key=lambda loop: -compute_signed_area(loop_segments(vertices_of(loop))))
 
     @property
     def vertices(self) -> tuple[NDArray[np.float64], ...]:
@@ -109,7 +115,7 @@ class HeightOutline:
     @property
     def feet(self) -> int:
         """How many loops are outer ones."""
-        return sum(signed_area(loop_segments(loop)) > 0 for loop in self.vertices)
+        return sum(compute_signed_area(loop_segments(loop)) > 0 for loop in self.vertices)
 
 
 def vertices_of(loop: Sequence[Any]) -> NDArray[np.float64]:
@@ -223,7 +229,7 @@ class StandingSolid:
             return None
         except InputError:
             return None
-        return sum(signed_area(loop_segments(vertices_of(loop))) for loop in loops)
+        return sum(compute_signed_area(loop_segments(vertices_of(loop))) for loop in loops)
 
     def inside(self, low: float, high: float) -> Inside:
         """Over which of some points (x, y) the solid has material between two heights in mm, as a function."""
@@ -253,7 +259,7 @@ class StandingSolid:
             curves = projected_curves(self.faces, self.edges, low, high, self.folds_of)
             refuse_others(curves.others, self.faces, inside, PlainCurves.of(curves.segments))
         carriers = subdivide(curves.segments, (*curves.cuts, *more))
-        pieces = border_pieces(carriers, inside)
+        pieces = find_border_pieces(carriers, inside)
         if not pieces:
             raise InputError(
                 f"nothing of the solid lies between the heights {max(low, 0):g} and {high:g} mm."
@@ -282,7 +288,7 @@ class StandingSolid:
             When they do not close, naming the face whose border is neither line nor arc, if there is one.
         """
         try:
-            return border_loops(pieces)
+            return join_border_loops(pieces)
         except InputError as error:
             if curves.others:
                 kinds = [self.faces[index] for index, _ in curves.others]
@@ -329,7 +335,7 @@ def measures(outline: HeightOutline) -> tuple[float, float, float, float]:
     bands = []
     for loop in outline.loops:
         segments = loop_segments(vertices_of(loop))
-        area += signed_area(segments)
+        area += compute_signed_area(segments)
         border += sum(segment.length for segment in segments)
         for segment, strip in zip(segments, loop, strict=True):
             if strip.band is not None:
@@ -546,7 +552,7 @@ def height_remarks(outline: HeightOutline, found: SolidOutline, rows: Sequence[H
 def better_height(rows: Sequence[HeightRow], touchable: float) -> list[str]:
     """A sentence on the height of pegs that could touch most, if that is more than a length in mm."""
     best = longest(rows)
-    if best is None or slides_at_any(rows) or best.touchable <= touchable * (1 + 1e-6):
+    if best is None or slides_at_every_height(rows) or best.touchable <= touchable * (1 + 1e-6):
         return []
     return [f"With {PEG_HEIGHT} {best.high:.6g}mm most could be touched: {best.touchable:.4g} mm."]
 

@@ -35,10 +35,17 @@ from workhold.files.step.faces import SolidFace
 from workhold.files.step.heights import StandingSolid
 from workhold.files.step.projected import projected_curves
 from workhold.files.step.regions import borders, level_region
-from workhold.geometry.loop import loop_segments, reversed_vertices, signed_area
+from workhold.geometry.loop import compute_signed_area, loop_segments, reverse_vertices
 from workhold.geometry.rational import Pieces, point_at, points_along
-from workhold.geometry.segment import Line, Point, Segment, bounding_box, segment_from_bulge, segment_rows
-from workhold.geometry.subdivision import BorderPiece, border_loops, border_pieces, subdivide
+from workhold.geometry.segment import (
+    Line,
+    Point,
+    Segment,
+    bounding_box,
+    make_segment_from_bulge,
+    segment_rows,
+)
+from workhold.geometry.subdivision import BorderPiece, find_border_pieces, join_border_loops, subdivide
 from workhold.kernels.base.distance import is_inside
 
 __all__ = ["LevelTop", "bottom_loops", "known_levels", "level_tops"]
@@ -266,9 +273,11 @@ def region(
     to it. Cuts are further points at which the carriers of segments are to be cut. Refuses a border that does
     not close.
     """
-    pieces = border_pieces(subdivide(segments, cuts), lambda points: list(map(inside, points)), NEAR_BESIDE)
-    loops = [smoothed(loop) for loop in border_loops(pieces)]
-    sizes = [(signed_area(loop_segments(loop)), loop) for loop in loops]
+    pieces = find_border_pieces(
+        subdivide(segments, cuts), lambda points: list(map(inside, points)), NEAR_BESIDE
+    )
+    loops = [smoothed(loop) for loop in join_border_loops(pieces)]
+    sizes = [(compute_signed_area(loop_segments(loop)), loop) for loop in loops]
     return [loop for size, loop in sorted(sizes, key=lambda one: -one[0]) if abs(size) > SLIVER]
 
 
@@ -364,7 +373,7 @@ def border_of(face: SolidFace) -> FaceBorder | None:
             # The section has curves of its own near the face's, which are exact.
             edges = borders(face.shape)
         chains = [closed_loop(chain).vertices for chain in edges.chains]
-        order = sorted(range(len(chains)), key=lambda k: -abs(signed_area(loop_segments(chains[k]))))
+        order = sorted(range(len(chains)), key=lambda k: -abs(compute_signed_area(loop_segments(chains[k]))))
         true = {label: one.pieces for label, one in edges.curves.items() if not one.is_disguise}
         bounds, loops = Enclosure(), list[Array]()
         for number, k in enumerate(order):
@@ -373,8 +382,8 @@ def border_of(face: SolidFace) -> FaceBorder | None:
                 bounds.segments += loop_segments(loop)
             else:
                 loop = chorded(edges.chains[k], true, bounds)
-            is_turned = (signed_area(loop_segments(chains[k])) > 0) != (number == 0)
-            loops.append(reversed_vertices(loop) if is_turned else loop)
+            is_turned = (compute_signed_area(loop_segments(chains[k])) > 0) != (number == 0)
+            loops.append(reverse_vertices(loop) if is_turned else loop)
     except InputError:
         return None
     return FaceBorder(loops, bounds) if loops else None
@@ -393,7 +402,9 @@ def chorded(chain: Chain, curves: Mapping[str, Pieces], bounds: Enclosure) -> Ar
         label = chain.labels[k]
         if label not in curves:
             vertices.append((*chain.points[k], chain.bulges[k]))
-            bounds.segments.append(segment_from_bulge(chain.points[k], chain.points[k + 1], chain.bulges[k]))
+            bounds.segments.append(
+                make_segment_from_bulge(chain.points[k], chain.points[k + 1], chain.bulges[k])
+            )
         elif label not in done:
             done.add(label)
             run = [chain.points[m] for m in range(count) if chain.labels[m] == label]

@@ -22,7 +22,7 @@ from workhold.files.step.by_height import HeightView, drawn, turned_up
 from workhold.files.step.library import guarded, load_step_library, occ, sub_shapes
 from workhold.files.step.reader import prepare
 from workhold.files.step.solids import read_solids
-from workhold.geometry.loop import loop_segments, signed_area
+from workhold.geometry.loop import compute_signed_area, loop_segments
 from workhold.geometry.segment import Point
 from workhold.model.pose import Pose
 from workhold.model.solid import SolidOutline
@@ -118,7 +118,9 @@ def levels_of(solid: SolidOutline) -> Levels:
     if len(solid.top_heights) < len(top):
         return {"bands": bands, "faces": []}
     faces = [*((0.0, loop) for loop in solid.bottom or ()), *zip(solid.top_heights, top, strict=True)]
-    sizes = [[float(height), float(signed_area(loop_segments(np.array(loop))))] for height, loop in faces]
+    sizes = [
+        [float(height), float(compute_signed_area(loop_segments(np.array(loop))))] for height, loop in faces
+    ]
     return {"bands": bands, "faces": sizes}
 
 
@@ -154,7 +156,7 @@ def is_same(loops: list[Array], others: tuple[Array, ...]) -> bool:
     corners = np.concatenate(others)[:, :2]
     ours = np.concatenate(loops)[:, :2]
     near = np.abs(ours[:, None, :] - corners[None, :, :]).max(axis=2).min(axis=1)
-    areas = [sum(signed_area(loop_segments(loop)) for loop in every) for every in (loops, others)]
+    areas = [sum(compute_signed_area(loop_segments(loop)) for loop in every) for every in (loops, others)]
     return bool(near.max() <= SAME_CORNER and abs(areas[0] - areas[1]) <= SAME_AREA * abs(areas[0]))
 
 

@@ -39,7 +39,7 @@ from workhold.files.step.edge_curves import (
 )
 from workhold.files.step.faces import SLOPING, SolidFace, is_level, is_upright, surface_of
 from workhold.files.step.library import occ, sub_shapes
-from workhold.geometry.segment import Arc, Line, Point, Segment, distance_to_segment, segment_rows
+from workhold.geometry.segment import Arc, Line, Point, Segment, measure_distance_to_segment, segment_rows
 from workhold.geometry.subdivision import Inside
 from workhold.kernels.base.distance import outline_distances
 
@@ -464,7 +464,7 @@ class PlainCurves:
             return False
         middles = []
         for x, y in places.tolist():
-            own = min(self.segments, key=lambda one: distance_to_segment((x, y), one))
+            own = min(self.segments, key=lambda one: measure_distance_to_segment((x, y), one))
             fx, fy = own.at(own.parameter((x, y)))
             if hypot(fx - x, fy - y) > ONE_CURVE:
                 middles.append(((x + fx) / 2, (y + fy) / 2))

@@ -19,7 +19,7 @@ from workhold.files.outline.chain import Chain, CurveReading, arc_bulges, rebulg
 from workhold.files.outline.curves import CurveReader
 from workhold.files.questions import SECTION
 from workhold.files.step.library import bounding_box, occ, raised, sub_shapes
-from workhold.geometry.rational import Pieces, spline_pieces
+from workhold.geometry.rational import Pieces, split_spline
 from workhold.geometry.segment import Point
 
 __all__ = ["Borders", "area_of", "borders", "edge_curve", "level_region", "section", "union"]
@@ -42,7 +42,7 @@ def edge_curve(edge: Any) -> Pieces:
     poles = [spline.Pole(k) for k in numbers]
     knots = [spline.Knot(k) for k in range(1, spline.NbKnots() + 1) for _ in range(spline.Multiplicity(k))]
     try:
-        return spline_pieces(
+        return split_spline(
             [(pole.X(), pole.Y()) for pole in poles],
             [spline.Weight(k) for k in numbers],
             knots,

@@ -21,7 +21,7 @@ from attrs import frozen
 from workhold.conventions import SAME_HEIGHT
 from workhold.files.step.bands import Covered, Run, Walls, length
 from workhold.files.step.edge_curves import ONE_HEIGHT, bisected
-from workhold.geometry.loop import runs_around
+from workhold.geometry.loop import cut_into_runs
 from workhold.geometry.segment import Arc, Point
 from workhold.geometry.subdivision import BorderPiece
 from workhold.model.solid import Band, RunRows, run_at
@@ -71,7 +71,7 @@ def strips_of_loop(loop: Sequence[BorderPiece], walls: Walls, least: float) -> l
     touched.
     """
     pieces = [walls.covered(piece) for piece in loop]
-    stretches: Sequence[Stretch] = runs_around(pieces, lambda a, b: continues(a, b, least))
+    stretches: Sequence[Stretch] = cut_into_runs(pieces, lambda a, b: continues(a, b, least))
     if len(stretches) == 1 and continues(pieces[-1], pieces[0], least):
         stretches = list(opened(pieces, least))
     return [strip for stretch in stretches for strip in strips_of_stretch(stretch, least)]
@@ -145,7 +145,7 @@ def opened(pieces: Stretch, least: float) -> Iterator[Stretch]:
             if number or at_start:
                 fresh.add(len(parts))
             parts.append(part)
-    numbers = runs_around(range(len(parts)), lambda _, after: after not in fresh)
+    numbers = cut_into_runs(range(len(parts)), lambda _, after: after not in fresh)
     yield from ([parts[k] for k in run] for run in numbers)
 
 

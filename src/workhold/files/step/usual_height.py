@@ -14,8 +14,8 @@ from workhold.conventions import DOWEL_STANDOUT, SAME_HEIGHT
 from workhold.errors import InputError
 from workhold.files.questions import PEG_HEIGHT
 from workhold.files.step.heights import StandingSolid, measures
-from workhold.model.dowel_lengths import dowel_for, standouts
-from workhold.model.solid import HeightRow, slides_at_any
+from workhold.model.dowel_lengths import find_shortest_dowel, standouts
+from workhold.model.solid import HeightRow, slides_at_every_height
 
 __all__ = ["UsualHeight", "usual_height"]
 
@@ -54,7 +54,7 @@ class UsualHeight:
         """What is said of it: how high, why, and how to have pegs as tall as the part where that may help."""
         if self.is_whole:
             return []
-        dowel = dowel_for(self.diameter, self.peg_height)
+        dowel = find_shortest_dowel(self.diameter, self.peg_height)
         what = "" if dowel is None else f", as dowels of {dowel.name} do that sit {dowel.depth:.6g} mm deep"
         more = (
             "lower ones would touch less than half of what pegs can touch here, and higher ones bend more"
@@ -97,4 +97,4 @@ def usual_height(
     low = [one for one in heights if one <= usual]
     in_order = [*reversed(low), *(one for one in heights if one > usual)]
     found = next((one for one in in_order if touches_enough(one)), top)
-    return UsualHeight(min(found, top), top, diameter, not is_prism, slides_at_any(rows))
+    return UsualHeight(min(found, top), top, diameter, not is_prism, slides_at_every_height(rows))

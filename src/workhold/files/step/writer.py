@@ -28,8 +28,8 @@ from workhold.files.replacing import refuse_other_ending, refuse_output
 from workhold.files.step.library import load_step_library, occ, raised, sub_shapes
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Line, Point, Segment
-from workhold.model.bodies import COLOURS, THICKNESS, BodyKind, BodySizes, FixtureBody, fixture_bodies
-from workhold.model.dowels import JawPlate, plate_places
+from workhold.model.bodies import COLOURS, THICKNESS, BodyKind, BodySizes, FixtureBody, list_fixture_bodies
+from workhold.model.dowels import JawPlate, place_plates_in_drawing
 from workhold.model.fixture import Fixture
 from workhold.model.pose import Pose
 from workhold.model.setup import PartZero, part_zero
@@ -111,7 +111,7 @@ def setup_step(
     **sizes: Any,
 ) -> bytes:
     """The bytes of a set-up's STEP assembly; the sizes are lengths of :func:`write_setup_step`."""
-    bodies = fixture_bodies(fixture, workpiece, toolkit, BodySizes.of(workpiece, **sizes))
+    bodies = list_fixture_bodies(fixture, workpiece, toolkit, BodySizes.of(workpiece, **sizes))
     return bodies_step(bodies, toolkit, (zero or part_zero(workpiece)).point, fixture.pose)
 
 
@@ -262,7 +262,7 @@ def plates_step(plates: Sequence[JawPlate], thickness: float | None = None) -> b
     load_step_library()
     named = [
         (f"{plate.title} plate", drilled(plate, right, thickness), COLOURS[BodyKind.PLATE])
-        for plate, right in zip(plates, plate_places(plates), strict=True)
+        for plate, right in zip(plates, place_plates_in_drawing(plates), strict=True)
     ]
     return assembly("jaw plates", named)
 

@@ -23,7 +23,7 @@ from workhold.errors import InputError
 from workhold.files.outline.chain import arc_bulges
 from workhold.files.svg.document import short
 from workhold.files.svg.viewport import LARGEST, NUMBER, ShapeElement, numbers
-from workhold.geometry.rational import Pieces, ellipse_pieces, polynomial_pieces
+from workhold.geometry.rational import Pieces, make_bezier_piece, split_ellipse
 from workhold.geometry.segment import Point
 
 __all__ = ["SHAPES", "Shape"]
@@ -186,7 +186,7 @@ def steps_of(segment: Any, kind: str, label: str) -> list[PathStep]:
     start = xy(segment.start, label)
     if kind != "Arc":
         between = [segment.control] if kind == "QuadraticBezier" else [segment.control1, segment.control2]
-        curve = polynomial_pieces([start, *(xy(point, label) for point in between), end])
+        curve = make_bezier_piece([start, *(xy(point, label) for point in between), end])
         return [PathStep(end, 0.0, label, curve)]
     if end == start:
         return []  # SVG 2, 9.5.1
@@ -196,7 +196,7 @@ def steps_of(segment: Any, kind: str, label: str) -> list[PathStep]:
     if abs(radius - other) > CIRCULAR * max(radius, other):
         cx, cy = xy(segment.center, label)
         major, minor = ((x - cx, y - cy) for x, y in (xy(segment.prx, label), xy(segment.pry, label)))
-        curve = ellipse_pieces((cx, cy), major, minor, float(segment.get_start_t()), float(segment.sweep))
+        curve = split_ellipse((cx, cy), major, minor, float(segment.get_start_t()), float(segment.sweep))
         curve[0, 0], curve[-1, -1] = (*start, 1.0), (*end, 1.0)
         return [PathStep(end, 0.0, label, curve)]
     sweep = arc_sweep(start, end, radius, float(segment.sweep))
@@ -251,7 +251,7 @@ def oval(label: str, center: Point, rx: float, ry: float) -> Iterator[Shape]:
     if not (rx > 0 and ry > 0):
         return
     if abs(rx - ry) > CIRCULAR * max(rx, ry):
-        whole = ellipse_pieces(center, (rx, 0.0), (0.0, ry), 0.0, 2 * pi)
+        whole = split_ellipse(center, (rx, 0.0), (0.0, ry), 0.0, 2 * pi)
         yield Shape(((x + rx, y), (x + rx, y)), (0.0,), (label,), {0: whole})
     else:
         yield Shape(((x + rx, y), (x - rx, y), (x + rx, y)), (1.0, 1.0), (label, label))

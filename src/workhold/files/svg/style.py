@@ -22,7 +22,7 @@ from workhold.files.outline.chain import Chain, cleaned
 from workhold.files.outline.joining import closed_loop
 from workhold.files.svg.document import Declared, Styles, href, local_name, short
 from workhold.files.svg.viewport import LENGTH, ShapeElement
-from workhold.geometry.loop import LoopShape, loop_segments, refuse_meeting_loops, signed_area
+from workhold.geometry.loop import LoopShape, compute_signed_area, loop_segments, refuse_meeting_loops
 from workhold.kernels.base.distance import turns_around
 
 __all__ = ["INITIAL", "Style", "boundaries", "computed", "link_of", "refuse_effects"]
@@ -248,7 +248,7 @@ def boundaries(chains: Sequence[Chain], budget: Budget) -> list[Chain]:
     for k in known:
         budget.work(len(clean[k][0].bulges))
         shapes.append(LoopShape.of(loop_segments(closed_loop(clean[k][0]).vertices)))
-    turns = [int(np.sign(signed_area(shape.segments))) for shape in shapes]
+    turns = [int(np.sign(compute_signed_area(shape.segments))) for shape in shapes]
     boxes = np.array([shape.box for shape in shapes]).reshape(-1, 4)
     over = set()
     for at, (k, shape) in enumerate(zip(known, shapes, strict=True)):
