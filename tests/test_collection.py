@@ -55,7 +55,19 @@ def test_of_two_lists_every_value_is_tried(
 TESTS = Path(__file__).parent
 ROOT = TESTS.parent
 # What the extra for tests does not install.
-OPTIONAL = {"OCP", "anywidget", "build123d", "cadquery", "distributed", "fsspec", "mcp", "pandas", "pyarrow"}
+OPTIONAL = {
+    "OCP",
+    "anywidget",
+    "build123d",
+    "cadquery",
+    "distributed",
+    "fsspec",
+    "mcp",
+    "netgen",
+    "ngsolve",
+    "pandas",
+    "pyarrow",
+}
 
 
 def imported_first(text: str) -> set[str]:

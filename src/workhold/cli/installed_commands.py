@@ -32,6 +32,7 @@ __all__ = ["SCHEMAS", "doctor", "schema", "schema_of"]
 USES = {
     "numba": "Compiles the kernels, if the package has none for this machine.",
     "step": "Reads parts from STEP files, and writes set-ups as STEP assemblies.",
+    "bending": "Says how far clamps and cutters bend a part.",
     "build123d": "Reads parts of build123d, and gives it fixtures as assemblies.",
     "batch": "Writes the tables of batch as Parquet, and finds the fewest set-ups of a family.",
     "tables": "Gives fixtures as tables of pandas and Arrow.",

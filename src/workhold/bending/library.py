@@ -1,0 +1,46 @@
+"""NGSolve with Netgen, the library that meshes and solves: loaded only when a part is bent."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+from attrs import frozen
+
+from workhold.errors import InputError
+
+__all__ = ["REQUIREMENT", "Elements", "load_elements"]
+
+# What the extra asks for; nobody else's distribution can be had by its name.
+REQUIREMENT = "ngsolve>=6.2.2608"
+
+
+@frozen
+class Elements:
+    """The modules of the library: of elements and solvers, of shapes, and of meshes."""
+
+    solving: Any
+    shapes: Any
+    meshing: Any
+
+
+@cache
+def load_elements() -> Elements:
+    """Load the library, which takes about a second, and keep it to one thread.
+
+    Raises
+    ------
+    InputError
+        When the extra is not installed, with the remedy.
+    """
+    try:
+        import netgen.meshing
+        import netgen.occ
+        import ngsolve
+    except ImportError as error:
+        raise InputError(
+            f"how far a part bends needs a library that is not installed: pip install '{REQUIREMENT}'."
+        ) from error
+    ngsolve.SetNumThreads(1)
+    netgen.meshing.SetMessageImportance(0)
+    return Elements(ngsolve, netgen.occ, netgen.meshing)

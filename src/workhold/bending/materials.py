@@ -1,0 +1,110 @@
+"""What parts are made of: stiffness and density, each with its source."""
+
+from __future__ import annotations
+
+from math import isfinite
+
+from attrs import field, frozen
+
+from workhold.errors import InputError
+from workhold.limits import real
+
+__all__ = ["MATERIALS", "ElasticMaterial", "find_material"]
+
+
+@frozen
+class ElasticMaterial:
+    """A material that bends alike in every direction.
+
+    Parameters
+    ----------
+    name : as users write it.
+    elastic_modulus : Young's modulus E in MPa.
+    poisson : Poisson's ratio, from 0 to below 0.5.
+    density : in kg/m³.
+    source : where the numbers are from.
+    """
+
+    name: str
+    elastic_modulus: float = field(converter=real)
+    poisson: float = field(converter=real)
+    density: float = field(converter=real)
+    source: str = "given"
+
+    def __attrs_post_init__(self) -> None:
+        if not (isfinite(self.elastic_modulus) and 1.0 <= self.elastic_modulus <= 1e7):
+            raise InputError(
+                f"Young's modulus {self.elastic_modulus:g} cannot be used: give it in MPa, such as 69000 for aluminium."
+            )
+        if not 0.0 <= self.poisson <= 0.49:
+            raise InputError(f"Poisson's ratio {self.poisson:g} cannot be used: give one from 0 to 0.49.")
+        if not (isfinite(self.density) and self.density > 0.0):
+            raise InputError(f"the density {self.density:g} cannot be used: give it in kg/m³.")
+
+    @property
+    def words(self) -> str:
+        """Its name with what is reckoned with, for people.
+
+        >>> MATERIALS["mild-steel"].words
+        'mild-steel (E 205 GPa, Poisson 0.29)'
+        """
+        return f"{self.name} (E {self.elastic_modulus / 1000:.3g} GPa, Poisson {self.poisson:.2g})"
+
+
+MATWEB, ENSINGER = "MatWeb", "Ensinger, data sheet of stock shapes"
+# Data sheets of plastics do not state Poisson's ratio: these are usual ones. A tenth more or less of it changes how far
+# a part bends by some hundredths.
+USUAL_RATIO = "Poisson's ratio a usual one"
+MATERIALS = {
+    one.name: one
+    for one in (
+        ElasticMaterial("aluminium-6061", 68_900.0, 0.33, 2700.0, f"{MATWEB}, aluminum 6061-T6"),
+        ElasticMaterial("aluminium-7075", 71_700.0, 0.33, 2810.0, f"{MATWEB}, aluminum 7075-T6"),
+        ElasticMaterial("mild-steel", 205_000.0, 0.29, 7870.0, f"{MATWEB}, AISI 1020 steel, cold rolled"),
+        ElasticMaterial("steel-4140", 205_000.0, 0.29, 7850.0, f"{MATWEB}, AISI 4140 steel, annealed"),
+        ElasticMaterial(
+            "stainless-304", 193_000.0, 0.29, 8000.0, f"{MATWEB}, 304 stainless steel, annealed bar"
+        ),
+        ElasticMaterial("brass", 97_000.0, 0.31, 8490.0, f"{MATWEB}, free-cutting brass UNS C36000"),
+        ElasticMaterial(
+            "cast-iron",
+            100_000.0,
+            0.26,
+            7150.0,
+            "W. D. Callister, Materials Science and Engineering, appendix B: grey iron, 90 to 113 GPa",
+        ),
+        ElasticMaterial("pom", 2_800.0, 0.35, 1410.0, f"{ENSINGER} TECAFORM AH natural; {USUAL_RATIO}"),
+        ElasticMaterial("pa6", 3_300.0, 0.39, 1140.0, f"{ENSINGER} TECAMID 6 natural, dry; {USUAL_RATIO}"),
+        ElasticMaterial("peek", 4_200.0, 0.38, 1310.0, f"{ENSINGER} TECAPEEK natural; {USUAL_RATIO}"),
+    )
+}
+
+
+def find_material(name: str) -> ElasticMaterial:
+    """The material of a name, or of E in MPa and Poisson's ratio, such as "69000,0.33".
+
+    Raises
+    ------
+    InputError
+        For a name that is not known, and numbers that cannot be.
+
+    Examples
+    --------
+    >>> find_material("brass").density, find_material("2400, 0.4").poisson
+    (8490.0, 0.4)
+    """
+    key = name.strip().lower().replace(" ", "-").replace("_", "-")
+    if key in MATERIALS:
+        return MATERIALS[key]
+    numbers = name.split(",")
+    if len(numbers) == 2:
+        try:
+            modulus, poisson = map(float, numbers)
+        except ValueError:
+            pass
+        else:
+            return ElasticMaterial(name.strip(), modulus, poisson, 1000.0)
+    raise InputError(
+        f"the material {name[:40]!r} is not known: choose {', '.join(MATERIALS)}, or give E in MPa and Poisson's "
+        "ratio, such as 69000,0.33."
+    )
