@@ -59,7 +59,7 @@ CHROMIUM = (
 # Rooms of which ``make test`` runs nothing: a browser, FreeCAD, STEP files, many processes, a report of hundreds of figures.
 THOROUGH_ROOMS = [
     Path(__file__).parent.joinpath(*room.split("/"))
-    for room in ("batch", "files/step", "paper", "web/browser", "workbench")
+    for room in ("batch", "bending", "files/step", "paper", "web/browser", "workbench")
 ]
 # What the cases of a law are marked with that are left out, by the marker that says one in how many stays.
 LEFT_TO = {"sampled": pytest.mark.prove, "thinned": pytest.mark.thorough}

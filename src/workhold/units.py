@@ -74,6 +74,28 @@ class Unit:
         """
         return f"{self.number(length, decimals)} {self.abbreviation}"
 
+    @property
+    def small_name(self) -> str:
+        """The unit of lengths that nobody sets but that count: micrometres, or thousandths of an inch."""
+        return "µm" if self.name != INCH.name else "thou"
+
+    def small_number(self, length: float) -> str:
+        """Return a length in mm as a number of the small unit, with two figures or more.
+
+        >>> MILLIMETRE.small_number(0.01234), MILLIMETRE.small_number(0.00072), INCH.small_number(0.0254)
+        ('12', '0.72', '1.0')
+        """
+        value = length * (1000.0 / 25.4 if self.name == INCH.name else 1000.0)
+        return f"{value:.0f}" if abs(value) >= 10 else f"{value:.1f}" if abs(value) >= 1 else f"{value:.2g}"
+
+    def small_text(self, length: float) -> str:
+        """Return a length in mm in the small unit, with its name.
+
+        >>> MILLIMETRE.small_text(0.0081), INCH.small_text(0.0254)
+        ('8.1 µm', '1.0 thou')
+        """
+        return f"{self.small_number(length)} {self.small_name}"
+
     def figure(self, length: float, decimals: int | None = None) -> str:
         """Return a length in mm as a catalogue would print it: as many decimals as it takes and no more.
 

@@ -23,7 +23,10 @@ TETRAHEDRA = 1000
 # The volume of a tetrahedron over the cube of the size that the mesher is given, as it fills a plate.
 SHARE = 0.17
 # Beyond this the refined mesh would take minutes.
-MOST_TETRAHEDRA = 12_000
+MOST_TETRAHEDRA = 6_000
+# How fast elements grow away from small ones, and how many fit on the radius of a round face: elements are curved, so that
+# one for each radian follows it well.
+GRADING, ROUND = 0.8, 1.0
 # Sizes of elements are no larger than this many times a part's least extent: a plate then bends by its true
 # stiffness with one second-order element over its thickness.
 OF_LEAST_EXTENT = 2.0
@@ -60,7 +63,11 @@ def make_mesh(part: PartToBend) -> Any:
         size = min(
             (shape.mass / (SHARE * TETRAHEDRA)) ** (1 / 3), OF_LEAST_EXTENT * float((high - low).min())
         )
-        mesh = load_elements().shapes.OCCGeometry(shape).GenerateMesh(maxh=size, optsteps3d=2)
+        mesh = (
+            load_elements()
+            .shapes.OCCGeometry(shape)
+            .GenerateMesh(maxh=size, optsteps3d=2, grading=GRADING, curvaturesafety=ROUND)
+        )
     except RuntimeError as error:
         raise InputError(
             "the part cannot be meshed, so it is not known how far it bends: repair its solid in the CAD program."

@@ -117,9 +117,7 @@ def make_disc(middle: Array, radius: float, outward: Array | None) -> LoadPatch:
     return LoadPatch(points, ring(radius + BESIDE, AROUND), outward)
 
 
-def make_rectangle(
-    corner: Array, sides: tuple[Array, Array], outward: Array, spacing: float = ALONG
-) -> tuple[Array, Array]:
+def make_rectangle(corner: Array, sides: tuple[Array, Array], spacing: float = ALONG) -> tuple[Array, Array]:
     """Points (M, 3) of a flat rectangle from a corner (3,) along two sides (3,), and the area in mm² of each."""
     lengths = [float(np.linalg.norm(side)) for side in sides]
     counts = [max(2, ceil(length / spacing)) for length in lengths]

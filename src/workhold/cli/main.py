@@ -63,6 +63,9 @@ COMMANDS = {
     "straps": (
         "Report where strap clamps hold the part of fixture N down against its three locators, with the least force."
     ),
+    "bend": (
+        "Report how far clamps bend the part of fixture N, or of the best fixtures, and how far it gives at the cutter."
+    ),
     "sheet": (
         "Write the setup sheet of fixture N of a result: plan to scale, pegs, opening, part zero, quality, "
         "loads, cautions."

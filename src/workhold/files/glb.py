@@ -48,11 +48,14 @@ class Mesh:
     positions : (N, 3) float32 vertices in metres, y up, as glTF has them.
     normals : (N, 3) float32 unit vectors outward.
     triangles : (M, 3) uint32 numbers of vertices, counter-clockwise from outside.
+    colours : (N, 3) float32 linear red, green and blue from 0 to 1, over a white material; None for the colour of the
+        body's kind.
     """
 
     positions: NDArray[np.float32]
     normals: NDArray[np.float32]
     triangles: NDArray[np.uint32]
+    colours: NDArray[np.float32] | None = None
 
 
 def body_mesh(body: FixtureBody) -> Mesh:
@@ -63,15 +66,22 @@ def body_mesh(body: FixtureBody) -> Mesh:
     return surface_mesh(np.concatenate(points), np.concatenate(outward), np.concatenate(numbers))
 
 
-def surface_mesh(positions: Array, normals: Array, triangles: Triangles) -> Mesh:
+def surface_mesh(
+    positions: Array, normals: Array, triangles: Triangles, colours: Array | None = None
+) -> Mesh:
     """The mesh of a surface with z up.
 
     Parameters
     ----------
     positions, normals : (N, 3) vertices in mm and unit vectors outward.
     triangles : (M, 3) numbers of vertices.
+    colours : (N, 3) red, green and blue from 0 to 1 as on a screen; None for that of the body's kind.
     """
-    return Mesh(as_gltf(positions / 1000.0), as_gltf(normals), triangles.astype(np.uint32))
+    light = None
+    if colours is not None:
+        dark = colours <= 0.04045
+        light = np.where(dark, colours / 12.92, ((colours + 0.055) / 1.055) ** 2.4).astype(np.float32)
+    return Mesh(as_gltf(positions / 1000.0), as_gltf(normals), triangles.astype(np.uint32), light)
 
 
 def as_gltf(vectors: Array) -> NDArray[np.float32]:
@@ -156,7 +166,9 @@ def bodies_glb(bodies: Sequence[FixtureBody], name: str, part: Mesh | None = Non
     meshes = []
     for number, body in enumerate(bodies):
         mesh = body_mesh(body) if part is None or body.kind is not BodyKind.PART else part
-        meshes.append({"name": body.name, "primitives": [scene.add(mesh, kinds.index(body.kind))]})
+        # What has colours of its own has the material after those of the kinds.
+        look = kinds.index(body.kind) if mesh.colours is None else len(kinds)
+        meshes.append({"name": body.name, "primitives": [scene.add(mesh, look)]})
         extras: dict[str, Any] = {"kind": str(body.kind)}
         if body.opens is not None:
             extras["opens"] = [body.opens[0], 0.0, 0.0 - body.opens[1]]
@@ -167,7 +179,10 @@ def bodies_glb(bodies: Sequence[FixtureBody], name: str, part: Mesh | None = Non
         "scenes": [{"name": name, "nodes": [0]}],
         "nodes": nodes,
         "meshes": meshes,
-        "materials": [material(kind) for kind in kinds],
+        "materials": [
+            *map(material, kinds),
+            *([COLOURED] if part is not None and part.colours is not None else []),
+        ],
         "accessors": scene.accessors,
         "bufferViews": scene.views,
         "buffers": [{"byteLength": len(scene.content)}],
@@ -196,6 +211,13 @@ def material(kind: BodyKind) -> dict[str, Any]:
     }
 
 
+# Of what has the colours of its vertices.
+COLOURED = {
+    "name": "coloured",
+    "pbrMetallicRoughness": {"baseColorFactor": [1.0] * 4, "metallicFactor": 0.0, "roughnessFactor": 0.9},
+}
+
+
 def linear(value: float) -> float:
     """Light from a value on a screen, both from 0 to 1, to six places (IEC 61966-2-1, sRGB)."""
     return round(value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4, 6)
@@ -216,6 +238,8 @@ class GlbBuffer:
             "POSITION": self.accessor(mesh.positions, VERTICES, **ends),
             "NORMAL": self.accessor(mesh.normals, VERTICES),
         }
+        if mesh.colours is not None:
+            attributes["COLOR_0"] = self.accessor(mesh.colours, VERTICES)
         indices = self.accessor(mesh.triangles.reshape(-1), ELEMENTS)
         return {"attributes": attributes, "indices": indices, "material": material}
 

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     import build123d
     import cadquery
 
+    from workhold.bending.figures import Bending
+    from workhold.bending.materials import ElasticMaterial
     from workhold.fixels.toolkit import Toolkit
     from workhold.model.requirements import Load, Zone
     from workhold.model.result import Result
@@ -734,6 +736,56 @@ class Fixture:
             safety=safety,
             weight=weight,
             zones=top_zones,
+        )
+
+    def bending(
+        self,
+        material: str | ElasticMaterial = "aluminium-6061",
+        *,
+        thickness: float | None = None,
+        jaw_force: float | None = None,
+        jaw: str | float = "screw",
+        faces: Sequence[int | str] = (),
+        part: str | Path | None = None,
+        supports: Supports | None = None,
+        best: int = 1,
+        clamp_force: float | None = None,
+    ) -> Bending:
+        """How far clamps bend the part, which springs back after the cut, and how far it gives at the cutter.
+
+        The loads and the program are those of the query. It takes the extra ``bending``, and some seconds.
+
+        Parameters
+        ----------
+        material : its name, such as "mild-steel", or Young's modulus in MPa and Poisson's ratio as "69000,0.33".
+        thickness : of the part in mm; that of its solid or of the query if None.
+        jaw_force : in N; that of the query if None, else the one that its loads need, else 1000 N.
+        jaw : what keeps the jaw closed under loads, see :meth:`load_cases`.
+        faces : that are to be cut, whose bending counts: their numbers, "top" and "bottom"; all if there are none.
+        part : the STEP file that the part was read from; a part without a solid needs none.
+        supports : pads under the part and a clamp on top, of what :meth:`supports` returns.
+        best : which of its sets of three.
+        clamp_force : of the clamp on top in N; what it needs if None.
+
+        Raises
+        ------
+        InputError
+            For a fixture that is not one of a result, a part of which nobody says how thick it is, a solid without its
+            STEP file, a part that cannot be meshed, and when the extra is not installed.
+        """
+        from workhold.presenting.bent import bend_fixture
+
+        return bend_fixture(
+            self,
+            material,
+            thickness=thickness,
+            jaw_force=jaw_force,
+            jaw=jaw,
+            faces=faces,
+            part=part,
+            supports=supports,
+            best=best,
+            clamp_force=clamp_force,
         )
 
 

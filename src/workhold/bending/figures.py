@@ -1,0 +1,177 @@
+"""How far a part is bent: what is told of one fixture."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from attrs import field, frozen
+from numpy.typing import NDArray
+
+from workhold.bending.materials import ElasticMaterial
+from workhold.bending.meshing import Surface
+from workhold.errors import InputError
+from workhold.model.quality import Figure
+from workhold.units import Unit
+
+__all__ = ["BENDING_FIGURES", "Bending", "BentPlace", "find_bending_figure"]
+
+Array = NDArray[np.float64]
+
+BENDING_FIGURES = (
+    Figure(
+        "clamp_distortion",
+        "mm",
+        False,
+        "How far clamping alone bends the faces to be cut, or any face: what springs back.",
+    ),
+    Figure("give", "mm", False, "How far the part gives at the cutter, or where a load acts."),
+)
+
+
+def find_bending_figure(name: str) -> Figure:
+    """The figure of a name as a user writes it.
+
+    Raises
+    ------
+    InputError
+        For a name that is none.
+
+    Examples
+    --------
+    >>> find_bending_figure("clamp-distortion").key
+    'clamp_distortion'
+    """
+    key = name.strip().lower().replace("-", "_").replace(" ", "_")
+    for figure in BENDING_FIGURES:
+        if figure.key == key:
+            return figure
+    known = " or ".join(figure.option for figure in BENDING_FIGURES)
+    raise InputError(f"{name[:40]!r} is no figure of bending to rank by: choose {known}.")
+
+
+@frozen
+class BentPlace:
+    """The largest movement of a kind.
+
+    Parameters
+    ----------
+    value : in mm, on the refined mesh.
+    error : twice as far as the value on the mesh before it was refined is from it, in mm.
+    at : where it is, in mm in the part's coordinates.
+    line, tool : of the program, where a cut makes it; None for others.
+    load : number of the load that makes it, from 1; None for others.
+    """
+
+    value: float
+    error: float
+    at: tuple[float, float, float]
+    line: int | None = None
+    tool: int | None = None
+    load: int | None = None
+
+    def words(self, unit: Unit) -> str:
+        """Size, error and place."""
+        place = ", ".join(unit.number(value, unit.decimals - 1) for value in self.at)
+        because = ""
+        if self.line is not None:
+            because = f", in line {self.line} with T{self.tool}"
+        elif self.load is not None:
+            because = f", under load {self.load}"
+        return f"{unit.small_text(self.value)} (give or take {unit.small_text(self.error)}) at ({place}){because}"
+
+    def as_data(self) -> dict[str, Any]:
+        """Plain data: lengths in mm."""
+        return {
+            "value": self.value,
+            "error": self.error,
+            "at": list(self.at),
+            "line": self.line,
+            "tool": self.tool,
+            "load": self.load,
+        }
+
+
+@frozen(eq=False)
+class Bending:
+    """How far one fixture bends its part.
+
+    Parameters
+    ----------
+    material : what the part is of.
+    jaw_force : in N, that it is reckoned with.
+    is_stated : whether nobody said how hard the jaws press, so that all is for each kN.
+    clamp_distortion : by clamping alone, where the part is laid against its locators as if it were stiff.
+    give : at the cutter, or where a load acts, with the pegs that bend; None where nothing acts.
+    elements : how many tetrahedra the refined mesh has.
+    faces : what of the part is to be cut, in words; None for all of it.
+    surface : of the refined mesh, in the part's coordinates.
+    moved : (N, 3) how far clamping moves each of its nodes, in mm.
+    pressed : (N,) whether something presses there, so that the dent is not counted.
+    """
+
+    material: ElasticMaterial
+    jaw_force: float
+    is_stated: bool
+    clamp_distortion: BentPlace
+    give: BentPlace | None
+    elements: int
+    faces: str | None
+    surface: Surface = field(repr=False)
+    moved: Array = field(repr=False)
+    pressed: NDArray[np.bool_] = field(repr=False)
+
+    @property
+    def figures(self) -> dict[str, float]:
+        """The figures by their keys, in mm."""
+        known = {"clamp_distortion": self.clamp_distortion.value}
+        return known if self.give is None else known | {"give": self.give.value}
+
+    def list_sentences(self, mover: str, unit: Unit) -> list[str]:
+        """What a machinist has to know.
+
+        Parameters
+        ----------
+        mover : what presses, such as "jaw".
+        """
+        force = f"At a {mover} force of {unit.force_words(self.jaw_force)}"
+        if self.is_stated:
+            force = f"For each {unit.force_words(self.jaw_force)} of {mover} force"
+        where = "the part" if self.faces is None else f"what is cut of the part ({self.faces})"
+        said = [f"{force} clamping bends {where} by {self.clamp_distortion.words(unit)}; that springs back."]
+        if self.give is not None:
+            said.append(f"It gives at the cutter by up to {self.give.words(unit)}.")
+        return said
+
+    def list_warnings(self, limit: float | None, unit: Unit) -> list[str]:
+        """What to beware of, a sentence each, above a limit in mm; nothing without one."""
+        if limit is None:
+            return []
+        more = f"more than {unit.small_text(limit)}"
+        found = []
+        if self.clamp_distortion.value > limit:
+            found.append(
+                f"Clamping bends the part by {unit.small_text(self.clamp_distortion.value)}, {more}: clamp it "
+                "less hard or where it is thicker, or leave some stock and clamp it anew for the last cut."
+            )
+        if self.give is not None and self.give.value > limit:
+            found.append(
+                f"The part gives by {unit.small_text(self.give.value)} at the cutter, {more}: support it "
+                "nearer to "
+                "the cut, or cut less at once there."
+            )
+        return found
+
+    def as_data(self) -> dict[str, Any]:
+        """Plain data: lengths in mm, forces in N."""
+        return {
+            "material": self.material.name,
+            "elastic_modulus": self.material.elastic_modulus,
+            "poisson": self.material.poisson,
+            "jaw_force": self.jaw_force,
+            "is_stated": self.is_stated,
+            "clamp_distortion": self.clamp_distortion.as_data(),
+            "give": None if self.give is None else self.give.as_data(),
+            "faces": self.faces,
+            "elements": self.elements,
+        }

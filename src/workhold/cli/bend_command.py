@@ -1,0 +1,272 @@
+"""The command ``bend``: how far clamps and cutters bend the part of the best fixtures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from attrs import frozen
+
+from workhold.cli.commands import option, print_remark, spread
+from workhold.cli.ending import INTERRUPTED, ask_to_stop
+from workhold.cli.options import SHOWN_UNIT, ResultArgument, asked_rank, result_with
+from workhold.cli.outputs import FORCE, JSON, asked_picture, print_json, refuse_output, write_picture
+from workhold.cli.progress import progress_bar
+from workhold.cli.setup_sheets import PART_FILE
+from workhold.cli.table import Table, print_tables
+from workhold.cli.values import (
+    length_unit,
+    optional_count,
+    optional_force,
+    optional_positive_length,
+    printed_unit,
+)
+from workhold.errors import InputError
+
+if TYPE_CHECKING:
+    from workhold.bending.asking import BendingQuestion
+    from workhold.bending.figures import Bending
+    from workhold.model.result import Result
+    from workhold.units import Unit
+
+__all__ = ["bend"]
+
+PART, CLAMPING, OUTPUT = "The part", "Clamping", "Results"
+# How many of the best fixtures are bent where nobody says.
+USUAL = 20
+
+
+@frozen
+class BendWords:
+    """The options of what is bent and how hard, as typed; None for those not given."""
+
+    material: str = option(
+        PART,
+        "NAME",
+        "What the part is of: aluminium-6061, aluminium-7075, mild-steel, steel-4140, stainless-304, brass, cast-iron, pom, "
+        "pa6 or peek; or Young's modulus in MPa and Poisson's ratio, such as 69000,0.33.",
+        default="aluminium-6061",
+    )
+    thickness: str | None = option(PART, "LENGTH", "Thickness of the part; that of the result if not given.")
+    part: str | None = PART_FILE
+    cut: str | None = option(
+        PART,
+        "FACES",
+        "Faces to be cut, whose bending counts: numbers of faces, top and bottom, such as top,3,5; all if not given.",
+    )
+    jaw_force: str | None = option(
+        CLAMPING,
+        "FORCE",
+        "Force of the jaws or clamps in N; that of the result if not given, else what its loads need, else 1000 N.",
+    )
+    jaw: str = option(
+        CLAMPING,
+        "screw|constant|NUMBER",
+        "What keeps the jaw closed under loads, as of design.",
+        default="screw",
+    )
+
+
+@frozen
+class BentWords:
+    """The options of what is said of bending, as typed; None for those not given."""
+
+    best: str | None = option(OUTPUT, "K", "So many of the best fixtures; 20 if not given.")
+    rank_by: str | None = option(
+        OUTPUT, "FIGURE", "Order these by clamp-distortion or give, the least first; as listed if not given."
+    )
+    bend: str | None = option(OUTPUT, "LENGTH", "Warn of a part that bends or gives by more.")
+    draw: str | None = option(
+        OUTPUT, "FILE", "Draw the first of these, coloured and bent, into this file (.png or .svg)."
+    )
+    glb: str | None = option(
+        OUTPUT, "FILE", "Write that one in three dimensions, coloured and bent, into this file (.glb)."
+    )
+    force: bool = FORCE
+
+
+@spread
+def bend(
+    result_file: ResultArgument,
+    number: Annotated[
+        str | None,
+        typer.Argument(metavar="[N]", help="Rank of one fixture; the best ones if not given."),
+    ] = None,
+    *,
+    words: BendWords,
+    said: BentWords,
+    unit: str | None = SHOWN_UNIT,
+    json_: bool = JSON,
+) -> None:
+    """Report how far clamps bend the part of fixture N, or of the best fixtures, and how far it gives at the cutter.
+
+    What clamps bend springs back after the cut: a face that was cut flat is no longer flat. Loads and program are
+    those of the result. A part that was read from a STEP file needs this file again, with --part. This takes the
+    extra "bending", which is NGSolve.
+
+    Example: workhold bend part.json --material aluminium-6061 --thickness 12 --jaw-force 3000 --bend 0.02
+    """
+    shown = length_unit(unit)
+    rank = None if number is None else asked_rank(number)
+    if rank is not None and said.best is not None:
+        raise InputError("--best counts fixtures, and one is named: leave one of them out.")
+    picture = asked_picture(said.draw, (result_file, words.part), said.force)
+    model = None if said.glb is None else Path(said.glb)
+    if model is not None:
+        if model.suffix.lower() != ".glb":
+            raise InputError(f"--glb {model} is not the name of a GLB file: let the name end in .glb.")
+        refuse_output(model, (result_file, words.part), said.force)
+    limit = optional_positive_length("--bend", said.bend, shown)
+    asked = read_question(words, shown)
+    figure = read_figure(said.rank_by)
+    result, rows = read_rows(result_file, rank, optional_count("--best", said.best))
+    from workhold.presenting.assembly import shape_in
+    from workhold.presenting.bent import make_shape_to_bend
+
+    query = result.query
+    shape = shape_in(words.part, result.workpiece)
+    whole = make_shape_to_bend(query, asked.height_of(query), shape)
+    from workhold.bending.asking import find_bendings
+
+    with (
+        ask_to_stop("what is found so far is told") as cancel,
+        progress_bar("Bending", f"of {len(rows)}", "Meshing the part") as progress,
+    ):
+        found = find_bendings(result, rows, whole, asked, cancel, progress)
+    ranked = rank_bendings(list(zip(rows, found, strict=False)), figure)
+    printed = printed_unit(unit, result.toolkit)
+    written = write_first(ranked, result, picture, model, printed)
+    if json_:
+        fixtures = [{"rank": row + 1, **one.as_data()} for row, one in ranked]
+        print_json(fixtures=fixtures, complete=not cancel.is_set(), written=written)
+    else:
+        print_tables(*tabulate(ranked, result, asked, printed), *(f"Written to {path}." for path in written))
+    for row, one in ranked:
+        for sentence in one.list_warnings(limit, printed):
+            print_remark(f"fixture {row + 1}: {sentence}")
+    if cancel.is_set():
+        raise typer.Exit(INTERRUPTED)
+
+
+def read_question(words: BendWords, unit: Unit) -> BendingQuestion:
+    """Read what was typed."""
+    from workhold.bending.asking import BendingQuestion
+    from workhold.bending.materials import find_material
+    from workhold.statics.loads import jaw_stiffness
+
+    faces = tuple(
+        int(one) if one.isdecimal() else one.lower()
+        for one in map(str.strip, (words.cut or "").split(","))
+        if one
+    )
+    return BendingQuestion(
+        find_material(words.material),
+        optional_positive_length("--thickness", words.thickness, unit),
+        optional_force("--jaw-force", words.jaw_force),
+        faces,
+        jaw_stiffness(words.jaw),
+    )
+
+
+def read_figure(name: str | None) -> str | None:
+    """The key of the figure to rank by; None where none is given."""
+    from workhold.bending.figures import find_bending_figure
+
+    return None if name is None else find_bending_figure(name).key
+
+
+def read_rows(result_file: str, rank: int | None, best: int | None) -> tuple[Result, list[int]]:
+    """The result, and the indices of the fixtures that are bent."""
+    if rank is not None:
+        return result_with(result_file, rank), [rank - 1]
+    from workhold.files.result.reader import read_result
+
+    result = read_result(result_file)
+    if not len(result):
+        raise InputError(f"{result_file} lists no fixture: there is nothing to bend.")
+    return result, list(range(min(best or USUAL, len(result))))
+
+
+def rank_bendings(found: list[tuple[int, Bending]], figure: str | None) -> list[tuple[int, Bending]]:
+    """Order fixtures by a figure, the least first; equal ones as they are listed.
+
+    Refuses a figure that is not known.
+    """
+    if figure is None:
+        return found
+    if any(figure not in one.figures for _, one in found):
+        raise InputError(
+            "there is nothing to rank by the give: the result has neither loads nor a program with forces."
+        )
+    return sorted(found, key=lambda pair: pair[1].figures[figure])
+
+
+def write_first(
+    ranked: list[tuple[int, Bending]], result: Result, picture: Path | None, model: Path | None, unit: Unit
+) -> list[str]:
+    """Write the pictures of the first fixture; the paths of what was written."""
+    if not ranked:
+        return []
+    row, one = ranked[0]
+    if picture is not None:
+        from workhold.drawing.bent_part import picture_of_bending
+        from workhold.drawing.scene import LengthUnit
+
+        lengths = LengthUnit(unit, unit.decimals)
+        title = f"How clamping bends {result.workpiece.name}, fixture {row + 1}"
+        write_picture(
+            picture,
+            picture_of_bending(one, title, lengths, one.list_sentences(result.toolkit.moving.noun, unit)),
+        )
+    if model is not None:
+        from workhold.files.atomic import write_bytes
+        from workhold.presenting.bent import bent_glb
+
+        write_bytes(model, bent_glb(result[row], one))
+    return [str(path) for path in (picture, model) if path is not None]
+
+
+def tabulate(
+    ranked: list[tuple[int, Bending]], result: Result, asked: BendingQuestion, unit: Unit
+) -> list[Table | str]:
+    """Say how far each fixture bends its part."""
+    small, mover = unit.small_name, result.toolkit.moving.noun
+    if not ranked:
+        return []
+    has_give = any(one.give is not None for _, one in ranked)
+    table = Table(
+        (
+            ">fixture",
+            f">{mover} force {unit.force}",
+            f">clamping bends {small}",
+            ">±",
+            f"at {unit.abbreviation}",
+            *((f">gives {small}", ">±", "at") if has_give else ()),
+        )
+    )
+
+    def place(at: tuple[float, float, float]) -> str:
+        return ", ".join(unit.number(value, max(unit.decimals - 2, 1)) for value in at)
+
+    for row, one in ranked:
+        bent, give = one.clamp_distortion, one.give
+        cells = [str(row + 1), f"{one.jaw_force / unit.newtons:.0f}", unit.small_number(bent.value)]
+        cells += [unit.small_number(bent.error), place(bent.at)]
+        if give is not None:
+            because = f"line {give.line}" if give.line is not None else f"load {give.load}"
+            cells += [
+                unit.small_number(give.value),
+                unit.small_number(give.error),
+                f"{because}: {place(give.at)}",
+            ]
+        table.add_row(*cells)
+    first = ranked[0][1]
+    stated = "Nobody said how hard the jaws press: all is for each 1000 N.\n" if first.is_stated else ""
+    return [
+        f"How far {result.workpiece.name} of {asked.material.words} is bent",
+        "",
+        table,
+        f"{stated}{first.elements:,} elements. What clamping bends springs back; dents under contacts do not count. "
+        "± is what the mesh is unsure of.",
+    ]

@@ -1,0 +1,149 @@
+"""A part coloured by how far it is bent, and drawn bent many times as far: seen from above at a slant.
+
+The surface of the mesh is drawn from back to front, each triangle in the colour of its middle. What presses on the part
+dents it there, which no mesh tells; such places are grey. The largest movement that counts is marked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import cos, floor, log10, radians, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.bending.figures import Bending
+from workhold.drawing.panel import TextColumn
+from workhold.drawing.scene import UNITS_PER_MM, Box, LengthUnit, Scene, text_width
+
+__all__ = ["LARGEST_SHOWN", "colours_of", "draw_bent_part", "exaggeration_of", "picture_of_bending"]
+
+Array = NDArray[np.float64]
+# Of the part's size, the largest movement as it is drawn.
+LARGEST_SHOWN = 0.05
+# From where it is seen: degrees about the upright, and above the level.
+ROUND, ABOVE = 30.0, 35.0
+# Colours from nothing to the most, from dark blue to yellow, of equal steps of lightness (B. Jin, N. Heitmann, S. van
+# der Walt, "viridis", CC0), and of what is pressed.
+STOPS = np.array([(68, 1, 84), (59, 82, 139), (33, 145, 140), (94, 201, 98), (253, 231, 37)]) / 255.0
+PRESSED = np.array([0.72, 0.72, 0.72])
+# The light that falls on what is seen from the side, of what falls on what is seen from above.
+SHADED = 0.25
+STEPS = 5
+# Size of a picture by itself, in mm.
+PICTURE = (180.0, 130.0)
+
+
+def exaggeration_of(bending: Bending) -> float:
+    """How many times as far as it is the part is drawn bent: 1, 2 or 5 times a power of ten.
+
+    The largest movement is then at most a twentieth of the part's size.
+    """
+    size = float(np.ptp(bending.surface.nodes, axis=0).max())
+    most = bending.clamp_distortion.value
+    if most <= 0.0:
+        return 1.0
+    times = LARGEST_SHOWN * size / most
+    power = 10.0 ** floor(log10(times))
+    return max(1.0, next(step * power for step in (5.0, 2.0, 1.0) if step * power <= times))
+
+
+def colours_of(bending: Bending) -> Array:
+    """Red, green and blue (N, 3) of the nodes, from 0 to 1 as on a screen."""
+    most = max(bending.clamp_distortion.value, 1e-12)
+    share = np.clip(np.linalg.norm(bending.moved, axis=1) / most, 0.0, 1.0)
+    colours = colours_at(share)
+    colours[bending.pressed] = PRESSED
+    return colours
+
+
+def colours_at(share: Array) -> Array:
+    """The colours (N, 3) of shares (N,) of the largest movement."""
+    places = np.linspace(0.0, 1.0, len(STOPS))
+    return np.stack([np.interp(share, places, STOPS[:, k]) for k in range(3)], axis=1)
+
+
+def as_hex(colour: Array) -> str:
+    """A colour as SVG writes it."""
+    return "#" + "".join(f"{round(255 * min(max(float(one), 0.0), 1.0)):02x}" for one in colour)
+
+
+def seen_from() -> Array:
+    """The directions (3, 3) in the part's frame of right, up and towards the eye."""
+    turn, rise = radians(ROUND), radians(ABOVE)
+    right = np.array([cos(turn), sin(turn), 0.0])
+    back = np.array([-sin(turn), cos(turn), 0.0])
+    up = sin(rise) * back + np.array([0.0, 0.0, cos(rise)])
+    return np.stack([right, up, np.cross(right, up)])
+
+
+def draw_bent_part(scene: Scene, box: Box, bending: Bending, lengths: LengthUnit) -> None:
+    """Draw the part, bent and coloured, with its scale, into a box of a page."""
+    surface, times = bending.surface, exaggeration_of(bending)
+    scale_height = 34.0
+    room = Box(box.x0, box.y0, box.x1, box.y1 - scale_height)
+    frame = seen_from()
+    flat = (surface.nodes + times * bending.moved) @ frame.T
+    low, high = flat[:, :2].min(axis=0), flat[:, :2].max(axis=0)
+    factor = min(room.width / (high[0] - low[0]), room.height / (high[1] - low[1]))
+    middle = (low + high) / 2
+    x = (room.x0 + room.x1) / 2 + factor * (flat[:, 0] - middle[0])
+    y = (room.y0 + room.y1) / 2 - factor * (flat[:, 1] - middle[1])
+    shown = surface.triangles
+    corners = flat[shown[:, :3]]
+    facing = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    facing /= np.maximum(np.linalg.norm(facing, axis=1), 1e-30)[:, None]
+    is_seen = facing[:, 2] > 0.0
+    depth = corners[:, :, 2].mean(axis=1)
+    colours = colours_of(bending)[shown].mean(axis=1)
+    upward = np.clip(surface.normals @ np.array([0.35, -0.25, 0.9]), 0.0, 1.0)
+    light = 1.0 - SHADED * (1.0 - upward)
+    group = scene.group("bent")
+    for number in np.flatnonzero(is_seen)[np.argsort(depth[is_seen])].tolist():
+        fill = as_hex(colours[number] * light[number])
+        points = [(float(x[node]), float(y[node])) for node in shown[number, :3]]
+        group.polygon(points, fill, fill, 0.4)
+    mark = np.linalg.norm(surface.nodes - np.array(bending.clamp_distortion.at), axis=1).argmin()
+    draw_mark(scene, (float(x[mark]), float(y[mark])))
+    draw_scale(scene, Box(box.x0, box.y1 - scale_height + 8, box.x1, box.y1), bending, lengths, times)
+
+
+def draw_mark(scene: Scene, at: tuple[float, float]) -> None:
+    """A ring around the largest movement."""
+    scene.circle(at, 6.0, stroke="#ffffff", width=3.5)
+    scene.circle(at, 6.0, stroke="#d50000", width=1.8)
+
+
+def draw_scale(scene: Scene, box: Box, bending: Bending, lengths: LengthUnit, times: float) -> None:
+    """The colours with what they mean, and how many times as far as it is the part is drawn bent."""
+    width, pieces = min(200.0, 0.45 * box.width), 50
+    for k in range(pieces):
+        fill = as_hex(colours_at(np.array([(k + 0.5) / pieces]))[0])
+        scene.rectangle(
+            Box(box.x0 + k * width / pieces, box.y0, box.x0 + (k + 1) * width / pieces + 0.3, box.y0 + 8),
+            fill,
+        )
+    most = bending.clamp_distortion.value
+    unit = lengths.unit
+    for k in range(STEPS):
+        share = k / (STEPS - 1)
+        words = unit.small_number(share * most) + (f" {unit.small_name}" if k == STEPS - 1 else "")
+        left = box.x0 + share * width - (0.0 if k == 0 else text_width(words, 9) / 2)
+        scene.text((left, box.y0 + 19), words, 9)
+    said = f"Bent {times:,.0f} times as far as it is." if times > 1 else "Bent as far as it is."
+    scene.text((box.x0 + width + 40, box.y0 + 8), said, 10, bold=True)
+    scene.text((box.x0 + width + 40, box.y0 + 20), "Ring: most. Grey: pressed, not counted.", 9)
+
+
+def picture_of_bending(bending: Bending, title: str, lengths: LengthUnit, words: Sequence[str]) -> str:
+    """A picture by itself, as SVG text, with sentences below it."""
+    width, height = (UNITS_PER_MM * side for side in PICTURE)
+    scene = Scene.page((width, height), title)
+    margin = 20.0
+    scene.text((margin, margin + 8), title, 13, bold=True)
+    below = height - 62.0
+    draw_bent_part(scene, Box(margin, margin + 20, width - margin, below - 6), bending, lengths)
+    column = TextColumn(scene.group("words"), margin, below + 4, width - 2 * margin)
+    for sentence in words:
+        column.paragraph(sentence, 10)
+    return scene.svg()

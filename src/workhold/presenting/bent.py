@@ -1,0 +1,162 @@
+"""How far the part of a fixture is bent, from its outline and thickness or from its STEP file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from workhold.bending.asking import BendingQuestion, find_bendings
+from workhold.bending.figures import Bending
+from workhold.bending.holding import PadsBelow
+from workhold.bending.materials import ElasticMaterial, find_material
+from workhold.bending.shape import KeptShape, PartToBend, PrismShape
+from workhold.drawing.bent_part import colours_of, exaggeration_of
+from workhold.errors import InputError
+from workhold.files.glb import Mesh, bodies_glb, surface_mesh
+from workhold.files.step.part_shape import PartShape
+from workhold.model.bodies import BodySizes, list_fixture_bodies
+from workhold.model.pose import Pose
+from workhold.presenting.assembly import shape_in
+from workhold.statics.loads import jaw_stiffness
+
+if TYPE_CHECKING:
+    from workhold.model.fixture import Fixture
+    from workhold.model.query import Query
+    from workhold.model.support_triples import Supports
+
+__all__ = ["bend_fixture", "bend_sheet", "bent_glb", "bent_mesh", "find_pads_below", "make_shape_to_bend"]
+
+
+def make_shape_to_bend(query: Query, height: float, shape: PartShape | None) -> PartToBend:
+    """The shape of a query's part: as its STEP file has it, or a prism of a height in mm.
+
+    Raises
+    ------
+    InputError
+        For a part that was read from a solid, without its shape.
+    """
+    if shape is not None:
+        return KeptShape(shape.kept)
+    if query.workpiece.solid is not None:
+        raise InputError(
+            "how far a solid bends depends on all of its shape, which a result does not have: give its STEP file as well."
+        )
+    return PrismShape(query.workpiece, height)
+
+
+def find_pads_below(
+    supports: Supports, best: int, shape: PartShape | None, clamp_force: float | None
+) -> PadsBelow:
+    """The pads and the clamp of a set of three supports, with the force that it needs, or another in N."""
+    if not 1 <= best <= len(supports.triples):
+        raise InputError(f"there is no set {best} of supports: choose from 1 to {len(supports.triples)}.")
+    triple, request = supports.triples[best - 1], supports.request
+    x, y = triple.clamp.at
+    top = request.thickness if shape is None else find_top_over(shape, x, y)
+    force = triple.clamp.clamp_needed if clamp_force is None else clamp_force
+    pads = np.array([(pad.x, pad.y) for pad in triple.supports])
+    return PadsBelow(pads, request.pad_radius, np.array([x, y, top]), request.tip_radius, force)
+
+
+def find_top_over(shape: PartShape, x: float, y: float) -> float:
+    """The height in mm of the highest face over a point."""
+    a, b, c = np.moveaxis(shape.positions[shape.triangles], 1, 0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        area = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (c[:, 0] - a[:, 0]) * (b[:, 1] - a[:, 1])
+        second = ((x - a[:, 0]) * (c[:, 1] - a[:, 1]) - (c[:, 0] - a[:, 0]) * (y - a[:, 1])) / area
+        third = ((b[:, 0] - a[:, 0]) * (y - a[:, 1]) - (x - a[:, 0]) * (b[:, 1] - a[:, 1])) / area
+    over = (second >= -1e-9) & (third >= -1e-9) & (second + third <= 1 + 1e-9)
+    heights = a[:, 2] + second * (b[:, 2] - a[:, 2]) + third * (c[:, 2] - a[:, 2])
+    if not over.any():
+        raise InputError(
+            "the clamp on top stands beside the part: give the STEP file that belongs to the result."
+        )
+    return float(heights[over].max())
+
+
+def bend_fixture(
+    fixture: Fixture,
+    material: str | ElasticMaterial,
+    *,
+    thickness: float | None = None,
+    jaw_force: float | None = None,
+    jaw: str | float = "screw",
+    faces: Sequence[int | str] = (),
+    part: str | Path | None = None,
+    supports: Supports | None = None,
+    best: int = 1,
+    clamp_force: float | None = None,
+) -> Bending:
+    """Say how far a part is bent, see :meth:`workhold.Fixture.bending`."""
+    listed = fixture.listing
+    shape = shape_in(part, listed.result.workpiece)
+    below = {}
+    if supports is not None:
+        below[listed.row] = find_pads_below(supports, best, shape, clamp_force)
+    asked = BendingQuestion(
+        find_material(material) if isinstance(material, str) else material,
+        thickness,
+        jaw_force,
+        tuple(faces),
+        jaw_stiffness(jaw),
+        below,
+    )
+    query = listed.result.query
+    whole = make_shape_to_bend(query, asked.height_of(query), shape)
+    return find_bendings(listed.result, [listed.row], whole, asked)[0]
+
+
+def bend_sheet(fixture: Fixture, settings: dict[str, Any], shape: PartShape | None) -> Bending | None:
+    """What a setup sheet says of bending; None where its question names no material.
+
+    Parameters
+    ----------
+    settings : the fields of a :class:`workhold.asking.sheet.SheetQuestion`.
+    shape : of the part, as its own file has it; None where a prism stands for it.
+    """
+    if settings.get("material") is None:
+        return None
+    listed = fixture.listing
+    asked = BendingQuestion(
+        find_material(settings["material"]),
+        settings["thickness"],
+        settings["jaw_force"],
+        stiffness=jaw_stiffness(settings["jaw"]),
+    )
+    query = listed.result.query
+    whole = make_shape_to_bend(query, asked.height_of(query), shape)
+    return find_bendings(listed.result, [listed.row], whole, asked)[0]
+
+
+def bent_mesh(bending: Bending, pose: Pose) -> Mesh:
+    """The part as it is bent, coloured by how far and bent many times as far, in the pose of a fixture."""
+    surface, times = bending.surface, exaggeration_of(bending)
+    places = surface.nodes + times * bending.moved
+    turned = np.column_stack([pose.apply(places[:, :2]), places[:, 2]])
+    a, b, c, ab, bc, ca = surface.triangles.T
+    small = np.concatenate(
+        [np.stack(three, axis=1) for three in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))]
+    )
+    corners = turned[small]
+    facing = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    facing /= np.maximum(np.linalg.norm(facing, axis=1), 1e-30)[:, None]
+    # Each triangle has vertices of its own, so that edges stay sharp.
+    return surface_mesh(
+        corners.reshape(-1, 3),
+        np.repeat(facing, 3, axis=0),
+        np.arange(3 * len(small)).reshape(-1, 3),
+        colours_of(bending)[small].reshape(-1, 3),
+    )
+
+
+def bent_glb(fixture: Fixture, bending: Bending) -> bytes:
+    """A GLB file of a fixture with its part coloured and bent, many times as far as it is."""
+    result = fixture.listing.result
+    height = float(bending.surface.nodes[:, 2].max())
+    sizes = BodySizes.of(result.workpiece, thickness=height)
+    bodies = list_fixture_bodies(fixture, result.workpiece, result.toolkit, sizes)
+    name = f"{bodies[0].name}, bent {exaggeration_of(bending):,.0f} times as far"
+    return bodies_glb(bodies, name, bent_mesh(bending, fixture.pose))

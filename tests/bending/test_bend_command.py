@@ -1,0 +1,108 @@
+"""The command ``bend``: what it prints, draws, writes and refuses."""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from typer.testing import CliRunner, Result
+
+import workhold
+from workhold import Load
+from workhold.bending import meshing
+from workhold.cli.main import app
+
+pytest.importorskip("ngsolve", reason="the extra 'bending' is not installed")
+
+
+@pytest.fixture(autouse=True)
+def coarse(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(meshing, "TETRAHEDRA", 150)
+
+
+@pytest.fixture(scope="module")
+def result_file(tmp_path_factory: pytest.TempPathFactory) -> str:
+    part = workhold.Workpiece.from_points("plate", [(0, 0), (80, 0), (80, 30), (50, 60), (0, 60)])
+    vise = workhold.Vise(pitch=10, columns=3, peg_radius=3)
+    result = workhold.design(part, vise, best=4, loads=[Load(points=[(60, 20)], force=150)])
+    path = tmp_path_factory.mktemp("bending") / "plate.json"
+    workhold.save(result, path)
+    return str(path)
+
+
+def open_glb(content: bytes) -> tuple[dict[str, Any], Callable[[int], NDArray[np.float32]]]:
+    """The document of a GLB file, and its vectors by the numbers of their accessors."""
+    length = struct.unpack("<I", content[12:16])[0]
+    document = json.loads(content[20 : 20 + length])
+    data = content[28 + length :]
+
+    def values(number: int) -> NDArray[np.float32]:
+        view = document["bufferViews"][document["accessors"][number]["bufferView"]]
+        start = view["byteOffset"]
+        return np.frombuffer(data[start : start + view["byteLength"]], "<f4").reshape(-1, 3)
+
+    return document, values
+
+
+def run(*words: str) -> Result:
+    return CliRunner().invoke(app, ["bend", *words])
+
+
+def test_the_best_fixtures_are_bent_and_ordered(result_file: str, tmp_path: Path) -> None:
+    picture, model = tmp_path / "bent.png", tmp_path / "bent.glb"
+    outcome = run(
+        result_file, "--thickness", "8", "--jaw-force", "3000", "--rank-by", "clamp-distortion", "--bend", "0.0001",
+        "--draw", str(picture), "--glb", str(model), "--json",
+    )  # fmt: skip
+    assert outcome.exit_code == 0, outcome.stderr
+    told = json.loads(outcome.stdout)
+    bends = [one["clamp_distortion"]["value"] for one in told["fixtures"]]
+    assert sorted(one["rank"] for one in told["fixtures"]) == [1, 2, 3, 4]
+    assert bends == sorted(bends) and bends[0] < bends[-1]
+    assert all(one["give"]["load"] == 1 and one["jaw_force"] == 3000.0 for one in told["fixtures"])
+    assert told["written"] == [str(picture), str(model)] and told["complete"]
+    assert picture.read_bytes()[:4] == b"\x89PNG"
+    assert outcome.stderr.count("Clamping bends the part by") == 4
+
+
+def test_the_model_in_three_dimensions_has_colours(result_file: str, tmp_path: Path) -> None:
+    model = tmp_path / "bent.glb"
+    assert run(result_file, "2", "--thickness", "8", "--glb", str(model)).exit_code == 0
+    document, values = open_glb(model.read_bytes())
+    (part,) = document["meshes"][0]["primitives"]
+    colours = values(part["attributes"]["COLOR_0"])
+    assert len(colours) == len(values(part["attributes"]["POSITION"]))
+    assert colours.min() >= 0.0 and colours.min() < 0.1
+    assert colours.max() <= 1.0 and colours.max() > 0.6
+    assert document["materials"][part["material"]]["pbrMetallicRoughness"]["baseColorFactor"] == [1.0] * 4
+    assert "times as far" in document["scenes"][0]["name"]
+
+
+def test_a_table_says_it_in_words(result_file: str) -> None:
+    outcome = run(result_file, "1", "--thickness", "8")
+    assert outcome.exit_code == 0, outcome.stderr
+    assert "clamping bends µm" in outcome.stdout and "load 1" in outcome.stdout
+    assert "springs back" in outcome.stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ([], "give its thickness"),
+        (["--thickness", "8", "--material", "cheese"], "'cheese' is not known"),
+        (["--thickness", "8", "--rank-by", "tilt"], "no figure of bending to rank by"),
+        (["--thickness", "8", "--cut", "top,99"], "face 99 of plate does not exist"),
+        (["1", "--best", "3", "--thickness", "8"], "leave one of them out"),
+        (["--thickness", "8", "--glb", "x.stl"], "let the name end in .glb"),
+        (["--thickness", "8", "--part", "none.step"], "none.step"),
+    ],
+)
+def test_what_cannot_be_is_refused_in_a_sentence(result_file: str, words: list[str], said: str) -> None:
+    outcome = run(result_file, *words)
+    assert outcome.exit_code == 2 and said in outcome.stderr

@@ -1,0 +1,282 @@
+"""What holds a part as loads on an elastic body, and how far fixtures bend theirs."""
+
+from __future__ import annotations
+
+import sys
+from functools import cache
+
+import numpy as np
+import pytest
+
+import workhold
+from bent_bodies import METAL, MODULUS, RATIO
+from workhold import InputError, Load, Result
+from workhold.bending import asking, library, meshing
+from workhold.bending.asking import BendingQuestion, SolvedLoads, UnitLoads, find_bendings, measure_distances
+from workhold.bending.elastic import ElasticBody
+from workhold.bending.figures import find_bending_figure
+from workhold.bending.holding import ElasticHold, hold_of_fixture
+from workhold.bending.materials import MATERIALS, ElasticMaterial, find_material
+from workhold.bending.meshing import make_mesh, refine_mesh
+from workhold.bending.patches import LoadPatch, make_foot
+from workhold.bending.shape import PrismShape
+from workhold.statics.pins import compute_deflections
+from workhold.units import INCH, MILLIMETRE
+
+pytest.importorskip("ngsolve", reason="the extra 'bending' is not installed")
+
+HIGH = 12.0
+
+
+@pytest.fixture(autouse=True)
+def coarse(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Meshes of fewer elements than users have, since what must hold does so on every one."""
+    monkeypatch.setattr(meshing, "TETRAHEDRA", 150)
+
+
+CORNERS = [(0, 0), (80, 0), (80, 30), (50, 60), (0, 60)]
+TOOLKITS = {
+    "vise": workhold.Vise(pitch=10, columns=3, peg_radius=3),
+    "plate": workhold.Plate(pitch=10, peg_radius=3, columns=12, rows=10),
+    "two clamps": workhold.Plate(pitch=20, peg_radius=3, columns=8, rows=6, clamps=2),
+    "fence": workhold.Fence(pitch=10, peg_radius=3, wall_offset=10),
+    "plain vise": workhold.PlainVise(jaw_width=150, max_opening=120, jaw_height=40),
+}
+
+
+@cache
+def result_in(name: str, high: float = HIGH, force: float = 3000.0) -> Result:
+    """The best fixtures of a plate with a slanting corner, under a load."""
+    part = workhold.Workpiece.from_points("plate", CORNERS)
+    loads = [Load(points=[(60, 20)], force=150)]
+    return workhold.design(part, TOOLKITS[name], best=3, thickness=high, loads=loads, jaw_force=force)
+
+
+@cache
+def body_of(high: float = HIGH) -> ElasticBody:
+    part = workhold.Workpiece.from_points("plate", CORNERS)
+    return ElasticBody(make_mesh(PrismShape(part, high)), METAL)
+
+
+def foot_of(body: ElasticBody) -> LoadPatch:
+    surface = body.surface
+    foot = make_foot(surface.nodes, surface.triangles, surface.normals, 0.0)
+    assert foot is not None
+    return foot
+
+
+def hold_in(name: str, **further: object) -> ElasticHold:
+    result = result_in(name)
+    return hold_of_fixture(
+        result[0],
+        result.workpiece,
+        result.toolkit,
+        foot_of(body_of()),
+        jaw_force=3000.0,
+        height=HIGH,
+        **further,
+    )
+
+
+def bent(result: Result, high: float = HIGH, **asked: object) -> asking.Bending:
+    question = BendingQuestion(METAL, high, **asked)
+    return find_bendings(result, [0], PrismShape(result.workpiece, high), question)[0]
+
+
+@pytest.mark.parametrize("name", TOOLKITS)
+def test_clamping_balances_and_every_load_is_answered(name: str) -> None:
+    hold = hold_in(name)
+    wrenches = np.array([one.wrench for one in hold.columns]).T
+    size = np.array([1.0, 1.0, 1.0, *[1.0 / hold.size] * 3])
+    assert np.abs(size * (wrenches @ hold.clamping)).max() < 1e-6 * 3000.0
+    unanswered = wrenches @ hold.answers + np.eye(6)
+    assert np.abs(size[:, None] * unanswered / size).max() < 1e-9
+
+
+@pytest.mark.parametrize("name", ["vise", "plate", "two clamps", "fence"])
+def test_pegs_press_as_hard_as_the_fixture_says(name: str) -> None:
+    result, hold = result_in(name), hold_in(name)
+    pegs = result[0].pegs
+    assert hold.clamping[: len(pegs)] == pytest.approx([3000.0 * peg.force for peg in pegs], rel=1e-6)
+
+
+@pytest.mark.parametrize("name", TOOLKITS)
+def test_a_rigid_motion_of_the_part_is_taken_out(name: str) -> None:
+    """Whatever moves the whole part leaves its contacts where they were."""
+    hold = hold_in(name)
+    motion = np.array([0.01, -0.02, 0.03, 1e-4, -2e-4, 3e-4])
+    readings = [np.array([read.wrench @ motion for read in level]) for level in hold.locating]
+    found = hold.find_motion(readings, np.zeros(len(readings[0])))
+    there = [np.array([read.wrench @ (motion + found) for read in level]) for level in hold.locating]
+    moved = hold.movers @ np.linalg.lstsq(hold.movers, there[0], rcond=None)[0] if hold.movers.size else 0.0
+    assert np.abs(there[0] - moved).max() < 1e-9
+    scale = np.abs([read.wrench for read in hold.locating[1]]).max()
+    assert np.abs(there[1]).max() < 1e-9 * scale
+
+
+@pytest.mark.parametrize("name", ["vise", "plate", "plain vise"])
+def test_twice_the_force_bends_twice_as_far(name: str) -> None:
+    once, twice = (bent(result_in(name), jaw_force=force) for force in (1000.0, 2000.0))
+    assert twice.clamp_distortion.value == pytest.approx(2 * once.clamp_distortion.value, rel=1e-9)
+    assert twice.give is not None and once.give is not None
+    assert twice.give.value == pytest.approx(once.give.value, rel=1e-9)
+
+
+def test_a_thicker_part_is_bent_less_and_gives_less() -> None:
+    found = [bent(result_in("vise", 14.0), high, jaw_force=3000.0) for high in (6.0, 9.0, 14.0)]
+    bends = [one.clamp_distortion.value for one in found]
+    assert bends == sorted(bends, reverse=True)
+
+
+def test_a_bar_between_flat_jaws_is_squeezed_as_the_formula_says() -> None:
+    """Its far end moves by F L / (E A), less what is near to the jaw and not counted."""
+    bar = workhold.Workpiece.from_points("bar", [(0, 0), (30, 0), (30, 80), (0, 80)])
+    vise = workhold.PlainVise(jaw_width=150, max_opening=120, jaw_height=40)
+    result = workhold.design(bar, vise, thickness=20, best=8)
+    row = next(k for k, one in enumerate(result) if one.hold.opening == pytest.approx(80.0))
+    question = BendingQuestion(METAL, 20.0, jaw_force=6000.0)
+    found = find_bendings(result, [row], PrismShape(bar, 20.0), question)[0]
+    shorter = 6000.0 * 80.0 / (MODULUS * 30 * 20)
+    wider = 6000.0 * RATIO * 15.0 / (MODULUS * 30 * 20)
+    assert shorter * 0.9 < found.clamp_distortion.value < np.hypot(shorter, 1.5 * wider) * 1.02
+
+
+def test_solved_at_once_is_what_is_superposed() -> None:
+    body, hold, units = body_of(), hold_in("vise"), UnitLoads()
+    numbers = units.add(hold.columns)
+    levels = [
+        SolvedLoads(body, units, BendingQuestion(METAL, HIGH), HIGH, result_in("vise").query)
+        for _ in range(2)
+    ]
+    for number in numbers:
+        levels[1].solve(number)
+    at_once, superposed = (level.add_up(numbers, hold.clamping) for level in levels)
+    assert not levels[0].responses
+    assert np.abs(at_once - superposed).max() <= 1e-10 * np.abs(at_once).max()
+
+
+def test_unit_loads_that_fixtures_share_are_solved_once() -> None:
+    hold, units = hold_in("vise"), UnitLoads()
+    assert units.add(hold.columns) == units.add(hold.columns) == list(range(len(hold.columns)))
+
+
+def test_a_stiff_part_gives_as_its_pegs_bend() -> None:
+    """Nothing is left but the pins' deflections, which move the part as the contacts say."""
+    result = result_in("vise")
+    stiff = BendingQuestion(ElasticMaterial("stiff", 1e7, 0.3, 1000.0), HIGH, 3000.0)
+    own = find_bendings(result, [0], PrismShape(result.workpiece, HIGH), stiff)[0]
+    softer = find_bendings(
+        result, [0], PrismShape(result.workpiece, HIGH), BendingQuestion(METAL, HIGH, 3000.0)
+    )[0]
+    assert own.give is not None and softer.give is not None
+    least = 150.0 * compute_deflections(1.0, HIGH / 2, 6.0) / 4
+    assert least < own.give.value < softer.give.value
+    rigid = hold_in("vise")
+    load = np.array([150.0, 0, 0, 0, -150.0 * HIGH, -150.0 * 20])
+    pegs = (rigid.answers @ load)[:4]
+    assert rigid.gives[:, :4] @ pegs == pytest.approx(pegs * compute_deflections(1.0, HIGH / 2, 6.0))
+
+
+def test_only_faces_to_be_cut_count() -> None:
+    result = result_in("vise")
+    whole, top = bent(result, jaw_force=3000.0), bent(result, jaw_force=3000.0, faces=("top",))
+    face = bent(result, jaw_force=3000.0, faces=(3, "bottom"))
+    assert max(top.clamp_distortion.value, face.clamp_distortion.value) <= whole.clamp_distortion.value
+    assert top.clamp_distortion.at[2] == pytest.approx(HIGH)
+    assert (whole.faces, top.faces, face.faces) == (None, "top", "bottom, faces 3")
+    with pytest.raises(InputError, match="face 9 of plate does not exist"):
+        bent(result, faces=(9,))
+
+
+def test_distances_from_lines_and_arcs() -> None:
+    from workhold.geometry.segment import Arc, Line
+
+    points = np.array([(3.0, 4.0), (12.0, 0.0), (0.0, -6.0)])
+    assert measure_distances(Line((0.0, 0.0), (10.0, 0.0)), points) == pytest.approx([4.0, 2.0, 6.0])
+    quarter = Arc((0.0, 0.0), 5.0, np.pi / 4, np.pi / 4, 1.0)
+    assert measure_distances(quarter, points)[:2] == pytest.approx([0.0, 7.0])
+    assert measure_distances(quarter, points)[2] > 5.0
+
+
+@pytest.mark.parametrize("name", ["vise", "plate", "two clamps", "fence", "plain vise"])
+def test_a_finer_mesh_agrees_within_the_error_that_is_told(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Meshes refined once, as usual, against the same refined twice."""
+    result = result_in(name)
+    told = bent(result, jaw_force=3000.0)
+    monkeypatch.setattr(asking, "refine_mesh", lambda mesh: refine_mesh(refine_mesh(mesh)))
+    finer = bent(result, jaw_force=3000.0)
+    assert told.give is not None and finer.give is not None
+    for one, other in ((told.clamp_distortion, finer.clamp_distortion), (told.give, finer.give)):
+        assert abs(one.value - other.value) <= one.error + 0.002 * one.value
+
+
+def test_pads_and_a_clamp_on_top_bear_the_part() -> None:
+    plate = workhold.Workpiece.from_points("plate", [(0, 0), (120, 0), (120, 80), (0, 80)])
+    vise = workhold.Vise(pitch=10, columns=8, peg_radius=3)
+    first = workhold.design(plate, vise, best=1, jaw_force=2000, thickness=6)[0]
+    pads = first.supports(6, best=1, pad_radius=3, loads=[])
+    flat, light, hard = (
+        first.bending("69000,0.33", thickness=6, supports=supports, clamp_force=force)
+        for supports, force in ((None, None), (pads, 100.0), (pads, 2000.0))
+    )
+    assert flat.give is None and flat.figures.keys() == {"clamp_distortion"}
+    assert light.clamp_distortion.value < hard.clamp_distortion.value
+    middle = pads.triples[0].clamp.at
+    away = np.hypot(hard.surface.nodes[:, 0] - middle[0], hard.surface.nodes[:, 1] - middle[1])
+    assert hard.moved[away < 12.0, 2].mean() < -0.001
+
+
+@pytest.mark.parametrize("name", MATERIALS)
+def test_materials_have_numbers_with_a_source(name: str) -> None:
+    one = find_material(name.upper().replace("-", " "))
+    assert one.name == name and len(one.source) > 5
+    assert 1000 < one.elastic_modulus < 250_000 and 0.2 < one.poisson < 0.45 and 1000 < one.density < 9000
+
+
+@pytest.mark.parametrize("text", ["cheese", "69000", "69000,x", "69000,0.6", "-1,0.3", "1,2,3"])
+def test_what_is_no_material_is_refused(text: str) -> None:
+    with pytest.raises(InputError, match=r"[Pp]oisson|Young"):
+        find_material(text)
+
+
+def test_what_is_not_known_is_asked_for_in_a_sentence() -> None:
+    part = workhold.Workpiece.from_points("plate", CORNERS)
+    bare = workhold.design(part, TOOLKITS["vise"], best=1)[0]
+    with pytest.raises(InputError, match="depends on how thick it is: give its thickness"):
+        bare.bending()
+    with pytest.raises(InputError, match="no figure of bending to rank by: choose clamp-distortion or give"):
+        find_bending_figure("tilt")
+
+
+def test_without_the_library_it_is_said_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    library.load_elements.cache_clear()
+    monkeypatch.setitem(sys.modules, "ngsolve", None)
+    try:
+        with pytest.raises(InputError, match=r"not installed: pip install 'ngsolve>=6\.2\.2608'\.$"):
+            library.load_elements()
+    finally:
+        library.load_elements.cache_clear()
+
+
+def test_what_is_told_has_its_error_its_place_and_its_remedy() -> None:
+    one = bent(result_in("vise"), jaw_force=3000.0)
+    clamping, give = one.list_sentences("jaw", MILLIMETRE)
+    assert clamping.startswith("At a jaw force of 3000 N clamping bends the part by ")
+    assert "give or take" in clamping and clamping.endswith("that springs back.")
+    assert "under load 1" in give
+    assert "thou" in one.list_sentences("jaw", INCH)[0]
+    assert one.list_warnings(None, MILLIMETRE) == one.list_warnings(1.0, MILLIMETRE) == []
+    assert len(one.list_warnings(1e-6, MILLIMETRE)) == 2
+    data = one.as_data()
+    assert data["clamp_distortion"]["value"] == one.figures["clamp_distortion"]
+    assert data["give"]["load"] == 1 and data["elements"] == one.elements
+
+
+def test_without_a_force_all_is_for_a_thousand_newtons() -> None:
+    part = workhold.Workpiece.from_points("plate", CORNERS)
+    first = workhold.design(part, TOOLKITS["vise"], best=1, thickness=HIGH)[0]
+    one = first.bending()
+    assert one.is_stated and one.jaw_force == 1000.0
+    assert one.list_sentences("jaw", MILLIMETRE)[0].startswith("For each 1000 N of jaw force clamping bends")
